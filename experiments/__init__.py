@@ -1,0 +1,1 @@
+"""Experiments: designs, runners, tables and statistics."""

@@ -1,0 +1,44 @@
+"""Where the shipped instances are, and how a name on the command line becomes a file."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+from typing import Literal
+
+from rmfs.errors import InputError
+
+Kind = Literal["layouts", "scenarios", "controllers"]
+
+ROOT = Path(__file__).resolve().parent.parent / "instances"
+"""The folder of shipped instances: beside the package in a checkout as in an installed wheel."""
+
+
+def names(kind: Kind) -> list[str]:
+    """Names of the shipped instances of one kind, sorted."""
+    files = (ROOT / kind).glob("*")
+    return sorted({path.stem for path in files if path.suffix in (".toml", ".json")})
+
+
+def locate(kind: Kind, name_or_path: str) -> Path:
+    """Find the file for a path or for a name of a shipped instance.
+
+    Raises
+    ------
+    InputError
+        If neither exists; the message lists the shipped names.
+    """
+    path = Path(name_or_path)
+    if path.is_file():
+        return path
+    for suffix in (".toml", ".json"):
+        shipped = ROOT / kind / f"{name_or_path}{suffix}"
+        if shipped.is_file():
+            return shipped
+    known = names(kind)
+    near = difflib.get_close_matches(name_or_path, known, n=1)
+    hint = f"did you mean {near[0]}? " if near else ""
+    raise InputError(
+        f"{name_or_path}: no such file, and no shipped {kind} of that name; "
+        f"{hint}shipped: {', '.join(known)}"
+    )

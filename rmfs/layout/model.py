@@ -1,0 +1,194 @@
+"""The layout: waypoints, stations, elevators, pods and robots as arrays.
+
+Every waypoint, pod, robot and station is named by its index. Stations share one numbering: pick
+stations come first, replenishment stations follow.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class Tier:
+    """One floor.
+
+    Attributes
+    ----------
+    length_m, width_m
+        Extent in x and in y.
+    height_m
+        Height of the floor above the ground, for drawing.
+    """
+
+    length_m: float
+    width_m: float
+    height_m: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class PickStation:
+    """A station where units are picked from pods into orders.
+
+    Attributes
+    ----------
+    waypoint
+        Where the robot stands while its pod is served.
+    queue
+        Places in front of the station: `queue[0] == waypoint`, the entrance comes last.
+    order_slots
+        How many orders may be open at once.
+    unit_transfer_s
+        How long one unit keeps the station busy.
+    unit_pick_s
+        How long one unit keeps the robot.
+    activation
+        Rank in which stations are switched on, from 1.
+    """
+
+    waypoint: int
+    queue: tuple[int, ...]
+    radius_m: float
+    order_slots: int
+    unit_transfer_s: float
+    unit_pick_s: float
+    activation: int
+
+
+@dataclass(frozen=True, slots=True)
+class ReplenishmentStation:
+    """A station where bundles are put into pods.
+
+    Attributes
+    ----------
+    capacity
+        Space units of bundles that may be assigned to the station at once.
+    bundle_transfer_s
+        How long one bundle keeps both station and robot.
+    """
+
+    waypoint: int
+    queue: tuple[int, ...]
+    radius_m: float
+    capacity: float
+    bundle_transfer_s: float
+    activation: int
+
+
+@dataclass(frozen=True, slots=True)
+class Elevator:
+    """A lift for one robot at a time.
+
+    Attributes
+    ----------
+    waypoints
+        Where a robot boards and leaves, one per tier.
+    travel_s
+        Seconds for each ordered pair of these waypoints (keys: waypoint indices).
+    queues
+        Waiting places per boarding waypoint, nearest first; the first is the waypoint itself.
+    """
+
+    waypoints: tuple[int, ...]
+    travel_s: dict[tuple[int, int], float]
+    queues: dict[int, tuple[int, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class RobotKind:
+    """Size and motion of a robot.
+
+    Attributes
+    ----------
+    full_turn_s
+        Seconds for a turn of 360 degrees on the spot.
+    pod_transfer_s
+        Seconds to lift or to set down a pod.
+    """
+
+    radius_m: float
+    acceleration_m_s2: float
+    deceleration_m_s2: float
+    top_speed_m_s: float
+    full_turn_s: float
+    pod_transfer_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """A warehouse before anything happens in it.
+
+    Attributes
+    ----------
+    x_m, y_m
+        Positions of the N waypoints, shape (N,).
+    tier
+        Tier index of each waypoint, shape (N,).
+    edge_start
+        CSR offsets, shape (N + 1,): the waypoints reached directly from v are
+        `edge_target[edge_start[v]:edge_start[v + 1]]`, ascending. Edges between tiers are not
+        here but in `elevators`.
+    edge_target
+        Heads of the directed edges, shape (M,).
+    is_storage
+        Waypoints where a pod may be stored, shape (N,).
+    is_queue
+        Waypoints that belong to a queue zone (its exit included), shape (N,).
+    pod_waypoint
+        Where each of the P pods stands at the start, shape (P,).
+    pod_capacity
+        Space units of each pod, shape (P,).
+    pod_radius_m
+        Radius of the pods (the largest, if they differ).
+    robot_waypoint
+        Where each of the R robots stands at the start, shape (R,).
+    robot_heading_rad
+        Heading of each robot at the start, 0 = +x, growing towards +y, shape (R,).
+    robot_kind
+        Index into `robot_kinds`, shape (R,).
+    """
+
+    name: str
+    tiers: tuple[Tier, ...]
+    x_m: NDArray[np.float64]
+    y_m: NDArray[np.float64]
+    tier: NDArray[np.int16]
+    edge_start: NDArray[np.int32]
+    edge_target: NDArray[np.int32]
+    is_storage: NDArray[np.bool_]
+    is_queue: NDArray[np.bool_]
+    pick_stations: tuple[PickStation, ...]
+    replenishment_stations: tuple[ReplenishmentStation, ...]
+    elevators: tuple[Elevator, ...]
+    pod_waypoint: NDArray[np.int32]
+    pod_capacity: NDArray[np.float64]
+    pod_radius_m: float
+    robot_waypoint: NDArray[np.int32]
+    robot_heading_rad: NDArray[np.float64]
+    robot_kind: NDArray[np.int16]
+    robot_kinds: tuple[RobotKind, ...]
+
+    @property
+    def stations(self) -> tuple[PickStation | ReplenishmentStation, ...]:
+        """All stations in their common numbering: pick stations first."""
+        return (*self.pick_stations, *self.replenishment_stations)
+
+    @property
+    def waypoints(self) -> int:
+        """Number of waypoints."""
+        return len(self.x_m)
+
+    @property
+    def pods(self) -> int:
+        """Number of pods."""
+        return len(self.pod_waypoint)
+
+    @property
+    def robots(self) -> int:
+        """Number of robots."""
+        return len(self.robot_waypoint)

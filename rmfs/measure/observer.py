@@ -1,0 +1,79 @@
+"""What a run tells its observers.
+
+The simulation calls these methods as things happen; each does nothing here. A measure overrides
+the few it needs, so that the simulation never asks what is being measured.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rmfs.world.orders import Bundle, Order
+
+
+class Observer:
+    """Callbacks of a run; times are simulated seconds, entities are named by their index."""
+
+    def order_created(self, order: Order) -> None:
+        """A pick order joined the backlog (`order.created_s`)."""
+
+    def order_assigned(self, order: Order) -> None:
+        """POA put the order on a pick station (`order.station`, `order.assigned_s`)."""
+
+    def unit_picked(
+        self,
+        time_s: float,
+        order: Order,
+        sku: int,
+        pod: int,
+        robot: int,
+        station: int,
+        late_bound: bool,
+    ) -> None:
+        """A unit left a pod for an order; `late_bound`: added to the pod's task on its way."""
+
+    def line_picked(self, time_s: float, order: Order, sku: int, units: int) -> None:
+        """The last unit of an order line was picked."""
+
+    def order_completed(self, order: Order) -> None:
+        """All units are picked and the station handed the order on (`order.completed_s`)."""
+
+    def bundle_created(self, bundle: Bundle) -> None:
+        """A replenishment order (bundle) joined the backlog (`bundle.created_s`)."""
+
+    def bundle_assigned(self, bundle: Bundle) -> None:
+        """ROA and RPS are both decided (`bundle.station`, `bundle.pod`, `bundle.assigned_s`)."""
+
+    def bundle_stored(self, bundle: Bundle, robot: int) -> None:
+        """The bundle went into its pod (`bundle.stored_s`)."""
+
+    def visit_started(self, time_s: float, station: int, pod: int, robot: int) -> None:
+        """A robot with its pod reached the head of a station's queue."""
+
+    def visit_ended(self, time_s: float, station: int, pod: int, robot: int) -> None:
+        """The robot was told to leave the station."""
+
+    def station_busy(self, station: int, from_s: float, to_s: float) -> None:
+        """The station handles one unit or bundle during [from_s, to_s)."""
+
+    def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
+        """TA gave the robot a task: pick, replenish, park, rest or reposition (station or -1)."""
+
+    def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
+        """A robot starts to lift a pod."""
+
+    def pod_set_down(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
+        """A pod stands at a storage place again."""
+
+    def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
+        """A controller was asked (POA, PPS, ...) and gave this many decisions in this wall time."""
+
+    def station_activated(self, time_s: float, station: int, active: bool) -> None:
+        """SA switched a station on or off."""
+
+    def warmup_ended(self, time_s: float) -> None:
+        """Everything counted so far is to be forgotten; work in progress carries over."""
+
+    def sampled(self, time_s: float) -> None:
+        """A minute of simulated time has passed."""

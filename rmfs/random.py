@@ -1,0 +1,41 @@
+"""One seed, a tree of named random streams.
+
+Each stream is a child of the run's seed with a fixed number, so that adding a stream never changes
+another, and two arms of an experiment with the same seed meet the same demand.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import numpy as np
+
+
+class Stream(IntEnum):
+    """The named streams; numbers are part of the file format and never reused."""
+
+    LAYOUT = 0
+    SKUS = 1
+    INITIAL_STOCK = 2
+    ORDER_ARRIVALS = 3
+    ORDER_CONTENTS = 4
+    BUNDLE_ARRIVALS = 5
+    BUNDLE_CONTENTS = 6
+    SERVICE = 7
+    TIE_BREAKS = 8
+    CONTROLLERS = 9
+
+
+def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:
+    """Return the generator of one stream.
+
+    Parameters
+    ----------
+    seed
+        The run's (or layout's) seed, 0 or greater.
+    path
+        Further numbers below the stream, for example the ordinal of an order: each gets a stream
+        of its own.
+    """
+    sequence = np.random.SeedSequence(seed, spawn_key=(int(stream), *path))
+    return np.random.Generator(np.random.PCG64(sequence))

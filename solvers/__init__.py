@@ -1,0 +1,1 @@
+"""Optimisation models and the controllers that use them."""
