@@ -101,31 +101,61 @@ def _copied(table: Table) -> Table:
 
 
 def _explain(model: type[pydantic.BaseModel], detail: Any) -> str:
+    unknown = detail["type"] == "extra_forbidden"
     location = [str(part) for part in detail["loc"]]
-    key = ".".join(location)
-    if detail["type"] == "extra_forbidden":
-        valid = _fields_at(model, location[:-1])
+    shown, models = _walk(model, location[:-1] if unknown else location)
+    if unknown:
+        valid = [name for candidate in models for name in _names(candidate)]
         near = difflib.get_close_matches(location[-1], valid, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"valid: {', '.join(sorted(valid))}"
-        return f"unknown key {key}; {hint}"
-    message = detail["msg"].removeprefix("Value error, ")
-    given = detail.get("input")
-    shown = "" if isinstance(given, dict) or detail["type"] == "missing" else f" (given: {given!r})"
-    return f"{key}: {message}{shown}" if key else message
+        hint = f"did you mean {near[0]}?" if near else f"valid: {', '.join(sorted(set(valid)))}"
+        return f"unknown key {'.'.join([*shown, location[-1]])}; {hint}"
+    message, given = detail["msg"].removeprefix("Value error, "), detail.get("input")
+    if detail["type"] in ("union_tag_invalid", "union_tag_not_found"):
+        # the key that tells the alternatives apart is wrong or missing
+        context = detail["ctx"]
+        key = context["discriminator"].strip("'")
+        shown, given = [*shown, key], context.get("tag", {})
+        message = f"must be one of {context['expected_tags']}" if given else "Field required"
+    given_shown = (
+        "" if isinstance(given, dict) or detail["type"] == "missing" else f" (given: {given!r})"
+    )
+    return f"{'.'.join(shown)}: {message}{given_shown}" if shown else message
 
 
-def _fields_at(model: type[pydantic.BaseModel], path: list[str]) -> list[str]:
-    """Names of the fields of the nested model that `path` leads to."""
+def _walk(
+    model: type[pydantic.BaseModel], location: list[str]
+) -> tuple[list[str], list[type[pydantic.BaseModel]]]:
+    """Follow pydantic's path of an error.
+
+    Returns
+    -------
+    list of str
+        The keys on the way as in the file. Where a key holds one of several models, pydantic's path
+        also names the one it took: that is left out.
+    list of type
+        The models that the path may have reached.
+    """
+    shown: list[str] = []
     current: list[type[pydantic.BaseModel]] = [model]
-    for part in path:
-        following: list[type[pydantic.BaseModel]] = []
-        for candidate in current:
-            field = _field(candidate, part)
-            if field is not None:
-                following.extend(_models_in(field.annotation))
-        # a discriminator value or list index appears in the path without being a field
-        current = following or current
-    return [name for candidate in current for name in _names(candidate)]
+    for part in location:
+        fields = [field for candidate in current if (field := _field(candidate, part)) is not None]
+        taken = [candidate for candidate in current if part in _tags(candidate)]
+        if fields:
+            current = [following for field in fields for following in _models_in(field.annotation)]
+        elif taken:
+            current = taken
+            continue
+        shown.append(part)
+    return shown, current
+
+
+def _tags(model: type[pydantic.BaseModel]) -> set[Any]:
+    """What pydantic may call a model among alternatives: its name or the value of a `Literal`."""
+    values = {model.__name__}
+    for field in model.model_fields.values():
+        if typing.get_origin(field.annotation) is typing.Literal:
+            values.update(typing.get_args(field.annotation))
+    return values
 
 
 def _field(model: type[pydantic.BaseModel], name: str) -> Any:

@@ -1,1 +1,23 @@
-"""The layout of a warehouse."""
+"""The layout of a warehouse: waypoints, stations, pods and robots before anything happens.
+
+`load` reads every kind of layout file, `generate` makes the default layout from parameters,
+`check` says what is wrong with one, `draw` shows it.
+"""
+
+from rmfs.layout.checks import Violation as Violation
+from rmfs.layout.checks import check as check
+from rmfs.layout.checks import refuse as refuse
+from rmfs.layout.explicit import save_json as save_json
+from rmfs.layout.generator import generate as generate
+from rmfs.layout.loading import load as load
+from rmfs.layout.loading import load_with_notes as load_with_notes
+from rmfs.layout.loading import names as names
+from rmfs.layout.model import Elevator as Elevator
+from rmfs.layout.model import Layout as Layout
+from rmfs.layout.model import PickStation as PickStation
+from rmfs.layout.model import ReplenishmentStation as ReplenishmentStation
+from rmfs.layout.model import RobotKind as RobotKind
+from rmfs.layout.model import Tier as Tier
+from rmfs.layout.parameters import LayoutParameters as LayoutParameters
+from rmfs.layout.picture import draw as draw
+from rmfs.layout.picture import save_picture as save_picture

@@ -1,1 +1,50 @@
-"""Package measure."""
+"""What a run tells: footprint, tables, heat maps, traces and their independent check.
+
+`Recorder` observes a run; `tables` turns what it wrote down into the tables that `dictionary`
+describes; `folder` writes and reads run folders; `checker` proves a trace safe.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.measure.folder import RunFolder as RunFolder
+from rmfs.measure.folder import load_run as load_run
+from rmfs.measure.folder import write_run as write_run
+from rmfs.measure.observer import Observer as Observer
+from rmfs.measure.recorder import Recorder as Recorder
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rmfs.measure.checker import CheckReport
+    from rmfs.simulation.run import Run
+
+# pandas is imported when a table is wanted, not when a run begins
+
+
+def footprint(run: Run, report: CheckReport | None = None) -> pd.Series:
+    """Return the footprint of a run that has ended; see `rmfs.measure.dictionary`.
+
+    Parameters
+    ----------
+    report
+        The trace checker's verdict; without it `collisions` is empty.
+    """
+    from rmfs.measure import tables
+
+    return tables.footprint(run, report).iloc[0]
+
+
+def series(run: Run) -> pd.DataFrame:
+    """Return the course of a run, one row per minute."""
+    from rmfs.measure import tables
+
+    return tables.series(run.recorder)
+
+
+def decisions(run: Run) -> pd.DataFrame:
+    """Return the decisions of a run, one row per call of a controller."""
+    from rmfs.measure import tables
+
+    return tables.decisions(run.recorder)

@@ -9,11 +9,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from rmfs.simulation.simulation import Simulation
     from rmfs.world.orders import Bundle, Order
 
 
 class Observer:
     """Callbacks of a run; times are simulated seconds, entities are named by their index."""
+
+    def run_started(self, simulation: Simulation) -> None:
+        """The world is built and stocked; nothing has happened yet."""
+
+    def run_ended(self, time_s: float) -> None:
+        """The last moment of the run; the world stays as it is."""
 
     def order_created(self, order: Order) -> None:
         """A pick order joined the backlog (`order.created_s`)."""

@@ -1,0 +1,236 @@
+"""The command line: the one place that may import everything.
+
+Whatever a user does wrong ends in one line on the standard error stream and exit code 2; an
+interruption ends in exit code 130. Imports are made inside the commands, so that help and errors
+come at once.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from rmfs.measure.checker import CheckReport
+    from rmfs.simulation.run import Run
+
+SUB_COMMANDS = {
+    "layout": ("rmfs.layout.commands", "Make, draw, check and import layouts."),
+    "scenario": ("rmfs.scenario.commands", "List, show, check and import scenarios."),
+    "controllers": ("rmfs.control.commands", "List, show and check sets of controllers."),
+}
+"""Module and help of each group of commands; its module is imported when it is called."""
+
+UNSAFE = 1
+WRONG_INPUT = 2
+INTERRUPTED = 130
+
+
+class LazyGroup(TyperGroup):
+    """A group that knows its sub-commands by name and loads one when it is called."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Name all commands, loaded or not."""
+        return [*super().list_commands(ctx), *(n for n in SUB_COMMANDS if n not in self.commands)]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return a command, or what help needs to know of it if it is not loaded."""
+        if cmd_name in SUB_COMMANDS and cmd_name not in self.commands:
+            return TyperGroup(name=cmd_name, help=SUB_COMMANDS[cmd_name][1])
+        return super().get_command(ctx, cmd_name)
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Load the command that is called."""
+        if args and args[0] in SUB_COMMANDS:
+            module = importlib.import_module(SUB_COMMANDS[args[0]][0])
+            self.add_command(typer.main.get_command(module.app), args[0])
+        return super().resolve_command(ctx, args)
+
+
+app = typer.Typer(
+    cls=LazyGroup,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    arguments
+        Without the program's name. Default: those of the process.
+
+    Returns
+    -------
+    int
+        The exit code.
+    """
+    command = typer.main.get_command(app)
+    try:
+        code = command.main(args=arguments, prog_name="rmfs", standalone_mode=False)
+    except InputError as error:
+        return _complain(str(error))
+    except typer.TyperException as error:
+        return _complain(error.format_message())
+    except (KeyboardInterrupt, typer.Abort):
+        _complain("interrupted")
+        return INTERRUPTED
+    if code == INTERRUPTED:
+        _complain("interrupted")
+    return code if isinstance(code, int) else 0
+
+
+def _complain(message: str) -> int:
+    """Tell the user in one line what is wrong."""
+    print(f"rmfs: {' '.join(message.split())}", file=sys.stderr)
+    return WRONG_INPUT
+
+
+@app.callback()
+def rmfs(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Show the version and exit.")] = False,
+) -> None:
+    """Simulate and optimise Robotic Mobile Fulfillment Systems."""
+    if version:
+        from rmfs.measure.provenance import version as installed
+
+        print(f"rmfs {installed()}")
+        raise typer.Exit
+    if context.invoked_subcommand is None:
+        print(context.get_help())
+
+
+@app.command()
+def run(
+    layout: Annotated[str, typer.Option(help="Name of a shipped layout, or a file.")] = "default",
+    scenario: Annotated[
+        str, typer.Option(help="Name of a shipped scenario, or a file.")
+    ] = "default",
+    controllers: Annotated[
+        str, typer.Option(help="Name of a shipped set of controllers, or a file.")
+    ] = "default",
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all random streams.")] = 0,
+    out: Annotated[
+        Path | None, typer.Option(help="Run folder. [default: below results/]", show_default=False)
+    ] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Override a parameter, for example layout.robots=16; may be repeated.",
+        ),
+    ] = None,
+    pacing: Annotated[
+        str, typer.Option(metavar="MODE", help="What thinking costs in simulated time.")
+    ] = "instant",
+    trace: Annotated[bool, typer.Option("--trace", help="Write the trace of all motion.")] = False,
+    check: Annotated[
+        bool, typer.Option("--check", help="Prove the motion safe; fills `collisions`.")
+    ] = False,
+    allow_not_well_formed: Annotated[
+        bool,
+        typer.Option(
+            "--allow-not-well-formed", help="Run a layout in which robots may block each other."
+        ),
+    ] = False,
+) -> None:
+    """Simulate a warehouse and write a run folder."""
+    from rmfs.config import parse_override
+    from rmfs.measure.folder import fill, reserved
+
+    overrides = [parse_override(text) for text in set_ or []]
+    inputs = {"layout": layout, "scenario": scenario, "controllers": controllers}
+    target = out or Path("results") / default_name(inputs, seed)
+    with reserved(target) as folder:
+        from rmfs.simulation.run import simulate
+
+        with progress(f"simulating {', '.join(inputs.values())}, seed {seed}") as advance:
+            done = simulate(
+                **inputs,
+                seed=seed,
+                overrides=overrides,
+                pacing=pacing,
+                trace=trace or check,
+                progress=advance,
+                allow_not_well_formed=allow_not_well_formed,
+            )
+        report = proven(done) if check else None
+        step("writing the tables")
+        fill(folder, done, report=report, trace=trace, inputs=inputs)
+    conclude(done, report, target)
+
+
+def default_name(inputs: dict[str, str], seed: int) -> str:
+    """Return the name of the run folder: layout-scenario-controllers-seedN."""
+    return "-".join([*(Path(given).stem for given in inputs.values()), f"seed{seed}"])
+
+
+def proven(done: Run) -> CheckReport:
+    """Check the trace of a run."""
+    from rmfs.measure.checker import check
+
+    step("checking the trace")
+    return check(done.layout, done.trace, until_us=round(done.end_s * 1e6))
+
+
+def conclude(done: Run, report: CheckReport | None, target: Path) -> None:
+    """Print the main figures; an unsafe trace is a defect and ends in exit code 1."""
+    from rich.console import Console
+
+    from rmfs.measure import footprint
+    from rmfs.measure.summary import summary
+
+    Console().print(summary(footprint(done, report)))
+    print(f"{target}")
+    if report is not None and not report.ok:
+        print(f"rmfs: {report.summary()}", file=sys.stderr)
+        raise typer.Exit(UNSAFE)
+
+
+def step(text: str) -> None:
+    """Say what is done now, where no progress bar says it."""
+    if not sys.stderr.isatty():
+        print(f"rmfs: {text}", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def progress(text: str) -> Iterator[Callable[[float, float], None]]:
+    """Yield a function that is told (done, total): a bar on a terminal, one line elsewhere."""
+    step(text)
+    if not sys.stderr.isatty():
+        yield lambda done, total: None
+        return
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TaskProgressColumn,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn())
+    console = Console(stderr=True)
+    with Progress(*columns, TimeRemainingColumn(), console=console, transient=True) as bar:
+        task = bar.add_task(text, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,65 @@
+"""What all controllers have in common."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+
+from rmfs.config import Model
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from rmfs.control.problems import Problem, Trigger
+    from rmfs.control.view import View
+
+
+class NoParameters(Model):
+    """A rule that has nothing to set."""
+
+
+P = TypeVar("P", bound=Model)
+
+
+class Controller(Generic[P]):
+    """Base of all controllers.
+
+    A controller is asked for decisions when one of its triggers happened, or at the time it names
+    itself. It reads the view and changes nothing: its decisions do. A new controller is installed
+    with `START`, at the beginning of a run or in the middle of it.
+
+    Attributes
+    ----------
+    problem
+        The decision problem it solves.
+    Parameters
+        The model of its parameters: file format, `--set` and documentation come from it.
+    triggers
+        Events after which every controller of the problem is asked (paper, table 1).
+    subscriptions
+        Further events after which this controller wants to be asked.
+    hears
+        Events of which `hear` is told at once, decision or not.
+    """
+
+    problem: ClassVar[Problem]
+    Parameters: ClassVar[type[Model]] = NoParameters
+    triggers: ClassVar[frozenset[Trigger]] = frozenset()
+    subscriptions: ClassVar[frozenset[Trigger]] = frozenset()
+    hears: ClassVar[frozenset[Trigger]] = frozenset()
+
+    def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
+        self.parameters = parameters
+        self.view = view
+        self.rng = rng
+
+    def next_event_s(self) -> float:
+        """When it wants to be asked at the latest; looked up after each time it was asked."""
+        return inf
+
+    def hear(self, trigger: Trigger, subject: Any) -> None:
+        """Take note of an event of `hears`; the subject is as described at the trigger."""
+
+    def draw(self, count: int) -> int:
+        """Draw a number from 0 to `count` - 1, all equally likely."""
+        return int(self.rng.random() * count)

@@ -1,0 +1,40 @@
+"""Pick order assignment (POA): which order of the backlog goes to which pick station, and when."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, TypeVar
+
+from rmfs.config import Model
+from rmfs.control.base import Controller
+from rmfs.control.problems import Problem, Trigger
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.control.decisions import AssignOrder
+
+P = TypeVar("P", bound=Model)
+
+
+class PickOrderAssignment(Controller[P]):
+    """Chooses orders of `view.orders` for stations with free slots.
+
+    Each decision is applied at once: when the controller is resumed, the order has left the
+    backlog and taken its slot. Orders it does not choose wait until it is asked again.
+    """
+
+    problem = Problem.POA
+    triggers = frozenset(
+        {
+            Trigger.START,
+            Trigger.NEW_ORDER,
+            Trigger.ORDER_COMPLETED,
+            Trigger.BUNDLE_STORED,
+            Trigger.STATION_SWITCHED,
+        }
+    )
+
+    @abstractmethod
+    def decide(self) -> Iterator[AssignOrder]:
+        """Yield an order and a station, again and again, until nothing is to be assigned now."""

@@ -1,0 +1,53 @@
+"""PPS random: any pod that has work to do at the station."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.control.pps import LateBinding, PodSelection
+from rmfs.control.pps.candidates import Candidates, pick_candidates, replenishment_candidates
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.world.robots import Robot
+    from rmfs.world.stations import PickStation, ReplenishmentStation
+
+
+class RandomPodParameters(LateBinding):
+    """Parameters of PPS random.
+
+    Attributes
+    ----------
+    prefer_same_tier
+        Whether pods on the tiers of robot and station come first.
+    """
+
+    prefer_same_tier: bool = True
+
+
+class RandomPod(PodSelection[RandomPodParameters]):
+    """Draws a pod, and draws a station for a pod that has been served."""
+
+    Parameters = RandomPodParameters
+
+    def pick_pod(self, robot: Robot, station: PickStation) -> int:
+        """Draw one of the pods at hand that can serve a request."""
+        return self._any(pick_candidates(self.view, robot, station))
+
+    def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
+        """Draw one of the pods at hand for which bundles wait."""
+        return self._any(replenishment_candidates(self.view, robot, station))
+
+    def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
+        """Draw a station."""
+        return stations[self.draw(len(stations))]
+
+    def _any(self, candidates: Candidates) -> int:
+        pods = candidates.pods
+        if not len(pods):
+            return -1
+        if self.parameters.prefer_same_tier and self.view.travel.tiers > 1:
+            away = candidates.other_tiers()
+            pods = pods[away == away.min()] if not isinstance(away, int) else pods
+        return int(pods[self.draw(len(pods))])

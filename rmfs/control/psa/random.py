@@ -1,0 +1,38 @@
+"""PSA random: any empty place."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.config import Model
+from rmfs.control.psa import PodStorageAssignment
+
+if TYPE_CHECKING:
+    from rmfs.world.robots import Robot
+
+
+class RandomPlaceParameters(Model):
+    """Parameters of PSA random.
+
+    Attributes
+    ----------
+    prefer_same_tier
+        Whether other tiers are taken only if the robot's has no empty place.
+    """
+
+    prefer_same_tier: bool = True
+
+
+class RandomPlace(PodStorageAssignment[RandomPlaceParameters]):
+    """Draws an empty place."""
+
+    Parameters = RandomPlaceParameters
+
+    def place(self, robot: Robot) -> int:
+        """Draw an empty place, on the robot's tier if so wished and possible."""
+        storage = self.view.storage
+        places = storage.places[storage.is_empty]
+        if self.parameters.prefer_same_tier and self.view.travel.tiers > 1:
+            near = places[self.view.travel.tier[places] == robot.tier]
+            places = near if len(near) else places
+        return int(places[self.draw(len(places))]) if len(places) else -1

@@ -1,0 +1,100 @@
+"""How the name of a rule becomes a controller.
+
+Rules come from three places: the table below; entry points of other distributions in the group
+`rmfs.controllers`, named `PROBLEM.NAME`; and `module:Class` written in a controllers file.
+"""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+from functools import cache
+from importlib.metadata import entry_points
+from typing import Any
+
+from rmfs.control.base import Controller
+from rmfs.control.problems import Problem
+from rmfs.errors import InputError
+
+GROUP = "rmfs.controllers"
+"""Entry-point group of third-party controllers."""
+
+_BUILT_IN: dict[Problem, dict[str, str]] = {
+    Problem.POA: {
+        "pod-match": "rmfs.control.poa.pod_match:PodMatch",
+        "random": "rmfs.control.poa.random:RandomOrder",
+    },
+    Problem.ROA: {
+        "same-pod": "rmfs.control.roa.same_pod:SamePod",
+        "random": "rmfs.control.roa.random:RandomStation",
+    },
+    Problem.RPS: {
+        "emptiest": "rmfs.control.rps.emptiest:Emptiest",
+        "random": "rmfs.control.rps.random:RandomPod",
+    },
+    Problem.PPS: {
+        "lexicographic": "rmfs.control.pps.lexicographic:Lexicographic",
+        "random": "rmfs.control.pps.random:RandomPod",
+    },
+    Problem.PSA: {
+        "nearest": "rmfs.control.psa.nearest:Nearest",
+        "random": "rmfs.control.psa.random:RandomPlace",
+    },
+    Problem.TA: {"balanced": "rmfs.control.ta.balanced:Balanced"},
+    Problem.SA: {"all": "rmfs.control.sa.all:AllStations"},
+    Problem.MM: {"none": "rmfs.control.mm.none:NoExchange"},
+    Problem.PP: {"time-windows": "rmfs.control.pp.time_windows:TimeWindows"},
+}
+
+
+def names(problem: Problem) -> list[str]:
+    """Names of all rules for a problem, built-in ones first."""
+    return [*_BUILT_IN[problem], *sorted(_installed(problem))]
+
+
+def find(problem: Problem, name: str) -> type[Controller[Any]]:
+    """Find the class of a rule.
+
+    Parameters
+    ----------
+    name
+        A registered name, or `module:Class`.
+
+    Raises
+    ------
+    InputError
+        If there is no such rule, or it does not solve this problem.
+    """
+    reference = _BUILT_IN[problem].get(name) or _installed(problem).get(name)
+    if reference is None and ":" in name:
+        reference = name
+    if reference is None:
+        known = names(problem)
+        near = difflib.get_close_matches(name, known, n=1)
+        hint = f"did you mean {near[0]}?" if near else f"valid: {', '.join(known)}"
+        raise InputError(f"no {problem} rule of the name {name}; {hint}")
+    return _load(problem, reference)
+
+
+def _load(problem: Problem, reference: str) -> type[Controller[Any]]:
+    module, _, name = reference.partition(":")
+    try:
+        found = getattr(importlib.import_module(module), name)
+    except (ImportError, AttributeError) as error:
+        raise InputError(f"{reference}: cannot be loaded ({error})") from None
+    if not (isinstance(found, type) and issubclass(found, Controller)):
+        raise InputError(f"{reference}: not a controller (subclass of rmfs.control.Controller)")
+    if found.problem is not problem:
+        raise InputError(f"{reference}: solves {found.problem}, not {problem}")
+    return found
+
+
+@cache
+def _installed(problem: Problem) -> dict[str, str]:
+    prefix = f"{problem}."
+    found = entry_points(group=GROUP)
+    return {
+        entry.name.removeprefix(prefix): entry.value
+        for entry in found
+        if entry.name.startswith(prefix)
+    }

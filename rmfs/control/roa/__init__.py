@@ -1,0 +1,34 @@
+"""Replenishment order assignment (ROA): which bundle goes to which replenishment station."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, TypeVar
+
+from rmfs.config import Model
+from rmfs.control.base import Controller
+from rmfs.control.problems import Problem, Trigger
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.control.decisions import SendBundle
+
+P = TypeVar("P", bound=Model)
+
+
+class ReplenishmentOrderAssignment(Controller[P]):
+    """Chooses stations for the bundles of `view.bundles.without_station`.
+
+    The station reserves the bundle's space at once. `view.bundles.released` has those whose pod is
+    decided. A bundle can be handled when both pod and station are.
+    """
+
+    problem = Problem.ROA
+    triggers = frozenset(
+        {Trigger.START, Trigger.NEW_BUNDLE, Trigger.BUNDLE_STORED, Trigger.STATION_SWITCHED}
+    )
+
+    @abstractmethod
+    def decide(self) -> Iterator[SendBundle]:
+        """Yield a bundle and a station, again and again, until nothing is to be sent now."""

@@ -1,0 +1,33 @@
+"""RPS emptiest: the pod with the lowest load."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.control.rps.buffered import Sticky, StickyParameters
+
+if TYPE_CHECKING:
+    from rmfs.world.orders import Bundle
+
+
+class Emptiest(Sticky[StickyParameters]):
+    """Takes the pod with the lowest share of its capacity stored or promised.
+
+    All pods are candidates, wherever they are. Ties: the pod with the lowest number.
+    """
+
+    Parameters = StickyParameters
+
+    def choose_anew(self, bundle: Bundle) -> int:
+        """Choose the pod with the lowest load share among those with room."""
+        inventory = self.view.inventory
+        share = inventory.load / inventory.capacity
+        pod = int(share.argmin())
+        if inventory.load[pod] + bundle.space <= inventory.capacity[pod]:
+            return pod
+        fits = inventory.load + bundle.space <= inventory.capacity
+        if not fits.any():
+            return -1
+        return int(np.where(fits, share, np.inf).argmin())

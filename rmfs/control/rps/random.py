@@ -1,0 +1,30 @@
+"""RPS random: any pod with room."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.control.rps.buffered import Sticky, StickyParameters
+
+if TYPE_CHECKING:
+    from rmfs.world.orders import Bundle
+
+_DRAWS = 16
+"""Pods drawn before those with room are looked up."""
+
+
+class RandomPod(Sticky[StickyParameters]):
+    """Takes a pod drawn among all that have room for the bundle, wherever they are."""
+
+    Parameters = StickyParameters
+
+    def choose_anew(self, bundle: Bundle) -> int:
+        """Draw a pod with room."""
+        inventory = self.view.inventory
+        pods = len(inventory.capacity)
+        for _ in range(_DRAWS):
+            pod = self.draw(pods)
+            if inventory.load[pod] + bundle.space <= inventory.capacity[pod]:
+                return pod
+        fitting = (inventory.load + bundle.space <= inventory.capacity).nonzero()[0]
+        return int(fitting[self.draw(len(fitting))]) if len(fitting) else -1

@@ -1,0 +1,31 @@
+"""Station activation (SA): which stations take new work."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, TypeVar
+
+from rmfs.config import Model
+from rmfs.control.base import Controller
+from rmfs.control.problems import Problem, Trigger
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.control.decisions import SwitchStation
+
+P = TypeVar("P", bound=Model)
+
+
+class StationActivation(Controller[P]):
+    """Switches stations on and off; all are off before the first decision.
+
+    A station that is off finishes what is assigned to it and gets nothing new.
+    """
+
+    problem = Problem.SA
+    triggers = frozenset({Trigger.START})
+
+    @abstractmethod
+    def decide(self) -> Iterator[SwitchStation]:
+        """Yield the stations to be switched now."""

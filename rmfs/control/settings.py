@@ -1,0 +1,170 @@
+"""The controllers file: which rule solves which problem, and with which parameters."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import pydantic
+
+from rmfs import config, instances
+from rmfs.config import Model, Table
+from rmfs.control import registry
+from rmfs.control.problems import Problem
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from rmfs.control.base import Controller
+
+FORMAT = "rmfs-controllers/1"
+
+DEFAULTS = {
+    Problem.POA: "pod-match",
+    Problem.ROA: "same-pod",
+    Problem.RPS: "emptiest",
+    Problem.PPS: "lexicographic",
+    Problem.PSA: "nearest",
+    Problem.TA: "balanced",
+    Problem.SA: "all",
+    Problem.MM: "none",
+    Problem.PP: "time-windows",
+}
+"""The rule of a problem that a file does not mention."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A rule and its parameters, validated.
+
+    Attributes
+    ----------
+    name
+        As in the file: a registered name or `module:Class`.
+    """
+
+    problem: Problem
+    name: str
+    parameters: Model
+
+    @property
+    def controller(self) -> type[Controller[Any]]:
+        """The class of the rule."""
+        return registry.find(self.problem, self.name)
+
+    def to_table(self) -> Table:
+        """Name and parameters as they stand in a controllers file."""
+        return {"name": self.name, **self.parameters.model_dump(mode="json")}
+
+
+@dataclass(frozen=True)
+class ControllerSettings:
+    """A complete set of controllers.
+
+    Attributes
+    ----------
+    choices
+        One for every problem.
+    """
+
+    name: str
+    description: str
+    choices: Mapping[Problem, Choice]
+
+    def to_table(self) -> Table:
+        """Everything as it stands in a controllers file, defaults written out."""
+        head: Table = {"format": FORMAT, "name": self.name, "description": self.description}
+        return head | {str(problem): choice.to_table() for problem, choice in self.choices.items()}
+
+
+class _File(Model):
+    """The keys of a controllers file."""
+
+    format: Literal["rmfs-controllers/1"]
+    name: str = pydantic.Field(min_length=1)
+    description: str = ""
+    poa: Table | None = None
+    roa: Table | None = None
+    rps: Table | None = None
+    pps: Table | None = None
+    psa: Table | None = None
+    ta: Table | None = None
+    sa: Table | None = None
+    mm: Table | None = None
+    pp: Table | None = None
+
+
+def load(
+    name_or_path: str | Path, overrides: Sequence[tuple[list[str], Any]] = ()
+) -> ControllerSettings:
+    """Read a controllers file.
+
+    Parameters
+    ----------
+    name_or_path
+        A path or the name of a shipped instance.
+    overrides
+        Pairs of path and value, for example `(["psa", "name"], "random")`. An override that
+        chooses another rule drops the parameters the file gave to the former one; a problem set to
+        a plain name chooses that rule with its defaults.
+
+    Raises
+    ------
+    InputError
+        If something in the file is wrong; names the key and what is valid.
+    """
+    path = instances.locate("controllers", str(name_or_path))
+    return settings(config.read_toml(path), overrides, source=str(path))
+
+
+def settings(
+    table: Table, overrides: Sequence[tuple[list[str], Any]] = (), source: str = "controllers"
+) -> ControllerSettings:
+    """Validate the content of a controllers file; see `load`."""
+    file = config.validate(_File, _overridden(table, list(overrides)), source)
+    choices = {
+        problem: _choice(problem, getattr(file, problem) or {}, source) for problem in Problem
+    }
+    return ControllerSettings(file.name, file.description, choices)
+
+
+def _overridden(table: Table, overrides: list[tuple[list[str], Any]]) -> Table:
+    """Apply overrides; those that choose a rule come first and drop parameters of the other."""
+    result = config.apply_overrides(table, [])
+    others = []
+    for path, value in overrides:
+        if len(path) == 1 and path[0] in DEFAULTS and isinstance(value, str):
+            path = [path[0], "name"]
+        if len(path) == 2 and path[0] in DEFAULTS and path[1] == "name":
+            before = result.get(path[0], {})
+            if before.get("name", DEFAULTS[Problem(path[0])]) != value:
+                result[path[0]] = {"name": value}
+        else:
+            others.append((path, value))
+    return config.apply_overrides(result, others)
+
+
+def _choice(problem: Problem, table: Table, source: str) -> Choice:
+    parameters = dict(table)
+    name = parameters.pop("name", DEFAULTS[problem])
+    if not isinstance(name, str):
+        raise InputError(f"{source}: {problem}.name: must be a string (given: {name!r})")
+    try:
+        model = registry.find(problem, name).Parameters
+    except InputError as error:
+        raise InputError(f"{source}: {problem}.name: {error}") from None
+    _refuse_unknown(problem, parameters, model, source)
+    validated = config.validate(model, parameters, f"{source}: {problem}")
+    return Choice(problem, name, validated)
+
+
+def _refuse_unknown(problem: Problem, parameters: Table, model: type[Model], source: str) -> None:
+    valid = [*model.model_fields, "name"]
+    for key in parameters:
+        if key not in valid:
+            near = difflib.get_close_matches(key, valid, n=1)
+            hint = f"did you mean {near[0]}?" if near else f"valid: {', '.join(sorted(valid))}"
+            raise InputError(f"{source}: unknown key {problem}.{key}; {hint}")

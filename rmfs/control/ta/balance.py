@@ -1,0 +1,107 @@
+"""How many robots each station gets, and which: the arithmetic of TA balanced."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+
+def split(robots: int, first: float, second: float) -> tuple[int, int]:
+    """Divide robots over two groups by weight: rounded down, the rest to the smaller group.
+
+    Ties go to the first group. If both weights are 0 no robot is given out.
+    """
+    total = first + second
+    if total <= 0:
+        return 0, 0
+    a, b = int(robots * first / total), int(robots * second / total)
+    rest = robots - a - b
+    if second <= 0 or (first > 0 and a <= b):
+        return a + rest, b
+    return a, b + rest
+
+
+def deal(robots: int, stations: Sequence[int], limit: int, goals: dict[int, int]) -> int:
+    """Deal robots out to stations in turn, at most `limit` each; returns how many are left.
+
+    Parameters
+    ----------
+    stations
+        In the order in which they are served.
+    goals
+        Number of robots per station, changed.
+    """
+    while robots > 0:
+        before = robots
+        for station in stations:
+            if robots > 0 and goals[station] < limit:
+                goals[station] += 1
+                robots -= 1
+        if robots == before:
+            break
+    return robots
+
+
+def reassign(
+    station_of: list[int], goals: dict[int, int], distance: NDArray[np.float64]
+) -> list[int]:
+    """Move robots to stations below their goal, the nearest pair of robot and station first.
+
+    A robot may be moved if it has no station or one with more robots than its goal. Ties: the
+    robot, then the station, with the lowest number.
+
+    Parameters
+    ----------
+    station_of
+        Station of each of the R robots, or -1.
+    goals
+        Number of robots per station; stations not named here have the goal 0.
+    distance
+        Between robots and all stations, shape (R, S).
+
+    Returns
+    -------
+    list of int
+        The new station of each robot. Robots beyond the goals of all stations have none.
+    """
+    result = list(station_of)
+    surplus = {station: -goal for station, goal in goals.items()}
+    for station in result:
+        if station >= 0:
+            surplus[station] = surplus.get(station, 0) + 1
+    cost = np.full(distance.shape, np.inf)
+    movable = [s < 0 or surplus[s] > 0 for s in result]
+    short = [station for station, count in surplus.items() if count < 0]
+    cost[np.ix_(movable, short)] = distance[np.ix_(movable, short)]
+    while short:
+        robot, station = divmod(int(cost.argmin()), cost.shape[1])
+        if cost[robot, station] == np.inf:
+            break
+        former = result[robot]
+        result[robot] = station
+        cost[robot] = np.inf
+        surplus[station] += 1
+        if surplus[station] == 0:
+            cost[:, station] = np.inf
+        if former >= 0:
+            surplus[former] -= 1
+            if surplus[former] == 0:
+                cost[[r for r, s in enumerate(result) if s == former]] = np.inf
+    return _without_excess(result, surplus)
+
+
+def _without_excess(station_of: list[int], surplus: dict[int, int]) -> list[int]:
+    """Take the last robots away from stations that still have too many."""
+    result = list(station_of)
+    for robot in reversed(range(len(result))):
+        station = result[robot]
+        if station >= 0 and surplus[station] > 0:
+            surplus[station] -= 1
+            result[robot] = -1
+    return result

@@ -1,0 +1,69 @@
+"""Where idle robots wait: beneath stored pods, so that free places remain for returning pods."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+RestRule = Literal["middle", "random"]
+
+
+class RestPlaces:
+    """Places to rest beneath stored, unclaimed pods; only if there are none, empty places.
+
+    An idle robot beneath a pod is in nobody's way: other empty robots pass below it, and it is
+    sent away, or gets the job, when its pod is wanted.
+
+    Parameters
+    ----------
+    rule
+        `middle`: as near to the middle of the robot's tier as possible (paper, section 3.1.1);
+        `random`: any, on the robot's tier.
+    draw
+        Draws a number below another; for `random`.
+    """
+
+    def __init__(self, view: View, rule: RestRule, draw: Callable[[int], int]) -> None:
+        self._storage = view.storage
+        self._rule = rule
+        self._draw = draw
+        self._order = [_from_middle(view, tier) for tier in range(view.travel.tiers)]
+
+    def choose(self, robot: Robot) -> int:
+        """Choose a place (waypoint), or -1 if there is none."""
+        order = self._order[robot.tier]
+        if not len(order):
+            return -1
+        for mask in (self._storage.is_restful, self._storage.is_empty):
+            fit = mask[order]
+            if self._rule == "random":
+                positions = fit.nonzero()[0]
+                if len(positions):
+                    return self._place(order[positions[self._draw(len(positions))]])
+            else:
+                first = int(fit.argmax())
+                if fit[first]:
+                    return self._place(order[first])
+        return -1
+
+    def _place(self, index: np.intp) -> int:
+        return int(self._storage.places[index])
+
+
+def _from_middle(view: View, tier: int) -> NDArray[np.intp]:
+    """Indices of the places on a tier, those near its middle first, ties by index."""
+    layout = view.layout
+    places = view.storage.places
+    x = layout.x_m[places] - layout.tiers[tier].length_m / 2
+    y = layout.y_m[places] - layout.tiers[tier].width_m / 2
+    order = np.argsort(x * x + y * y, kind="stable")
+    return order[layout.tier[places[order]] == tier]

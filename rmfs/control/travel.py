@@ -1,0 +1,110 @@
+"""How long it takes to get from here to there, as controllers may ask."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+
+
+class TravelTimes(Protocol):
+    """The part of traffic that knows travel times."""
+
+    def travel_times_to(self, waypoint: int, loaded: bool) -> NDArray[np.float64]:
+        """Unhindered times from all waypoints to one, shape (N,), s; inf if unreachable."""
+        ...
+
+    def travel_times_from(self, waypoint: int, loaded: bool) -> NDArray[np.float64]:
+        """Unhindered times from one waypoint to all, shape (N,), s; inf if unreachable."""
+        ...
+
+    def robot_waypoint(self, robot: int) -> int:
+        """Where a robot stands, or the next waypoint at which it stops."""
+        ...
+
+
+class Travel:
+    """Travel times and distances between waypoints.
+
+    Exact times come from traffic and are kept for the waypoints asked for: ask for stations, of
+    which there are few. From anywhere else `estimate_s` is meant.
+
+    Parameters
+    ----------
+    layout
+        The warehouse.
+    times
+        Traffic, or whatever else knows times.
+
+    Attributes
+    ----------
+    tier
+        Tier of each waypoint, shape (N,).
+    tiers
+        Number of tiers.
+    """
+
+    def __init__(self, layout: Layout, times: TravelTimes) -> None:
+        self._times = times
+        self._x, self._y = layout.x_m, layout.y_m
+        self.tier = layout.tier
+        self.tiers = len(layout.tiers)
+        self._to: dict[tuple[int, bool], NDArray[np.float64]] = {}
+        self._from: dict[tuple[int, bool], NDArray[np.float64]] = {}
+        kinds = layout.robot_kinds
+        self._seconds_per_metre = 1 / min(kind.top_speed_m_s for kind in kinds)
+        self._quarter_turn_s = max(kind.full_turn_s for kind in kinds) / 4
+        # farther than anything on one tier, so that the own tier always comes first
+        self._other_tier_m = 1 + max(tier.length_m + tier.width_m for tier in layout.tiers)
+
+    def to(self, waypoint: int, *, loaded: bool) -> NDArray[np.float64]:
+        """Unhindered times from all waypoints to this one, shape (N,), s."""
+        times = self._to.get((waypoint, loaded))
+        if times is None:
+            times = self._to[waypoint, loaded] = self._times.travel_times_to(waypoint, loaded)
+        return times
+
+    def away(self, waypoint: int, *, loaded: bool) -> NDArray[np.float64]:
+        """Unhindered times from this waypoint to all, shape (N,), s."""
+        times = self._from.get((waypoint, loaded))
+        if times is None:
+            times = self._from[waypoint, loaded] = self._times.travel_times_from(waypoint, loaded)
+        return times
+
+    def estimate_s(self, waypoint: int, others: NDArray[np.integer]) -> NDArray[np.float64]:
+        """Estimate times to other waypoints: Manhattan distance at top speed and one turn.
+
+        Parameters
+        ----------
+        others
+            Waypoints, shape (n,).
+
+        Returns
+        -------
+        NDArray
+            Seconds, shape (n,).
+        """
+        distance = np.abs(self._x[others] - self._x[waypoint])
+        distance += np.abs(self._y[others] - self._y[waypoint])
+        if self.tiers > 1:
+            distance += self._other_tier_m * (self.tier[others] != self.tier[waypoint])
+        distance *= self._seconds_per_metre
+        distance += self._quarter_turn_s
+        return distance
+
+    def metres(self, waypoint: int, others: NDArray[np.integer]) -> NDArray[np.float64]:
+        """Euclidean distances to other waypoints, more on other tiers, shape (n,), m."""
+        x, y = self._x[others] - self._x[waypoint], self._y[others] - self._y[waypoint]
+        distance = np.sqrt(x * x + y * y)  # hypot differs between maths libraries
+        if self.tiers > 1:
+            distance += self._other_tier_m * (self.tier[others] != self.tier[waypoint])
+        return distance
+
+    def robot_waypoint(self, robot: int) -> int:
+        """Where a robot stands, or the next waypoint at which it stops."""
+        return self._times.robot_waypoint(robot)

@@ -1,0 +1,55 @@
+"""The check of a layout before anything runs in it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.errors import LayoutError
+from rmfs.layout.checks.connection import connection
+from rmfs.layout.checks.occupancy import occupancy
+from rmfs.layout.checks.queues import queue_lists
+from rmfs.layout.checks.separation import separation
+from rmfs.layout.checks.violation import IMPOSSIBLE as IMPOSSIBLE
+from rmfs.layout.checks.violation import NOT_WELL_FORMED as NOT_WELL_FORMED
+from rmfs.layout.checks.violation import Violation as Violation
+from rmfs.layout.checks.ways import ways
+
+if TYPE_CHECKING:
+    from rmfs.layout.model import Layout
+
+CHECKS = (occupancy, connection, separation, queue_lists, ways)
+
+
+def check(layout: Layout) -> list[Violation]:
+    """Return everything that is wrong with a layout, the impossible first.
+
+    Verified are: every endpoint (storage place, station, elevator) can be reached and left, with
+    and without load; the aisles are strongly connected; queue lists are chains; every robot has a
+    place to rest; bodies stay apart; the conditions W1-W3 of deadlock freedom.
+    """
+    found = [violation for checks in CHECKS for violation in checks(layout)]
+    return sorted(found, key=lambda violation: violation.severity != IMPOSSIBLE)
+
+
+def refuse(layout: Layout, source: str, *, allow_not_well_formed: bool = False) -> None:
+    """Raise an error unless a layout may be simulated.
+
+    Parameters
+    ----------
+    source
+        File or name of the layout, for the message.
+    allow_not_well_formed
+        Accept a layout that violates the conditions of deadlock freedom only.
+
+    Raises
+    ------
+    LayoutError
+        If there are violations that are not allowed; it names them all.
+    """
+    problems = [
+        str(violation)
+        for violation in check(layout)
+        if violation.severity == IMPOSSIBLE or not allow_not_well_formed
+    ]
+    if problems:
+        raise LayoutError(source, problems)

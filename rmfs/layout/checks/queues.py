@@ -1,0 +1,103 @@
+"""Whether queue lists are queues: own places in a row, each leading towards the head (W3).
+
+W3 of the deadlock argument asks that a station admits no more robots than its queue has places.
+Traffic gives out places one by one and lets everybody else wait at an endpoint, so it holds for a
+queue of any length as long as its places are its own and the list is a chain.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rmfs.layout.checks.violation import (
+    NOT_WELL_FORMED,
+    Violation,
+    at,
+    station_label,
+    waypoint_label,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.layout.model import Layout
+
+
+@dataclass(frozen=True, slots=True)
+class Queue:
+    """The queue of a station, or of an elevator on one tier.
+
+    Attributes
+    ----------
+    label
+        What messages call it.
+    head
+        The waypoint of the station or elevator.
+    places
+        From the head to the entrance.
+    of_elevator
+        Whether an elevator is at its head.
+    """
+
+    label: str
+    head: int
+    places: tuple[int, ...]
+    of_elevator: bool
+
+    @property
+    def entrance(self) -> int:
+        """The last place."""
+        return self.places[-1]
+
+
+def all_queues(layout: Layout) -> list[Queue]:
+    """Return the queues of all stations and elevators; an empty list counts as its head alone."""
+    queues = [
+        Queue(
+            station_label(layout, s), station.waypoint, station.queue or (station.waypoint,), False
+        )
+        for s, station in enumerate(layout.stations)
+    ]
+    for number, elevator in enumerate(layout.elevators):
+        for waypoint in elevator.waypoints:
+            label = f"elevator {number} ({at(layout, waypoint)})"
+            places = elevator.queues.get(waypoint) or (waypoint,)
+            queues.append(Queue(label, waypoint, places, True))
+    return queues
+
+
+def queue_lists(layout: Layout) -> Iterator[Violation]:
+    """Yield violations of the order of queue places and of their being private."""
+    owner: dict[int, str] = {}
+    for queue in all_queues(layout):
+        yield from _chain(layout, queue)
+        for place in dict.fromkeys(queue.places):
+            if place in owner:
+                message = f"shares {waypoint_label(layout, place)} with {owner[place]} (W3)"
+                yield Violation(NOT_WELL_FORMED, queue.label, message)
+            owner.setdefault(place, queue.label)
+
+
+def _chain(layout: Layout, queue: Queue) -> Iterator[Violation]:
+    """Yield faults within one list."""
+    places = queue.places
+    if places[0] != queue.head:
+        message = f"its queue begins at {waypoint_label(layout, places[0])}, not at itself (W3)"
+        yield Violation(NOT_WELL_FORMED, queue.label, message)
+    if len(set(places)) < len(places):
+        twice = next(place for place in places if places.count(place) > 1)
+        message = f"its queue lists {waypoint_label(layout, twice)} twice (W3)"
+        yield Violation(NOT_WELL_FORMED, queue.label, message)
+    for rank in range(1, len(places)):
+        place, ahead = places[rank], places[rank - 1]
+        if layout.is_storage[place]:
+            message = f"its {waypoint_label(layout, place)} is part of its queue (W1)"
+            yield Violation(NOT_WELL_FORMED, queue.label, message)
+        start, stop = layout.edge_start[place], layout.edge_start[place + 1]
+        if ahead not in layout.edge_target[start:stop]:
+            message = (
+                f"queue place {rank} (waypoint {place}) does not lead to place {rank - 1} "
+                f"(waypoint {ahead}) (W3)"
+            )
+            yield Violation(NOT_WELL_FORMED, queue.label, message)

@@ -1,0 +1,80 @@
+"""Which waypoints a robot can get to, in a graph restricted to some waypoints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse.csgraph import breadth_first_order, connected_components
+
+from rmfs.layout.graph import adjacency
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from scipy.sparse import csr_array
+
+    from rmfs.layout.model import Layout
+
+    Mask = NDArray[np.bool_]
+
+
+class Reach:
+    """Reachability over edges and elevator rides between allowed waypoints.
+
+    Parameters
+    ----------
+    allowed
+        Waypoints that may be used, shape (N,).
+    """
+
+    def __init__(self, layout: Layout, allowed: Mask) -> None:
+        self._graph: csr_array = adjacency(layout, allowed)
+        self._back: csr_array = self._graph.T.tocsr()
+        self.allowed = allowed
+
+    def forward(self, sources: Mask) -> Mask:
+        """Return the allowed waypoints reached from any of the sources, sources included."""
+        return _search(self._graph, sources & self.allowed)
+
+    def backward(self, goals: Mask) -> Mask:
+        """Return the allowed waypoints from which one of the goals is reached, goals included."""
+        return _search(self._back, goals & self.allowed)
+
+    def components(self) -> NDArray[np.int32]:
+        """Return the strongly connected component of each waypoint, shape (N,)."""
+        labels: NDArray[np.int32] = connected_components(
+            self._graph, directed=True, connection="strong"
+        )[1]
+        return labels
+
+    def largest(self, counted: Mask) -> Mask:
+        """Return the strongly connected component that holds most of the counted waypoints."""
+        labels = self.components()
+        counted = counted & self.allowed
+        if not counted.any():
+            return np.zeros_like(counted)
+        best = np.bincount(labels[counted]).argmax()
+        return np.asarray((labels == best) & self.allowed)
+
+
+def entered_from(layout: Layout, tails: NDArray[np.int32], sources: Mask) -> Mask:
+    """Return the waypoints that an edge from one of the sources leads to."""
+    found = np.zeros(layout.waypoints, dtype=np.bool_)
+    found[layout.edge_target[sources[tails]]] = True
+    return found
+
+
+def leading_to(layout: Layout, tails: NDArray[np.int32], goals: Mask) -> Mask:
+    """Return the waypoints from which an edge leads to one of the goals."""
+    found = np.zeros(layout.waypoints, dtype=np.bool_)
+    found[tails[goals[layout.edge_target]]] = True
+    return found
+
+
+def _search(graph: csr_array, sources: Mask) -> Mask:
+    """Breadth-first search from many sources: repeated from the first source not yet reached."""
+    reached = np.zeros_like(sources)
+    while (open_sources := np.flatnonzero(sources & ~reached)).size:
+        order = breadth_first_order(graph, open_sources[0], return_predecessors=False)
+        reached[order] = True
+    return reached

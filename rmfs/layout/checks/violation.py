@@ -1,0 +1,80 @@
+"""What a check reports: which element violates what, and how bad that is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from rmfs.layout.model import Layout
+
+Severity = Literal["impossible", "not well-formed"]
+
+IMPOSSIBLE: Severity = "impossible"
+NOT_WELL_FORMED: Severity = "not well-formed"
+
+MOST_SHOWN = 5
+"""Elements with the same fault that are reported one by one; further ones are counted."""
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """A fault of a layout.
+
+    Attributes
+    ----------
+    severity
+        "impossible": some task can never be done, or bodies overlap: the layout is always refused.
+        "not well-formed": a condition W1-W3 of deadlock freedom does not hold: refused unless the
+        user allows it.
+    element
+        The element concerned, by kind, number and place.
+    message
+        What is wrong with it.
+    """
+
+    severity: Severity
+    element: str
+    message: str
+
+    def __str__(self) -> str:
+        """Return one line."""
+        return f"{self.severity}: {self.element}: {self.message}"
+
+
+def at(layout: Layout, waypoint: int) -> str:
+    """Say where a waypoint lies."""
+    place = f"x {layout.x_m[waypoint]:g} m, y {layout.y_m[waypoint]:g} m"
+    return place if len(layout.tiers) == 1 else f"{place}, tier {layout.tier[waypoint]}"
+
+
+def waypoint_label(layout: Layout, waypoint: int) -> str:
+    """Name a waypoint: as storage place, queue place or plain waypoint."""
+    if layout.is_storage[waypoint]:
+        kind = "storage place"
+    elif layout.is_queue[waypoint]:
+        kind = "queue place"
+    else:
+        kind = "waypoint"
+    return f"{kind} {waypoint} ({at(layout, waypoint)})"
+
+
+def station_label(layout: Layout, station: int) -> str:
+    """Name a station by its kind and its number within the kind."""
+    picks = len(layout.pick_stations)
+    name = f"pick station {station}"
+    if station >= picks:
+        name = f"replenishment station {station - picks}"
+    return f"{name} ({at(layout, layout.stations[station].waypoint)})"
+
+
+def grouped(severity: Severity, elements: Iterable[str], message: str) -> Iterator[Violation]:
+    """Yield a violation for each of the first elements and one that counts the rest."""
+    names = list(elements)
+    for name in names[:MOST_SHOWN]:
+        yield Violation(severity, name, message)
+    further = len(names) - MOST_SHOWN
+    if further > 0:
+        yield Violation(severity, f"{further} further elements", message)

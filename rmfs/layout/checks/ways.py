@@ -1,0 +1,67 @@
+"""Condition W1: between endpoints there are ways without foreign endpoints.
+
+Endpoints are storage places and queue places: only there may a robot stand for an unlimited time.
+If the aisles (what is neither) are strongly connected, every storage place touches them both ways,
+every queue is entered from them and every head is left towards them, then a robot that waits until
+all others stand at endpoints can always go on.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.layout.checks.queues import all_queues
+from rmfs.layout.checks.reach import Reach, entered_from, leading_to
+from rmfs.layout.checks.violation import NOT_WELL_FORMED, grouped, waypoint_label
+from rmfs.layout.graph import edge_sources
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.layout.checks.violation import Violation
+    from rmfs.layout.model import Layout
+
+
+def ways(layout: Layout) -> Iterator[Violation]:
+    """Yield violations of W1."""
+    tails = edge_sources(layout)
+    queues = all_queues(layout)
+    standing = layout.is_storage.copy()
+    for queue in queues:
+        # robots in front of an elevator wait there for a limited time only
+        if not queue.of_elevator:
+            standing[list(queue.places)] = True
+    reach = Reach(layout, ~standing)
+    aisles = ~layout.is_storage & ~layout.is_queue
+    core = reach.largest(aisles)
+    from_core, to_core = reach.forward(core), reach.backward(core)
+    entered, left = entered_from(layout, tails, from_core), leading_to(layout, tails, to_core)
+
+    # one-way approaches and exits are fine as long as they join the core and an endpoint
+    after_endpoint = reach.forward(entered_from(layout, tails, standing))
+    before_endpoint = reach.backward(leading_to(layout, tails, standing))
+    useful = core | (from_core & before_endpoint) | (to_core & after_endpoint)
+    yield from _report(layout, aisles & ~useful, "is not strongly connected with the aisles (W1)")
+    yield from _report(
+        layout, layout.is_storage & ~entered, "no aisle leads to it without a foreign endpoint (W1)"
+    )
+    yield from _report(
+        layout, layout.is_storage & ~left, "leads to no aisle without a foreign endpoint (W1)"
+    )
+    shut = [queue for queue in queues if not entered[queue.entrance]]
+    for queue in shut:
+        message = f"no aisle leads to the entrance of its queue, waypoint {queue.entrance} (W1)"
+        yield from grouped(NOT_WELL_FORMED, [queue.label], message)
+    dead = [queue.label for queue in queues if not left[queue.head]]
+    yield from grouped(
+        NOT_WELL_FORMED, dead, "leads to no aisle without passing its own queue (W1)"
+    )
+
+
+def _report(
+    layout: Layout, bad: np.ndarray[tuple[int], np.dtype[np.bool_]], message: str
+) -> Iterator[Violation]:
+    labels = (waypoint_label(layout, int(v)) for v in np.flatnonzero(bad))
+    yield from grouped(NOT_WELL_FORMED, labels, message)

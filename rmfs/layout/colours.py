@@ -1,0 +1,17 @@
+"""The colours of warehouse things, the same in every picture.
+
+The names people use (pick stations red, replenishment stations yellow, robots green, storage blue)
+in the shades of Okabe and Ito, which stay apart for all common kinds of colour blindness.
+"""
+
+PICK_STATION = "#D55E00"
+REPLENISHMENT_STATION = "#F0E442"
+ELEVATOR = "#CC79A7"
+ROBOT = "#009E73"
+STORAGE = "#0072B2"
+FREE_STORAGE = "#DCEBF5"
+QUEUE_ZONE = "#555555"
+HALLWAY = "#888888"
+ROAD = "#D0D0D0"
+ARROW = "#777777"
+OUTLINE = "#222222"

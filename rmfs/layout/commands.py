@@ -1,0 +1,143 @@
+"""`rmfs layout`: new, show, check, import.
+
+The command line prints an `InputError` as one line and exits with code 2; these functions just
+raise it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from rmfs.config import apply_overrides, parse_override, validate
+from rmfs.errors import InputError
+from rmfs.files import write_text
+from rmfs.layout.checks import IMPOSSIBLE, check
+from rmfs.layout.explicit import save_json
+from rmfs.layout.loading import load_with_notes
+from rmfs.layout.parameters import LayoutParameters
+from rmfs.layout.picture import save_picture
+from rmfs.layout.rawsimo.xinst import read_xinst
+from rmfs.layout.rawsimo.xlayo import read_xlayo
+from rmfs.layout.toml import to_toml
+
+app = typer.Typer(help="Layouts: make, look at, check, import.", no_args_is_help=True)
+
+LayoutArgument = Annotated[
+    str, typer.Argument(metavar="LAYOUT", help="A shipped name or a .toml, .json, .xinst, .xlayo.")
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Override a parameter, e.g. robots=16."),
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace a file that exists.")]
+
+EXIT_REFUSED = 2
+
+
+@app.command()
+def new(
+    path: Annotated[Path, typer.Argument(metavar="FILE", help="The .toml file to write.")],
+    settings: Settings = None,
+    force: Force = False,
+) -> None:
+    """Write a parameter file with all parameters, their defaults and units."""
+    _suffix(path, ".toml")
+    _vacant(path, force=force)
+    table = apply_overrides({"name": path.stem}, _overrides(settings))
+    write_text(path, to_toml(validate(LayoutParameters, table, str(path))))
+    typer.echo(f"{path}: written")
+
+
+@app.command()
+def show(
+    layout: LayoutArgument,
+    out: Annotated[
+        Path | None, typer.Option(help="The .svg, .png or .pdf to write; default: NAME.svg.")
+    ] = None,
+    arrows: Annotated[bool, typer.Option("--arrows", help="Show one-way directions.")] = False,
+    settings: Settings = None,
+) -> None:
+    """Write a picture of a layout."""
+    loaded, _ = load_with_notes(layout, _overrides(settings))
+    path = out if out is not None else Path(f"{Path(layout).stem}.svg")
+    save_picture(loaded, path, arrows=arrows)
+    typer.echo(f"{path}: written")
+
+
+@app.command("check")
+def check_command(
+    layout: LayoutArgument,
+    settings: Settings = None,
+    allow_not_well_formed: Annotated[
+        bool,
+        typer.Option("--allow-not-well-formed", help="Fail only if the layout is impossible."),
+    ] = False,
+) -> None:
+    """Say what is wrong with a layout; exit code 2 if a run would refuse it."""
+    loaded, notes = load_with_notes(layout, _overrides(settings))
+    _print_notes(notes)
+    violations = check(loaded)
+    for violation in violations:
+        typer.echo(str(violation))
+    if any(v.severity == IMPOSSIBLE or not allow_not_well_formed for v in violations):
+        raise typer.Exit(EXIT_REFUSED)
+    verdict = "allowed" if violations else "well-formed"
+    typer.echo(
+        f"{layout}: {verdict}: {loaded.waypoints} waypoints, {len(loaded.edge_target)} edges, "
+        f"{int(loaded.is_storage.sum())} storage places, {loaded.pods} pods, "
+        f"{loaded.robots} robots, {len(loaded.pick_stations)} pick stations, "
+        f"{len(loaded.replenishment_stations)} replenishment stations, "
+        f"{len(loaded.elevators)} elevators, {len(loaded.tiers)} tiers"
+    )
+
+
+@app.command("import")
+def import_command(
+    path: Annotated[Path, typer.Argument(metavar="FILE", help="A RAWSim-O .xinst or .xlayo.")],
+    out: Annotated[
+        Path | None, typer.Option(help="The file to write; default: NAME.json or NAME.toml.")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Turn a RAWSim-O layout into one of ours: .xinst to .json, .xlayo to .toml."""
+    match path.suffix.lower():
+        case ".xinst":
+            target = out if out is not None else Path(f"{path.stem}.json")
+            _suffix(target, ".json")
+            _vacant(target, force=force)
+            layout, notes = read_xinst(path)
+            save_json(layout, target)
+        case ".xlayo":
+            target = out if out is not None else Path(f"{path.stem}.toml")
+            _suffix(target, ".toml")
+            _vacant(target, force=force)
+            parameters, notes = read_xlayo(path)
+            write_text(target, to_toml(parameters))
+        case _:
+            raise InputError(f"{path}: expected a .xinst or .xlayo file")
+    _print_notes(notes)
+    typer.echo(f"{target}: written")
+
+
+def _overrides(settings: list[str] | None) -> list[tuple[list[str], Any]]:
+    """Parse `--set`; the prefix "layout." of `rmfs run` is accepted here too."""
+    parsed = [parse_override(text) for text in settings or []]
+    return [(path[1:] if path[0] == "layout" else path, value) for path, value in parsed]
+
+
+def _suffix(path: Path, suffix: str) -> None:
+    if path.suffix.lower() != suffix:
+        raise InputError(f"{path}: the name must end in {suffix}")
+
+
+def _vacant(path: Path, *, force: bool) -> None:
+    if path.exists() and not force:
+        raise InputError(f"{path}: exists already; --force replaces it")
+
+
+def _print_notes(notes: list[str]) -> None:
+    for note in notes:
+        typer.echo(f"note: {note}")

@@ -1,0 +1,184 @@
+"""Reading explicit layouts."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rmfs.config import Table, validate
+from rmfs.errors import InputError
+from rmfs.layout.explicit.schema import FORMAT, ExplicitElevator, ExplicitLayout
+from rmfs.layout.graph import compressed
+from rmfs.layout.model import (
+    Elevator,
+    Layout,
+    PickStation,
+    ReplenishmentStation,
+    RobotKind,
+    Tier,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+MOST_PROBLEMS = 10
+"""Problems named in one message; more are counted."""
+
+
+def read_json(path: Path) -> Layout:
+    """Read an explicit layout.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, not JSON, or does not describe a layout; all problems are named.
+    """
+    return build(_parse(path), str(path))
+
+
+def build(table: Table, source: str) -> Layout:
+    """Turn the content of an explicit layout into the layout.
+
+    Parameters
+    ----------
+    table
+        As in the JSON file.
+    source
+        Name of the file, for messages.
+
+    Raises
+    ------
+    InputError
+        If a value is wrong or an index points at nothing.
+    """
+    explicit = validate(ExplicitLayout, table, source)
+    problems = list(_dangling(explicit))
+    if problems:
+        more = len(problems) - MOST_PROBLEMS
+        tail = [f"and {more} more"] if more > 0 else []
+        raise InputError(f"{source}: {'; '.join(problems[:MOST_PROBLEMS] + tail)}")
+    return _layout(explicit)
+
+
+def _parse(path: Path) -> Table:
+    try:
+        table = json.loads(path.read_text(encoding="utf-8"), object_pairs_hook=_once)
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: not valid JSON: {error}") from None
+    if not isinstance(table, dict):
+        raise InputError(f'{path}: expected an object with "format": "{FORMAT}"')
+    return table
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Refuse a key that occurs twice; plain JSON readers keep the last one silently."""
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        keys = [key for key, _ in pairs]
+        twice = next(key for key in keys if keys.count(key) > 1)
+        raise ValueError(f"key {twice} occurs twice in one object")
+    return table
+
+
+def _dangling(explicit: ExplicitLayout) -> Iterator[str]:
+    """Yield every reference to an element that does not exist."""
+    waypoints, tiers = explicit.waypoints, len(explicit.tiers)
+    last = len(waypoints) - 1
+    for v, waypoint in enumerate(waypoints):
+        if waypoint.tier >= tiers:
+            yield f"waypoints.{v}.tier: there is no tier {waypoint.tier}"
+        for head in waypoint.to:
+            if head > last:
+                yield f"waypoints.{v}.to: there is no waypoint {head} (last: {last})"
+            elif head == v:
+                yield f"waypoints.{v}.to: leads to itself"
+            elif waypoints[head].tier != waypoint.tier:
+                yield f"waypoints.{v}.to: waypoint {head} is on another tier; use an elevator"
+    for key, index in _references(explicit):
+        if index > last:
+            yield f"{key}: there is no waypoint {index} (last: {last})"
+    kinds = len(explicit.robot_kinds)
+    for r, robot in enumerate(explicit.robots):
+        if robot.kind >= kinds:
+            yield f"robots.{r}.kind: there is no robot kind {robot.kind}"
+    for e, elevator in enumerate(explicit.elevators):
+        boarding = {queue[0] for queue in elevator.queues}
+        for i, ride in enumerate(elevator.rides):
+            for key, end in (("origin", ride.origin), ("destination", ride.destination)):
+                if end not in boarding:
+                    yield f"elevators.{e}.rides.{i}.{key}: {end} is not the head of its queues"
+
+
+def _references(explicit: ExplicitLayout) -> Iterator[tuple[str, int]]:
+    """Yield every waypoint that something else than an edge refers to."""
+    for p, pod in enumerate(explicit.pods):
+        yield f"pods.{p}.waypoint", pod.waypoint
+    for r, robot in enumerate(explicit.robots):
+        yield f"robots.{r}.waypoint", robot.waypoint
+    for s, pick in enumerate(explicit.pick_stations):
+        yield from ((f"pick_stations.{s}.queue", place) for place in pick.queue)
+    for s, replenishment in enumerate(explicit.replenishment_stations):
+        yield from ((f"replenishment_stations.{s}.queue", place) for place in replenishment.queue)
+    for e, elevator in enumerate(explicit.elevators):
+        for queue in elevator.queues:
+            yield from ((f"elevators.{e}.queues", place) for place in queue)
+
+
+def _layout(explicit: ExplicitLayout) -> Layout:
+    waypoints = explicit.waypoints
+    edges = ((v, head) for v, waypoint in enumerate(waypoints) for head in waypoint.to)
+    edge_start, edge_target = compressed(len(waypoints), edges)
+    elevators = tuple(_elevator(elevator) for elevator in explicit.elevators)
+    pick_stations = tuple(
+        PickStation(waypoint=s.queue[0], queue=tuple(s.queue), **s.model_dump(exclude={"queue"}))
+        for s in explicit.pick_stations
+    )
+    replenishment_stations = tuple(
+        ReplenishmentStation(
+            waypoint=s.queue[0], queue=tuple(s.queue), **s.model_dump(exclude={"queue"})
+        )
+        for s in explicit.replenishment_stations
+    )
+    is_queue = np.array([waypoint.queue for waypoint in waypoints])
+    for queue in (
+        *(pick.queue for pick in pick_stations),
+        *(replenishment.queue for replenishment in replenishment_stations),
+        *(queue for elevator in elevators for queue in elevator.queues.values()),
+    ):
+        is_queue[list(queue)] = True
+    return Layout(
+        name=explicit.name,
+        tiers=tuple(Tier(**tier.model_dump()) for tier in explicit.tiers),
+        x_m=np.array([waypoint.x_m for waypoint in waypoints], dtype=np.float64),
+        y_m=np.array([waypoint.y_m for waypoint in waypoints], dtype=np.float64),
+        tier=np.array([waypoint.tier for waypoint in waypoints], dtype=np.int16),
+        edge_start=edge_start,
+        edge_target=edge_target,
+        is_storage=np.array([waypoint.storage for waypoint in waypoints]),
+        is_queue=is_queue,
+        pick_stations=pick_stations,
+        replenishment_stations=replenishment_stations,
+        elevators=elevators,
+        pod_waypoint=np.array([pod.waypoint for pod in explicit.pods], dtype=np.int32),
+        pod_capacity=np.array([pod.capacity for pod in explicit.pods], dtype=np.float64),
+        pod_radius_m=explicit.pod_radius_m,
+        robot_waypoint=np.array([robot.waypoint for robot in explicit.robots], dtype=np.int32),
+        robot_heading_rad=np.array([robot.heading_rad for robot in explicit.robots], np.float64),
+        robot_kind=np.array([robot.kind for robot in explicit.robots], dtype=np.int16),
+        robot_kinds=tuple(RobotKind(**kind.model_dump()) for kind in explicit.robot_kinds),
+    )
+
+
+def _elevator(explicit: ExplicitElevator) -> Elevator:
+    return Elevator(
+        waypoints=tuple(queue[0] for queue in explicit.queues),
+        travel_s={(ride.origin, ride.destination): ride.travel_s for ride in explicit.rides},
+        queues={queue[0]: tuple(queue) for queue in explicit.queues},
+    )

@@ -1,0 +1,21 @@
+"""The generator of default layouts (RAWSim-O; paper, section 3.1.1)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.layout.generator.assembly import Assembly
+
+if TYPE_CHECKING:
+    from rmfs.layout.model import Layout
+    from rmfs.layout.parameters import LayoutParameters
+
+
+def generate(parameters: LayoutParameters) -> Layout:
+    """Generate the layout that the parameters describe.
+
+    Storage blocks two deep lie between horizontal and vertical aisles, a ring road runs round
+    them, and each side with stations or elevators adds a hall and a buffer zone with their queues.
+    The same parameters give the same layout.
+    """
+    return Assembly(parameters).layout()

@@ -1,0 +1,117 @@
+"""How large a tier is: the storage rectangle and what each side adds to it.
+
+RAWSim-O default layout: tiles of 1 m x 1 m; the storage rectangle (blocks, aisles, ring road) lies
+in the middle, and each side with stations or elevators adds a hall and a buffer zone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rmfs.layout.generator.compass import SIDES, Direction
+
+if TYPE_CHECKING:
+    from rmfs.layout.parameters import LayoutParameters
+
+BLOCK_DEPTH = 2
+"""Rows of a storage block."""
+
+RING_WIDTH = 1
+"""Tiles the ring road is wide."""
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """Sizes in tiles.
+
+    Attributes
+    ----------
+    height, width
+        Rows and columns of the storage rectangle, ring road included.
+    margin
+        Tiles that each side adds outside the storage rectangle (0, or hall plus buffer).
+    """
+
+    height: int
+    width: int
+    margin: dict[Direction, int]
+
+    @property
+    def rows(self) -> int:
+        """Rows of the tier."""
+        return self.height + self.margin[Direction.NORTH] + self.margin[Direction.SOUTH]
+
+    @property
+    def columns(self) -> int:
+        """Columns of the tier."""
+        return self.width + self.margin[Direction.WEST] + self.margin[Direction.EAST]
+
+    @property
+    def top(self) -> int:
+        """Row of the north side of the ring road."""
+        return self.margin[Direction.NORTH]
+
+    @property
+    def left(self) -> int:
+        """Column of the west side of the ring road."""
+        return self.margin[Direction.WEST]
+
+
+def lanes(parameters: LayoutParameters) -> int:
+    """Return how many tiles an aisle is wide."""
+    return 1 if parameters.single_lane else 2
+
+
+def aisles_at(parameters: LayoutParameters, side: Direction) -> int:
+    """Return how many aisles end at a side."""
+    across = side in (Direction.EAST, Direction.WEST)
+    return parameters.horizontal_aisles if across else parameters.vertical_aisles
+
+
+def block_at(parameters: LayoutParameters, side: Direction) -> int:
+    """Return how many tiles of a storage block lie along a side."""
+    across = side in (Direction.EAST, Direction.WEST)
+    return BLOCK_DEPTH if across else parameters.block_length
+
+
+def sites_at(parameters: LayoutParameters, side: Direction) -> int:
+    """Return how many stations and elevators stand on a side of a tier."""
+    name = side.name.lower()
+    groups = (parameters.pick_stations, parameters.replenishment_stations, parameters.elevators)
+    return sum(int(getattr(group, name)) for group in groups)
+
+
+def extent(parameters: LayoutParameters) -> Extent:
+    """Return the size of a tier."""
+
+    def across(side: Direction) -> int:
+        aisles, block = aisles_at(parameters, side), block_at(parameters, side)
+        return (aisles + 1) * block + aisles * lanes(parameters) + 2 * RING_WIDTH
+
+    depth = parameters.hall_width + parameters.buffer_width
+    margin = {side: depth if sites_at(parameters, side) else 0 for side in SIDES}
+    return Extent(height=across(Direction.EAST), width=across(Direction.NORTH), margin=margin)
+
+
+def storage_places(parameters: LayoutParameters) -> int:
+    """Return the number of storage places of a tier."""
+    blocks = (parameters.vertical_aisles + 1) * (parameters.horizontal_aisles + 1)
+    return blocks * parameters.block_length * BLOCK_DEPTH
+
+
+def road_tiles(parameters: LayoutParameters) -> int:
+    """Return the number of road tiles of a tier: aisles, ring road and halls."""
+    size = extent(parameters)
+    rectangle = size.height * size.width - storage_places(parameters)
+    open_sides = {side for side in SIDES if size.margin[side]}
+    lengths = [
+        size.width if side in (Direction.NORTH, Direction.SOUTH) else size.height
+        for side in open_sides
+    ]
+    halls = parameters.hall_width * sum(lengths)
+    corners = 0
+    if parameters.hall_pattern == "highway":
+        ends = [{Direction.NORTH, Direction.SOUTH}, {Direction.EAST, Direction.WEST}]
+        corners = len(open_sides & ends[0]) * len(open_sides & ends[1])
+    return rectangle + halls + corners * parameters.hall_width**2

@@ -1,0 +1,36 @@
+"""Where pods and robots stand at the start."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.random import Stream, generator
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+PODS, ROBOTS = 0, 1
+
+
+def draw_pods(places: NDArray[np.int32], share: float, seed: int, tier: int) -> NDArray[np.int32]:
+    """Draw `floor(share * places)` storage places of a tier, uniformly, without repetition."""
+    count = math.floor(share * len(places) + 1e-9)
+    return _draw(places, count, seed, PODS, tier)
+
+
+def draw_robots(tiles: NDArray[np.int32], count: int, seed: int, tier: int) -> NDArray[np.int32]:
+    """Draw road waypoints of a tier, uniformly, without repetition.
+
+    The first n robots stand at the same places whatever the number of robots.
+    """
+    return _draw(tiles, count, seed, ROBOTS, tier)
+
+
+def _draw(
+    candidates: NDArray[np.int32], count: int, seed: int, what: int, tier: int
+) -> NDArray[np.int32]:
+    rng = generator(seed, Stream.LAYOUT, what, tier)
+    return rng.permutation(candidates)[:count].astype(np.int32)

@@ -1,0 +1,73 @@
+"""Where stations and elevators stand along the sides of a tier.
+
+RAWSim-O default layout: possible exits lie opposite the aisles that run inward; the stations of a
+side take the middle places, pick stations first, then replenishment stations, then elevators.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from rmfs.layout.generator.compass import Direction
+from rmfs.layout.generator.extent import RING_WIDTH, aisles_at, block_at, lanes
+
+if TYPE_CHECKING:
+    from rmfs.layout.parameters import LayoutParameters, PerSide
+
+SiteKind = Literal["pick", "replenishment", "elevator"]
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """The place of one station or elevator.
+
+    Attributes
+    ----------
+    exit, entrance
+        Where its buffer opens into the hall: tiles along the side, counted from the corner of the
+        ring road at the low end (north or west).
+    """
+
+    kind: SiteKind
+    side: Direction
+    exit: int
+    entrance: int
+
+
+def sites(parameters: LayoutParameters, side: Direction) -> list[Site]:
+    """Return the sites of one side in ascending position."""
+    name = side.name.lower()
+    groups: tuple[tuple[SiteKind, PerSide], ...] = (
+        ("pick", parameters.pick_stations),
+        ("replenishment", parameters.replenishment_stations),
+        ("elevator", parameters.elevators),
+    )
+    kinds = [kind for kind, group in groups for _ in range(getattr(group, name))]
+    exits = _possible_exits(parameters, side)
+    first = max(0, (len(exits) - len(kinds)) // 2)
+    reach = parameters.entry_exit_distance
+    reach = -reach if _towards_low_end(parameters, side) else reach
+    return [
+        Site(kind, side, position, position + reach)
+        for kind, position in zip(kinds, exits[first:], strict=False)
+    ]
+
+
+def _towards_low_end(parameters: LayoutParameters, side: Direction) -> bool:
+    """Tell whether a buffer stretches from its exit north or west, against the ring road."""
+    low = side in (Direction.WEST, Direction.SOUTH)
+    return low if parameters.counter_clockwise_ring else not low
+
+
+def _possible_exits(parameters: LayoutParameters, side: Direction) -> range:
+    """Return the places opposite aisles that run inward (two-directional: all that have room)."""
+    aisles, width = aisles_at(parameters, side), lanes(parameters)
+    pitch = block_at(parameters, side) + width
+    first = RING_WIDTH + block_at(parameters, side)
+    if parameters.two_directional_aisles:
+        if parameters.entry_exit_distance < pitch:
+            return range(first, first + aisles * pitch, pitch)
+    elif _towards_low_end(parameters, side):
+        first += pitch + width - 1
+    return range(first, first + aisles // 2 * 2 * pitch, 2 * pitch)

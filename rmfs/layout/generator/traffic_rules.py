@@ -1,0 +1,146 @@
+"""Where a robot may go from each tile.
+
+RAWSim-O default layout. One-way traffic follows one rule everywhere, aisles, ring road and halls
+alike: counted from the north-west corner of the ring road, even rows run east and odd rows west,
+even columns run north and odd columns south (all four reversed for a clockwise ring). Lines along a
+hall are counted from its outer edge instead: the outermost runs with the ring road.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.layout.generator.compass import Direction, Tile
+from rmfs.layout.generator.extent import Extent, extent
+from rmfs.layout.generator.tiles import Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rmfs.layout.generator.buffers import Step
+    from rmfs.layout.parameters import LayoutParameters
+
+LOOP_LINES = 2
+"""Lines along a "tim" hall, next to the buffers: one with the ring road and one against it."""
+
+
+class TrafficRules:
+    """Directed edges between the storage, aisle, ring and hall tiles of a tier.
+
+    Parameters
+    ----------
+    parameters
+        Of the layout.
+    kinds
+        Kind of each tile, shape (rows, columns).
+    """
+
+    def __init__(self, parameters: LayoutParameters, kinds: NDArray[np.int8]) -> None:
+        self._parameters = parameters
+        self._kinds = kinds
+        self._size: Extent = extent(parameters)
+
+    def steps(self, tile: Tile) -> Iterator[Step]:
+        """Yield the edges that leave a tile, those into buffers excepted."""
+        for direction in self._directions(tile):
+            target = direction.step(tile)
+            if self._kind(target) not in (Kind.NOTHING, Kind.BUFFER):
+                yield tile, target
+
+    def opens(self, tile: Tile) -> bool:
+        """Tell whether a hall tile may lead into a buffer.
+
+        In the grid of a two-directional "tim" hall the two outer corners stay closed, as in
+        RAWSim-O: a buffer whose entrance lies there is entered by its other segments only.
+        """
+        return not (self._is_grid(Kind.HALL) and self._outer_corner(tile))
+
+    def _directions(self, tile: Tile) -> set[Direction]:
+        kind = self._kind(tile)
+        if self._is_grid(kind):
+            return set(Direction)
+        match kind:
+            case Kind.ROW_AISLE:
+                return {self._along_row(tile), Direction.NORTH, Direction.SOUTH}
+            case Kind.COLUMN_AISLE:
+                return {self._along_column(tile), Direction.EAST, Direction.WEST}
+            case Kind.CROSSING:
+                return {self._along_row(tile), self._along_column(tile)}
+            case Kind.RING:
+                return self._from_ring(tile)
+            case _:
+                return self._from_hall(tile)
+
+    def _is_grid(self, kind: Kind) -> bool:
+        """Tell whether tiles of this kind lead to all four neighbours."""
+        if kind == Kind.STORAGE:
+            return True
+        if kind == Kind.HALL and self._parameters.hall_pattern == "highway":
+            return False
+        return self._parameters.two_directional_aisles
+
+    def _from_ring(self, tile: Tile) -> set[Direction]:
+        """Go on round the ring, into storage places, and where lanes and aisles run that way."""
+        flows = {self._along_row(tile), self._along_column(tile)}
+        storage = {d for d in Direction if self._kind(d.step(tile)) == Kind.STORAGE}
+        return flows | storage
+
+    def _from_hall(self, tile: Tile) -> set[Direction]:
+        """Follow the lane across the hall and, where there is one, the line along the hall."""
+        row, column = tile[0] - self._size.top, tile[1] - self._size.left
+        flows = set()
+        if 0 <= row < self._size.height:
+            flows.add(self._along_row(tile))
+        elif self._has_line(_beyond(row, self._size.height)):
+            flows.add(
+                self._line(Direction.EAST if row < 0 else Direction.WEST, row, self._size.height)
+            )
+        if 0 <= column < self._size.width:
+            flows.add(self._along_column(tile))
+        elif self._has_line(_beyond(column, self._size.width)):
+            flows.add(
+                self._line(
+                    Direction.NORTH if column < 0 else Direction.SOUTH, column, self._size.width
+                )
+            )
+        return flows
+
+    def _has_line(self, beyond: int) -> bool:
+        """Tell whether traffic runs along the hall this many tiles outside the ring road."""
+        highway = self._parameters.hall_pattern == "highway"
+        return highway or self._parameters.hall_width - beyond < LOOP_LINES
+
+    def _line(self, with_ring: Direction, position: int, length: int) -> Direction:
+        """Return the sense of a line: the outermost runs with the ring road, then alternating."""
+        inner = (self._parameters.hall_width - _beyond(position, length)) % 2
+        return self._sense(with_ring.opposite if inner else with_ring)
+
+    def _outer_corner(self, tile: Tile) -> bool:
+        row, column = tile[0] - self._size.top, tile[1] - self._size.left
+        return row in (0, self._size.height - 1) or column in (0, self._size.width - 1)
+
+    def _along_row(self, tile: Tile) -> Direction:
+        east = (tile[0] - self._size.top) % 2 == 0
+        return self._sense(Direction.EAST if east else Direction.WEST)
+
+    def _along_column(self, tile: Tile) -> Direction:
+        north = (tile[1] - self._size.left) % 2 == 0
+        return self._sense(Direction.NORTH if north else Direction.SOUTH)
+
+    def _sense(self, direction: Direction) -> Direction:
+        """Return the direction as it is for a counter-clockwise ring, or else the opposite."""
+        return direction if self._parameters.counter_clockwise_ring else direction.opposite
+
+    def _kind(self, tile: Tile) -> Kind:
+        row, column = tile
+        if 0 <= row < self._size.rows and 0 <= column < self._size.columns:
+            return Kind(self._kinds[row, column])
+        return Kind.NOTHING
+
+
+def _beyond(position: int, length: int) -> int:
+    """Return how many tiles a row or column lies outside the ring road."""
+    return -position if position < 0 else position - length + 1

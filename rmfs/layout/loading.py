@@ -1,0 +1,77 @@
+"""Loading a layout from any of the files that describe one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs import instances
+from rmfs.config import Table, apply_overrides, read_toml, validate
+from rmfs.errors import InputError
+from rmfs.layout.explicit import read_json
+from rmfs.layout.generator import generate
+from rmfs.layout.overrides import override
+from rmfs.layout.parameters import LayoutParameters
+from rmfs.layout.rawsimo.xinst import read_xinst
+from rmfs.layout.rawsimo.xlayo import read_xlayo_table
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from rmfs.layout.model import Layout
+
+Override = tuple[list[str], Any]
+"""The path of a key below "layout", and its value."""
+
+
+def names() -> list[str]:
+    """Names of the shipped layouts, sorted."""
+    return instances.names("layouts")
+
+
+def load(name_or_path: str | Path, overrides: Sequence[Override] = ()) -> Layout:
+    """Load a layout; see `load_with_notes`."""
+    return load_with_notes(name_or_path, overrides)[0]
+
+
+def load_with_notes(
+    name_or_path: str | Path, overrides: Sequence[Override] = ()
+) -> tuple[Layout, list[str]]:
+    """Load a layout and the remarks of its import.
+
+    Parameters
+    ----------
+    name_or_path
+        A shipped layout, or a file: `.toml` (parameters), `.json` (explicit layout), `.xlayo` or
+        `.xinst` (RAWSim-O).
+    overrides
+        (path, value) pairs such as `(["robots"], 16)`, applied to the parameters before they are
+        validated. On explicit layouts only the keys of `ExplicitOverrides`.
+
+    Returns
+    -------
+    The layout, and remarks on what an import left out or filled in.
+
+    Raises
+    ------
+    InputError
+        If the layout cannot be found, read or generated; one line names every problem.
+    """
+    path = instances.locate("layouts", str(name_or_path))
+    source = str(path)
+    match path.suffix.lower():
+        case ".toml":
+            return _generated(read_toml(path), overrides, source), []
+        case ".xlayo":
+            table, notes = read_xlayo_table(path)
+            return _generated(table, overrides, source), notes
+        case ".json":
+            return override(read_json(path), overrides, source), []
+        case ".xinst":
+            layout, notes = read_xinst(path)
+            return override(layout, overrides, source), notes
+    raise InputError(f"{path}: unknown kind of layout; expected .toml, .json, .xlayo or .xinst")
+
+
+def _generated(table: Table, overrides: Sequence[Override], source: str) -> Layout:
+    return generate(validate(LayoutParameters, apply_overrides(table, list(overrides)), source))

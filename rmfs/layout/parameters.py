@@ -1,0 +1,145 @@
+"""The parameters of the default layout: what a `rmfs-layout/1` file may say.
+
+Names and default values follow the layout parameters of RAWSim-O (paper, section 3.1.1; its file
+format .xlayo), in plain words and with the unit as suffix. A `Field` description is the one place
+where a parameter is explained: `rmfs layout new` writes it into the file as a comment.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, cast
+
+import pydantic
+from pydantic import Field
+from pydantic_core import InitErrorDetails, PydanticCustomError
+
+from rmfs.config import Model
+from rmfs.layout.generator.rules import RULES
+
+Positive = Annotated[float, Field(gt=0)]
+Radius = Annotated[float, Field(gt=0, lt=0.5)]
+Count = Annotated[int, Field(ge=1)]
+Number = Annotated[int, Field(ge=0)]
+
+
+class _Strict(Model):
+    """Numbers must be written as numbers: "16" or true is not taken for 16 or 1."""
+
+    model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)
+
+
+class PerSide(_Strict):
+    """How many of something stand on each side of a tier."""
+
+    west: Number = 0
+    east: Number = 0
+    south: Number = 0
+    north: Number = 0
+
+    @property
+    def total(self) -> int:
+        """Number on all four sides of one tier."""
+        return self.west + self.east + self.south + self.north
+
+
+class LayoutParameters(_Strict):
+    """Parameters of a generated layout.
+
+    All problems are reported at once: every wrong value, and every violated condition between
+    values that are right by themselves.
+    """
+
+    format: Literal["rmfs-layout/1"] = Field("rmfs-layout/1", description="version of this format")
+    name: str = Field("unnamed", min_length=1, description="name shown in results")
+    seed: Number = Field(0, description="random seed for the places of pods and robots")
+
+    tiers: Count = Field(1, description="floors; more than one needs elevators")
+    tier_height_m: Positive = Field(4.0, description="m from floor to floor, for drawing only")
+
+    robots: Count = Field(32, description="robots per tier")
+    robot_radius_m: Radius = Field(0.35, description="m")
+    acceleration_m_s2: Positive = Field(1.0, description="m/s2")
+    deceleration_m_s2: Positive = Field(1.0, description="m/s2")
+    top_speed_m_s: Positive = Field(1.5, description="m/s")
+    full_turn_s: Positive = Field(2.5, description="s for a turn of 360 degrees on the spot")
+    pod_transfer_s: Positive = Field(2.2, description="s to lift or to set down a pod")
+
+    pod_share: float = Field(
+        0.85, gt=0, lt=1, description="pods per storage place (rounded down per tier)"
+    )
+    pod_radius_m: Radius = Field(0.45, description="m")
+    pod_capacity: Positive = Field(500.0, description="space units per pod")
+
+    station_radius_m: Radius = Field(0.45, description="m")
+    unit_transfer_s: Positive = Field(10.0, description="s one picked unit keeps the station busy")
+    unit_pick_s: Positive = Field(3.0, description="s one picked unit keeps the robot")
+    order_slots: Count = Field(12, description="orders open at once at a pick station")
+    bundle_transfer_s: Positive = Field(
+        10.0, description="s one bundle keeps robot and replenishment station"
+    )
+    replenishment_station_capacity: Positive = Field(
+        1000.0, description="space units of bundles assigned at once to a replenishment station"
+    )
+    elevator_s_per_tier: Positive = Field(10.0, description="s an elevator needs for one tier")
+
+    hall_pattern: Literal["tim", "highway"] = Field(
+        "tim", description='hall in front of the stations: "tim" (lanes and loops) or "highway"'
+    )
+    two_directional_aisles: bool = Field(False, description="all aisles both ways")
+    single_lane: bool = Field(True, description="aisles one tile wide, otherwise two")
+    horizontal_aisles: int = Field(
+        8, ge=2, description='even, unless two-directional with "tim" halls or two lanes'
+    )
+    vertical_aisles: int = Field(
+        6, ge=2, description='even, unless two-directional with "tim" halls or two lanes'
+    )
+    block_length: int = Field(
+        4, ge=2, multiple_of=2, description="tiles (1 m) a storage block is long; it is 2 deep"
+    )
+    hall_width: int = Field(6, ge=2, description='tiles; even for "highway"')
+    buffer_width: int = Field(4, ge=2, description="tiles a segment of a station's queue is long")
+    entry_exit_distance: int = Field(
+        3, ge=1, description="tiles from a queue's entrance to its exit; odd"
+    )
+    counter_clockwise_ring: bool = Field(
+        True, description="sense of the ring road, seen with x to the right and y upward"
+    )
+
+    pick_stations: PerSide = Field(PerSide(east=4), description="pick stations per tier")
+    replenishment_stations: PerSide = Field(
+        PerSide(west=4), description="replenishment stations per tier"
+    )
+    elevators: PerSide = Field(PerSide(), description="elevators")
+
+    @pydantic.model_validator(mode="wrap")
+    @classmethod
+    def _report_everything(
+        cls, data: Any, handler: pydantic.ModelWrapValidatorHandler[LayoutParameters]
+    ) -> LayoutParameters:
+        """Check conditions between values too when some value is wrong by itself."""
+        try:
+            parameters = handler(data)
+            wrong: list[InitErrorDetails] = []
+            wrong_keys: set[str] = set()
+        except pydantic.ValidationError as error:
+            wrong = [_again(detail) for detail in error.errors()]
+            wrong_keys = {str(detail["loc"][0]) for detail in wrong if detail["loc"]}
+            sound = {k: v for k, v in dict(data).items() if k not in wrong_keys}
+            parameters = handler(sound)
+        wrong += [
+            InitErrorDetails(type=PydanticCustomError("layout", cast("Any", problem)), input={})
+            for keys, rule in RULES
+            if not wrong_keys.intersection(keys)
+            for problem in rule(parameters)
+        ]
+        if wrong:
+            raise pydantic.ValidationError.from_exception_data(cls.__name__, wrong)
+        return parameters
+
+
+def _again(detail: Any) -> InitErrorDetails:
+    """Turn a reported problem back into one that can be raised with others."""
+    kept = InitErrorDetails(type=detail["type"], loc=detail["loc"], input=detail["input"])
+    if "ctx" in detail:
+        kept["ctx"] = detail["ctx"]
+    return kept

@@ -1,0 +1,104 @@
+"""Typed access to the attributes of RAWSim-O's XML elements, with every problem collected."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+MOST_PROBLEMS = 10
+"""Problems named in one message; more are counted."""
+
+NOBODY = -1
+"""RAWSim-O's id for "none"."""
+
+
+class Problems:
+    """Collects what is wrong with a file and raises it as one error."""
+
+    def __init__(self) -> None:
+        self.found: list[str] = []
+
+    def add(self, problem: str) -> None:
+        """Note one problem."""
+        self.found.append(problem)
+
+    def stop(self, source: object) -> None:
+        """Raise an error if there are problems.
+
+        Raises
+        ------
+        InputError
+            One line with the first of them and the number of the others.
+        """
+        if self.found:
+            more = len(self.found) - MOST_PROBLEMS
+            tail = [f"and {more} more"] if more > 0 else []
+            raise InputError(f"{source}: {'; '.join(self.found[:MOST_PROBLEMS] + tail)}")
+
+
+class Fields:
+    """The attributes of one element.
+
+    Parameters
+    ----------
+    element
+        The element; messages call it by its tag and `ID`.
+    problems
+        Where wrong values are noted; the reader goes on with 0.
+    """
+
+    def __init__(self, element: Element, problems: Problems) -> None:
+        self._element = element
+        self._problems = problems
+
+    @property
+    def label(self) -> str:
+        """What messages call the element."""
+        return f"{self._element.tag} {self._element.get('ID', '(without ID)')}"
+
+    def number(self, name: str, default: float | None = None) -> float:
+        """Return a finite number; without a default it must be there."""
+        text = self._element.get(name)
+        if text is None and default is not None:
+            return default
+        try:
+            value = float(text or "")
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            self._wrong(name, "a number", text)
+            return 0.0
+        return value
+
+    def whole(self, name: str, default: int | None = None) -> int:
+        """Return a whole number; without a default it must be there."""
+        text = self._element.get(name)
+        if text is None and default is not None:
+            return default
+        try:
+            return int(text or "")
+        except ValueError:
+            self._wrong(name, "a whole number", text)
+            return 0
+
+    def switch(self, name: str) -> bool:
+        """Return a truth value; absent means false."""
+        text = self._element.get(name, "false")
+        if text not in ("true", "false", "1", "0"):
+            self._wrong(name, "true or false", text)
+        return text in ("true", "1")
+
+    def _wrong(self, name: str, expected: str, text: str | None) -> None:
+        given = "is missing" if text is None else f"expected {expected} (given: {text!r})"
+        self._problems.add(f"{self.label}: {name} {given}")
+
+
+def slashed(text: str | None, parts: int) -> list[str] | None:
+    """Split "a/b/c" into that many parts, or return None if it has another number."""
+    found = (text or "").strip().split("/")
+    return found if len(found) == parts else None

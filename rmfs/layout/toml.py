@@ -1,0 +1,30 @@
+"""Writing layout parameters as a TOML file that explains itself."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pydantic
+
+if TYPE_CHECKING:
+    from rmfs.layout.parameters import LayoutParameters
+
+
+def to_toml(parameters: LayoutParameters) -> str:
+    """Return a file with every parameter, its value, unit and meaning."""
+    plain, tables = [], []
+    for key, field in type(parameters).model_fields.items():
+        value = getattr(parameters, key)
+        comment = f"  # {field.description}" if field.description else ""
+        if isinstance(value, pydantic.BaseModel):
+            entries = [f"{name} = {_value(entry)}" for name, entry in value]
+            tables.append("\n".join([f"[{key}]{comment}", *entries]))
+        else:
+            plain.append(f"{key} = {_value(value)}{comment}")
+    return "\n\n".join(["\n".join(plain), *tables]) + "\n"
+
+
+def _value(value: Any) -> str:
+    """Return a TOML value; the notation of JSON is valid for strings, numbers and truth values."""
+    return json.dumps(value, ensure_ascii=False)

@@ -1,0 +1,42 @@
+"""Violations that follow each other in time are one event, told once at its worst."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Index = NDArray[np.int64]
+
+TOGETHER_S = 1e-5
+"""Violations of the same bodies that follow each other this closely are one event."""
+
+
+def worst(who: tuple[Index, Index], begin_s: Floats, end_s: Floats, amount: Floats) -> list[int]:
+    """Return the index of the worst violation of every event.
+
+    Parameters
+    ----------
+    who
+        What names the bodies: two numbers per violation.
+    begin_s, end_s
+        The time each violation lies in, shape (K,).
+    amount
+        How bad each is, shape (K,).
+    """
+    chosen: list[int] = []
+    last_who, last_end = (-1, -1), -np.inf
+    for k in np.lexsort((begin_s, who[1], who[0])).tolist():
+        bodies = (int(who[0][k]), int(who[1][k]))
+        continues = bodies == last_who and begin_s[k] <= last_end + TOGETHER_S
+        if not continues:
+            chosen.append(k)
+        elif amount[k] > amount[chosen[-1]]:
+            chosen[-1] = k
+        last_end = max(last_end, float(end_s[k])) if continues else float(end_s[k])
+        last_who = bodies
+    return chosen

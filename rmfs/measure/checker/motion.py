@@ -1,0 +1,174 @@
+"""Positions over time: a trace cut into pieces of constant acceleration.
+
+Derived from the physics alone: from rest, a robot accelerates with a to the speed v, keeps it,
+and brakes with d to rest. Over the length L the greatest speed reached is
+
+    v = min(top speed, sqrt(2 L a d / (a + d)))
+
+and the run lasts v/a + (L - v²/2a - v²/2d)/v + v/d.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .trace import MICROSECONDS, Kinematics, Motion, Trace
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+
+    Floats = NDArray[np.float64]
+
+NEGLIGIBLE_S = 2e-6
+"""Rounding of run ends to whole microseconds: shorter rests at a run's end get no piece."""
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """Speed over time of straight runs from rest to rest, each array of shape (K,).
+
+    Attributes
+    ----------
+    speed_m_s
+        Greatest speed reached.
+    speeding_s, cruising_s, braking_s
+        Lengths of the three phases.
+    """
+
+    speed_m_s: Floats
+    speeding_s: Floats
+    cruising_s: Floats
+    braking_s: Floats
+
+    @property
+    def duration_s(self) -> Floats:
+        """Length of the whole run in time."""
+        return self.speeding_s + self.cruising_s + self.braking_s
+
+
+def profile(length_m: Floats, limits: Kinematics) -> Profile:
+    """Return the fastest run from rest to rest over each length, by the module's formulas."""
+    a, d = limits.acceleration_m_s2, limits.deceleration_m_s2
+    speed = np.minimum(limits.top_speed_m_s, np.sqrt(2 * length_m * a * d / (a + d)))
+    cruise_m = np.maximum(length_m - speed**2 / (2 * a) - speed**2 / (2 * d), 0.0)
+    cruise_s = np.divide(cruise_m, speed, out=np.zeros_like(speed), where=speed > 0)
+    return Profile(speed, speed / a, cruise_s, speed / d)
+
+
+def lengths(layout: Layout, trace: Trace) -> Floats:
+    """Return the distance in the plane from each row's first to its last waypoint, in m."""
+    return np.hypot(
+        layout.x_m[trace.to_wp] - layout.x_m[trace.from_wp],
+        layout.y_m[trace.to_wp] - layout.y_m[trace.from_wp],
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Pieces:
+    """Motions of constant acceleration: position(t) = p + v (t - t0) + h (t - t0)².
+
+    Attributes
+    ----------
+    row
+        The row of the trace the piece comes from, shape (K,).
+    t0_s, t1_s
+        When the piece is valid.
+    x_m, y_m, vx, vy, hx, hy
+        Position and velocity at `t0_s`, and half the acceleration.
+    """
+
+    row: NDArray[np.int64]
+    t0_s: Floats
+    t1_s: Floats
+    x_m: Floats
+    y_m: Floats
+    vx: Floats
+    vy: Floats
+    hx: Floats
+    hy: Floats
+
+    def __len__(self) -> int:
+        """Return the number of pieces."""
+        return len(self.row)
+
+    def take(self, index: NDArray[np.int64] | NDArray[np.bool_]) -> Pieces:
+        """Return the chosen pieces."""
+        return Pieces(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
+
+    def at(self, time_s: Floats) -> tuple[Floats, Floats]:
+        """Return the position of every piece at one time each, in m."""
+        tau = time_s - self.t0_s
+        return (
+            self.x_m + tau * (self.vx + tau * self.hx),
+            self.y_m + tau * (self.vy + tau * self.hy),
+        )
+
+    @classmethod
+    def joined(cls, parts: list[Pieces]) -> Pieces:
+        """Put several sets of pieces into one."""
+        return cls(
+            **{f.name: np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(cls)}
+        )
+
+
+def cut(layout: Layout, trace: Trace, limits: Kinematics) -> Pieces:
+    """Cut every row that is on a tier into pieces, sorted by row; elevator rides leave none."""
+    standing = ~trace.is_kind(Motion.RUN, Motion.LIFT_RIDE)
+    parts = [_resting(layout, trace, np.flatnonzero(standing))]
+    parts += _running(layout, trace, limits, np.flatnonzero(trace.kind == Motion.RUN))
+    pieces = Pieces.joined(parts)
+    pieces = pieces.take(pieces.t1_s > pieces.t0_s)
+    return pieces.take(np.lexsort((pieces.t0_s, pieces.row)))
+
+
+def _resting(layout: Layout, trace: Trace, rows: NDArray[np.int64]) -> Pieces:
+    place = trace.from_wp[rows]
+    zero = np.zeros(len(rows))
+    return Pieces(
+        rows,
+        trace.t0_us[rows] / MICROSECONDS,
+        trace.t1_us[rows] / MICROSECONDS,
+        layout.x_m[place].astype(np.float64),
+        layout.y_m[place].astype(np.float64),
+        *(zero, zero, zero, zero),
+    )
+
+
+def _running(
+    layout: Layout, trace: Trace, limits: Kinematics, rows: NDArray[np.int64]
+) -> list[Pieces]:
+    """Speeding, cruising, braking and, where a run ends early, standing at its end."""
+    own = Kinematics(*(getattr(limits, name)[rows] for name in Kinematics.__slots__))
+    origin, target = trace.from_wp[rows], trace.to_wp[rows]
+    x, y = layout.x_m[origin].astype(np.float64), layout.y_m[origin].astype(np.float64)
+    length = lengths(layout, trace)[rows]
+    scale = np.divide(1.0, length, out=np.zeros_like(length), where=length > 0)
+    ux, uy = (layout.x_m[target] - x) * scale, (layout.y_m[target] - y) * scale
+    plan = profile(length, own)
+    start = trace.t0_us[rows] / MICROSECONDS
+    stop = trace.t1_us[rows] / MICROSECONDS
+
+    def piece(begin: Floats, end: Floats, way: Floats, speed: Floats, half: Floats) -> Pieces:
+        return Pieces(
+            *(rows, np.minimum(begin, stop), np.minimum(end, stop), x + ux * way, y + uy * way),
+            *(ux * speed, uy * speed, ux * half, uy * half),
+        )
+
+    v, zero = plan.speed_m_s, np.zeros(len(rows))
+    cruise = start + plan.speeding_s
+    brake = cruise + plan.cruising_s
+    end = start + plan.duration_s
+    standing = np.where(stop - end > NEGLIGIBLE_S, end, stop)
+    speeding_m = v**2 / (2 * own.acceleration_m_s2)
+    braking_m = v**2 / (2 * own.deceleration_m_s2)
+    return [
+        piece(start, cruise, zero, zero, own.acceleration_m_s2 / 2),
+        piece(cruise, brake, speeding_m, v, zero),
+        piece(brake, standing, length - braking_m, v, -own.deceleration_m_s2 / 2),
+        piece(standing, stop, length, zero, zero),
+    ]

@@ -1,0 +1,72 @@
+"""Places for one robot: a queue place, and an elevator with all its waypoints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .report import Finding, FindingKind
+from .trace import MICROSECONDS, Motion, Trace
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+
+    Index = NDArray[np.int64]
+
+
+def check(layout: Layout, trace: Trace) -> list[Finding]:
+    """Find robots that stand on one queue place, or use one elevator, at the same time."""
+    standing = ~trace.is_kind(Motion.RUN, Motion.LIFT_RIDE)
+    queue_place = np.where(layout.is_queue, np.arange(layout.waypoints), -1)
+    elevator = np.full(layout.waypoints, -1)
+    for number, one in enumerate(layout.elevators):
+        elevator[list(one.waypoints)] = number
+    # who stands on an elevator's waypoint has it: the cabin cannot be elsewhere
+    in_elevator = standing | (trace.kind == Motion.LIFT_RIDE)
+    return [
+        *_shared(
+            trace,
+            np.where(standing, queue_place[trace.from_wp], -1),
+            FindingKind.QUEUE_PLACE_SHARED,
+        ),
+        *_shared(
+            trace,
+            np.where(in_elevator, elevator[trace.from_wp], -1),
+            FindingKind.ELEVATOR_SHARED,
+        ),
+    ]
+
+
+def _shared(trace: Trace, resource: Index, kind: FindingKind) -> list[Finding]:
+    """Find rows of different robots that hold one resource at the same time.
+
+    Sorted by begin, some neighbours overlap whenever any two rows do: every shared use is found,
+    though not every pair of those involved.
+
+    Parameters
+    ----------
+    resource
+        What each row holds, -1 for nothing, shape (K,).
+    """
+    rows = np.flatnonzero(resource >= 0)
+    rows = rows[np.lexsort((trace.t0_us[rows], resource[rows]))]
+    one, other = rows[:-1], rows[1:]
+    overlap_us = np.minimum(trace.t1_us[one], trace.t1_us[other]) - trace.t0_us[other]
+    shared = (
+        (resource[one] == resource[other])
+        & (trace.robot[one] != trace.robot[other])
+        & (overlap_us > 0)
+    )
+    return [
+        Finding(
+            kind,
+            float(trace.t0_us[other[k]]) / MICROSECONDS,
+            tuple(sorted((int(trace.robot[one[k]]), int(trace.robot[other[k]])))),
+            int(trace.from_wp[other[k]]),
+            float(overlap_us[k]) / MICROSECONDS,
+        )
+        for k in np.flatnonzero(shared)
+    ]

@@ -1,0 +1,113 @@
+"""What the checker found: one finding per violation, and the report that gathers them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+
+class FindingKind(StrEnum):
+    """The rules a trace can break."""
+
+    GAP = "gap"
+    JUMP = "jump"
+    HEADING = "heading"
+    DURATION = "duration"
+    EDGE = "edge"
+    ELEVATOR_PAIR = "elevator pair"
+    ROBOTS_OVERLAP = "robots overlap"
+    POD_CROSSED = "pod crossed"
+    POD_PLACE = "pod place"
+    POD_HANDLING = "pod handling"
+    ELEVATOR_SHARED = "elevator shared"
+    QUEUE_PLACE_SHARED = "queue place shared"
+
+
+MEANING = {
+    FindingKind.GAP: "trace is not gapless: {amount:g} s missing (negative: told twice)",
+    FindingKind.JUMP: "position jumps by {amount:g} m",
+    FindingKind.HEADING: "heading is off by {amount:g} rad",
+    FindingKind.DURATION: "motion lasts {amount:+g} s against the robot's limits",
+    FindingKind.EDGE: "no straight chain of edges carries this run of {amount:g} m",
+    FindingKind.ELEVATOR_PAIR: "no elevator connects this place with waypoint {amount:g}",
+    FindingKind.ROBOTS_OVERLAP: "discs overlap by {amount:g} m",
+    FindingKind.POD_CROSSED: "carried pod overlaps a stored pod by {amount:g} m",
+    FindingKind.POD_PLACE: "pod {amount:g} set down where it cannot stand",
+    FindingKind.POD_HANDLING: "pod {amount:g} is not where the robot takes, carries or leaves it",
+    FindingKind.ELEVATOR_SHARED: "elevator shared for {amount:g} s",
+    FindingKind.QUEUE_PLACE_SHARED: "queue place shared for {amount:g} s",
+}
+"""One sentence per kind; `amount` is the number stored in the finding."""
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One violation.
+
+    Attributes
+    ----------
+    time_s
+        When it happens; for overlaps the time of closest approach.
+    robots
+        The robots concerned, ascending.
+    place
+        Waypoint nearest to the event, or -1.
+    amount
+        How much, in the unit that `MEANING` states for the kind.
+    """
+
+    kind: FindingKind
+    time_s: float
+    robots: tuple[int, ...]
+    place: int
+    amount: float
+
+    def __str__(self) -> str:
+        """Return one line for people."""
+        who = " and ".join(f"robot {robot}" for robot in self.robots) or "no robot"
+        where = f" at waypoint {self.place}" if self.place >= 0 else ""
+        what = MEANING[self.kind].format(amount=self.amount)
+        return f"{self.time_s:.6f} s, {who}{where}: {what}"
+
+
+@dataclass(frozen=True, slots=True)
+class CheckReport:
+    """The verdict over one trace.
+
+    Attributes
+    ----------
+    findings
+        Every violation, by time.
+    pieces
+        Rows of the trace.
+    pairs
+        Pairs of motions whose distance was bounded in the narrow phase.
+    """
+
+    findings: list[Finding] = field(default_factory=list)
+    pieces: int = 0
+    pairs: int = 0
+
+    @property
+    def ok(self) -> bool:
+        """Whether the trace breaks no rule."""
+        return not self.findings
+
+    @property
+    def collisions(self) -> int:
+        """Number of times two bodies overlap: robot with robot, or carried with stored pod."""
+        bodies = (FindingKind.ROBOTS_OVERLAP, FindingKind.POD_CROSSED)
+        return sum(finding.kind in bodies for finding in self.findings)
+
+    def of(self, kind: FindingKind) -> list[Finding]:
+        """Return the findings of one kind."""
+        return [finding for finding in self.findings if finding.kind == kind]
+
+    def summary(self, limit: int = 10) -> str:
+        """Return the verdict in a few lines: counts per kind and the first findings."""
+        if self.ok:
+            return f"trace is safe: {self.pieces} motions, {self.pairs} close pairs proven apart"
+        counts = {kind: len(self.of(kind)) for kind in FindingKind}
+        told = ", ".join(f"{kind}: {count}" for kind, count in counts.items() if count)
+        shown = [str(finding) for finding in self.findings[:limit]]
+        return "\n".join([f"trace is not safe ({told})", *shown])

@@ -1,0 +1,90 @@
+"""No two robots on a tier touch each other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .distance import below, minimum, squared_distance
+from .episodes import worst
+from .report import Finding, FindingKind
+from .sweep import boxes, close_pairs
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+
+    from .motion import Pieces
+    from .trace import Kinematics, Trace
+
+    Floats = NDArray[np.float64]
+    Index = NDArray[np.int64]
+
+TOLERANCE_M = 1e-6
+"""Overlaps up to this are rounding."""
+
+
+def radii(layout: Layout, trace: Trace, limits: Kinematics) -> Floats:
+    """Return the radius of the disc each row keeps clear: the pod's where it is greater, in m."""
+    loaded = np.maximum(limits.radius_m, layout.pod_radius_m)
+    return np.where(trace.pod >= 0, loaded, limits.radius_m)
+
+
+def check(
+    layout: Layout, trace: Trace, limits: Kinematics, pieces: Pieces
+) -> tuple[list[Finding], int]:
+    """Find every collision of two robots.
+
+    Returns
+    -------
+    tuple
+        One finding per pair of robots and stretch of time, and the number of pairs of motions
+        bounded.
+    """
+    radius = radii(layout, trace, limits)[pieces.row]
+    robot = trace.robot[pieces.row]
+    tier = np.asarray(layout.tier, np.int64)[trace.from_wp[pieces.row]]
+    nothing = np.zeros(0, np.int64)
+    hits: list[tuple[Index, Index]] = [(nothing, nothing)]
+    examined = 0
+    for one, other in close_pairs(boxes(pieces, radius, tier), robot):
+        limit = (radius[one] + radius[other] - TOLERANCE_M) ** 2
+        _, _, power = squared_distance(pieces.take(one), pieces.take(other))
+        hit = below(power, limit)
+        examined += len(one)
+        hits.append((one[hit], other[hit]))
+    one, other = (np.concatenate(side) for side in zip(*hits, strict=True))
+    return _collisions(layout, trace, pieces, radius, one, other), examined
+
+
+def _collisions(
+    layout: Layout, trace: Trace, pieces: Pieces, radius: Floats, one: Index, other: Index
+) -> list[Finding]:
+    """Turn overlapping pairs of pieces into one finding per pair of robots and event."""
+    robot = trace.robot[pieces.row]
+    swap = robot[one] > robot[other]
+    one, other = np.where(swap, other, one), np.where(swap, one, other)
+    begin, end, power = squared_distance(pieces.take(one), pieces.take(other))
+    where, squared = minimum(power)
+    moment = begin + where * (end - begin)
+    depth = radius[one] + radius[other] - np.sqrt(np.maximum(squared, 0.0))
+    return [
+        Finding(
+            FindingKind.ROBOTS_OVERLAP,
+            float(moment[k]),
+            (int(robot[one[k]]), int(robot[other[k]])),
+            _nearest(layout, trace, pieces.take(one[k : k + 1]), float(moment[k])),
+            float(depth[k]),
+        )
+        for k in worst((robot[one], robot[other]), begin, end, depth)
+    ]
+
+
+def _nearest(layout: Layout, trace: Trace, piece: Pieces, time_s: float) -> int:
+    """Return the waypoint nearest to where a single piece is at a time."""
+    x, y = piece.at(np.array([time_s]))
+    tier = layout.tier[trace.from_wp[piece.row[0]]]
+    away = np.hypot(layout.x_m - x[0], layout.y_m - y[0])
+    return int(np.argmin(np.where(layout.tier == tier, away, np.inf)))

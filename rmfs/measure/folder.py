@@ -1,0 +1,252 @@
+"""The run folder: written whole or not at all, and read back with clear errors."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tempfile
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rmfs.errors import InputError
+from rmfs.measure.dictionary import TABLES, names
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    import pandas as pd
+
+    from rmfs.measure.checker import CheckReport
+    from rmfs.simulation.run import Run
+
+FORMAT = "rmfs-run/1"
+PARAMETERS = "run.json"
+TRACE = "trace.parquet"
+
+
+def write_run(
+    run: Run,
+    target: Path,
+    *,
+    report: CheckReport | None = None,
+    trace: bool = False,
+    inputs: Mapping[str, str] | None = None,
+) -> None:
+    """Write a run folder, replacing an older run folder of the same name.
+
+    Parameters
+    ----------
+    target
+        The folder to make.
+    report
+        The trace checker's verdict, for the column `collisions`.
+    trace
+        Whether to write the trace, which the run must have recorded.
+    inputs
+        What the user gave as layout, scenario and controllers; default `run.names`.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written or holds something else than a run.
+    """
+    with reserved(target) as folder:
+        fill(folder, run, report=report, trace=trace, inputs=inputs)
+
+
+def fill(
+    folder: Path,
+    run: Run,
+    *,
+    report: CheckReport | None = None,
+    trace: bool = False,
+    inputs: Mapping[str, str] | None = None,
+) -> None:
+    """Write a run's files into an existing folder; parameters as in `write_run`."""
+    import pandas as pd
+
+    from rmfs.measure.provenance import describe
+    from rmfs.measure.tables import all_tables
+
+    try:
+        tables = all_tables(run, report)
+        for name, frame in tables.items():
+            _write_table(folder / f"{name}.parquet", frame)
+        tables["footprint"].to_csv(folder / "footprint.csv", index=False, lineterminator="\n")
+        if trace:
+            _write_table(folder / TRACE, pd.DataFrame(run.trace))
+        parameters = {"format": FORMAT, **describe(run, report, inputs)}
+        text = json.dumps(parameters, indent=2, ensure_ascii=False, allow_nan=False)
+        (folder / PARAMETERS).write_text(text + "\n", encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be written ({error.strerror or error})") from None
+
+
+def _write_table(path: Path, frame: pd.DataFrame) -> None:
+    frame.to_parquet(path, index=False, compression="zstd")
+
+
+@contextmanager
+def reserved(target: Path) -> Iterator[Path]:
+    """Yield a temporary folder beside `target`, which takes that name if all goes well.
+
+    The folder is made at once, so that a target that cannot be written is noticed before any work
+    is done. On an error or an interruption it is removed again, with the folders made on the way.
+
+    Raises
+    ------
+    InputError
+        If the target cannot be written, or exists and is not a run folder.
+    """
+    target = target.absolute()
+    _refuse_strangers(target)
+    made = _missing_parents(target)
+    try:
+        temporary = _temporary_beside(target)
+        try:
+            yield temporary
+            temporary.chmod(0o755)
+            _put_in_place(temporary, target)
+        finally:
+            shutil.rmtree(temporary, ignore_errors=True)
+    except BaseException:
+        _remove_empty(made)
+        raise
+
+
+def _refuse_strangers(target: Path) -> None:
+    """Refuse to replace anything but an empty folder or a run."""
+    try:
+        if target.exists() and not target.is_dir():
+            raise InputError(f"{target}: is not a folder")
+        if target.is_dir() and any(target.iterdir()) and not (target / PARAMETERS).is_file():
+            raise InputError(f"{target}: exists and is not a run folder; it is left alone")
+    except OSError as error:
+        raise InputError(f"{target}: cannot be written ({error.strerror})") from None
+
+
+def _missing_parents(target: Path) -> list[Path]:
+    """Return the folders above `target` that do not exist, innermost first."""
+    return [parent for parent in target.parents if not parent.exists()]
+
+
+def _temporary_beside(target: Path) -> Path:
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        return Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}."))
+    except OSError as error:
+        raise InputError(f"{target}: cannot be written ({error.strerror})") from None
+
+
+def _put_in_place(temporary: Path, target: Path) -> None:
+    """Rename the finished folder; an older run of that name is kept until this has succeeded."""
+    if not target.exists():
+        temporary.replace(target)
+        return
+    aside = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}.old."))
+    try:
+        target.replace(aside / target.name)
+        try:
+            temporary.replace(target)
+        except BaseException:
+            (aside / target.name).replace(target)
+            raise
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)
+
+
+def _remove_empty(folders: list[Path]) -> None:
+    for folder in folders:
+        try:
+            folder.rmdir()
+        except OSError:
+            return
+
+
+@dataclass(frozen=True, slots=True)
+class RunFolder:
+    """A run read back from its folder; tables are read when asked for.
+
+    Attributes
+    ----------
+    path
+        The folder.
+    parameters
+        The content of `run.json`.
+    """
+
+    path: Path
+    parameters: dict[str, Any]
+
+    @property
+    def footprint(self) -> pd.Series:
+        """The footprint."""
+        return self.table("footprint").iloc[0]
+
+    @property
+    def trace(self) -> pd.DataFrame:
+        """The trace.
+
+        Raises
+        ------
+        InputError
+            If the run was made without.
+        """
+        if not (self.path / TRACE).is_file():
+            raise InputError(f"{self.path}: holds no trace; run with --trace to get one")
+        return _read_table(self.path / TRACE)
+
+    def table(self, name: str) -> pd.DataFrame:
+        """Read one table.
+
+        Raises
+        ------
+        InputError
+            If there is no such table, or its file is missing, corrupted or of another version.
+        """
+        if name not in TABLES:
+            raise InputError(f"{name}: no such table; valid: {', '.join(TABLES)}")
+        path = self.path / f"{name}.parquet"
+        frame = _read_table(path)
+        missing = [column for column in names(name) if column not in frame]
+        if missing:
+            raise InputError(f"{path}: column {', '.join(missing)} missing")
+        return frame
+
+
+def load_run(path: Path) -> RunFolder:
+    """Open a run folder.
+
+    Raises
+    ------
+    InputError
+        If it is not one.
+    """
+    file = path / PARAMETERS
+    try:
+        parameters = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError(f"{path}: is not a run folder ({PARAMETERS} is missing)") from None
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read ({error.strerror})") from None
+    except ValueError as error:
+        raise InputError(f"{file}: corrupted ({error})") from None
+    told = parameters.get("format") if isinstance(parameters, dict) else None
+    if told != FORMAT:
+        raise InputError(f"{file}: format {told!r}, expected {FORMAT!r}")
+    return RunFolder(path, parameters)
+
+
+def _read_table(path: Path) -> pd.DataFrame:
+    import pandas as pd
+    import pyarrow
+
+    try:
+        return pd.read_parquet(path)
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file") from None
+    except (OSError, ValueError, pyarrow.ArrowException) as error:
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise InputError(f"{path}: corrupted ({reason})") from None

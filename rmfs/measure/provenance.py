@@ -1,0 +1,187 @@
+"""Where a run comes from: parameters, versions, machine and hashes, for `run.json`."""
+
+from __future__ import annotations
+
+import datetime
+import hashlib
+import os
+import platform
+import subprocess
+from dataclasses import asdict, fields, is_dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rmfs import instances
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rmfs.layout.model import Layout
+    from rmfs.measure.checker import CheckReport
+    from rmfs.simulation.run import Run
+
+PACKAGES = ("numpy", "pandas", "pyarrow", "pydantic", "scipy", "networkx", "typer")
+"""Packages whose version is told; all of them are dependencies."""
+
+KINDS: dict[str, instances.Kind] = {
+    "layout": "layouts",
+    "scenario": "scenarios",
+    "controllers": "controllers",
+}
+
+
+def describe(
+    run: Run, report: CheckReport | None = None, inputs: Mapping[str, str] | None = None
+) -> dict[str, Any]:
+    """Return everything needed to know what was run, and to run it again.
+
+    Parameters
+    ----------
+    report
+        The trace checker's verdict, if it ran.
+    inputs
+        What the user gave as layout, scenario and controllers (names or paths).
+    """
+    given = dict(zip(KINDS, run.names, strict=True)) if inputs is None else dict(inputs)
+    return {
+        "layout": {
+            **source("layout", given["layout"]),
+            "digest": digest(run.layout),
+            "size": _size(run.layout),
+        },
+        "scenario": {
+            **source("scenario", given["scenario"]),
+            "parameters": run.scenario.model_dump(mode="json"),
+        },
+        "controllers": {
+            **source("controllers", given["controllers"]),
+            "parameters": run.controllers.model_dump(mode="json"),
+        },
+        "seed": run.seed,
+        "pacing": run.pacing,
+        "warmup_s": run.warmup_s,
+        "duration_s": run.duration_s,
+        "check": None
+        if report is None
+        else {"findings": len(report.findings), "collisions": report.collisions},
+        "rmfs": {"version": version(), **commit()},
+        "packages": {name: metadata.version(name) for name in PACKAGES},
+        "machine": machine(),
+        "written": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+    }
+
+
+def source(part: str, given: str) -> dict[str, Any]:
+    """Return name, file and hash of an input; nothing but the name if it came from no file."""
+    try:
+        path = instances.locate(KINDS[part], given)
+        content = path.read_bytes()
+    except (InputError, OSError):
+        return {"name": given, "file": None, "sha256": None}
+    shipped = path.is_relative_to(instances.ROOT)
+    told = path.relative_to(instances.ROOT.parent) if shipped else path
+    return {
+        "name": path.stem,
+        "file": told.as_posix(),
+        "sha256": hashlib.sha256(content).hexdigest(),
+    }
+
+
+def digest(value: object) -> str:
+    """Return a hash of a dataclass of arrays, numbers, texts and their collections."""
+    state = hashlib.sha256()
+    _feed(state, value)
+    return state.hexdigest()
+
+
+def _feed(state: hashlib._Hash, value: object) -> None:
+    if isinstance(value, np.ndarray):
+        state.update(f"{value.dtype.kind}{value.shape}".encode())
+        state.update(np.ascontiguousarray(value).astype(value.dtype.newbyteorder("<")).tobytes())
+    elif is_dataclass(value) and not isinstance(value, type):
+        for one in fields(value):
+            state.update(one.name.encode())
+            _feed(state, getattr(value, one.name))
+    elif isinstance(value, dict):
+        for key in sorted(value):
+            _feed(state, key)
+            _feed(state, value[key])
+    elif isinstance(value, tuple | list):
+        state.update(f"({len(value)}".encode())
+        for item in value:
+            _feed(state, item)
+    else:
+        state.update(f"{type(value).__name__}:{value!r};".encode())
+
+
+def _size(layout: Layout) -> dict[str, Any]:
+    return {
+        "tiers": [asdict(tier) for tier in layout.tiers],
+        "waypoints": layout.waypoints,
+        "pods": layout.pods,
+        "robots": layout.robots,
+        "pick_stations": len(layout.pick_stations),
+        "replenishment_stations": len(layout.replenishment_stations),
+        "elevators": len(layout.elevators),
+    }
+
+
+def version() -> str:
+    """Return the installed version of rmfs."""
+    try:
+        return metadata.version("rmfs")
+    except metadata.PackageNotFoundError:
+        return "unknown"
+
+
+def commit() -> dict[str, Any]:
+    """Return the commit of the checkout this code runs from, and whether it has been changed.
+
+    Both are empty when rmfs is installed from a wheel: a repository that merely contains the
+    environment does not track this file.
+    """
+    here = Path(__file__)
+    head = _git(here.parent, "rev-parse", "HEAD")
+    if head is None or _git(here.parent, "ls-files", "--error-unmatch", here.name) is None:
+        return {"git_commit": None, "git_changed": None}
+    changes = _git(here.parent, "status", "--porcelain", "--untracked-files=no")
+    return {"git_commit": head, "git_changed": bool(changes)}
+
+
+def _git(folder: Path, *arguments: str) -> str | None:
+    """Return what git answers, or nothing where it has no answer."""
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(folder), *arguments],
+            capture_output=True,
+            text=True,
+            timeout=10,
+            check=True,
+        )
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return done.stdout.strip()
+
+
+def machine() -> dict[str, Any]:
+    """Return what the measured columns depend on."""
+    return {
+        "python": platform.python_version(),
+        "system": f"{platform.system()} {platform.release()}",
+        "architecture": platform.machine(),
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+    }
+
+
+def _processor() -> str:
+    try:
+        told = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor()
+    names = [line.partition(":")[2].strip() for line in told if line.startswith("model name")]
+    return names[0] if names else platform.processor()

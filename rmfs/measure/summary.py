@@ -1,0 +1,52 @@
+"""The few figures of a footprint that are worth a look when a run has ended."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.table import Table
+
+FIGURES: tuple[tuple[str, str, str], ...] = (
+    ("orders completed", "orders_completed", "{:,.0f}"),
+    ("orders per hour", "orders_per_h", "{:,.1f}"),
+    ("units picked", "units_picked", "{:,.0f}"),
+    ("units per hour", "units_per_h", "{:,.1f}"),
+    ("score (share of the stations' bound)", "units_score", "{:.1%}"),
+    ("bundles stored", "bundles_stored", "{:,.0f}"),
+    ("units per pod visit", "units_per_visit", "{:.2f}"),
+    ("distance per unit, m", "distance_per_unit_m", "{:,.1f}"),
+    ("distance, km", "distance_m", "{:,.1f}"),
+    ("pick stations idle", "pick_station_idle_share", "{:.1%}"),
+    ("replenishment stations idle", "replenishment_station_idle_share", "{:.1%}"),
+    ("robots busy", "robot_busy_share", "{:.1%}"),
+    ("robots queueing", "robot_queueing_share", "{:.1%}"),
+    ("order turnover, median, s", "order_turnover_median_s", "{:,.0f}"),
+    ("orders late", "late_share", "{:.1%}"),
+    ("collisions", "collisions", "{:,.0f}"),
+    ("simulated seconds per wall second", "sim_per_wall", "{:,.0f}"),
+)
+"""Label, column and format of each figure."""
+
+
+def summary(footprint: pd.Series) -> Table:
+    """Return the main figures as an aligned table; what was not measured shows as a dash."""
+    from rich import box
+    from rich.table import Table
+
+    title = "{layout} / {scenario} / {controllers}, seed {seed}".format(**footprint.to_dict())
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, show_header=False)
+    table.add_column()
+    table.add_column(justify="right")
+    for label, column, form in FIGURES:
+        table.add_row(label, _shown(footprint[column], column, form))
+    return table
+
+
+def _shown(value: Any, column: str, form: str) -> str:
+    import pandas as pd
+
+    if pd.isna(value):
+        return "–"
+    return form.format(value / 1000.0 if column == "distance_m" else value)

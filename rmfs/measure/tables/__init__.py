@@ -1,0 +1,41 @@
+"""The tables of a run, each made from what the recorder wrote down."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.measure.tables.decisions import decisions as decisions
+from rmfs.measure.tables.footprint import Measured as Measured
+from rmfs.measure.tables.footprint import footprint as footprint
+from rmfs.measure.tables.motion import heat as heat
+from rmfs.measure.tables.motion import trips as trips
+from rmfs.measure.tables.orders import orders as orders
+from rmfs.measure.tables.robots import robots as robots
+from rmfs.measure.tables.series import series as series
+from rmfs.measure.tables.stations import stations as stations
+from rmfs.measure.tables.stock import pods as pods
+from rmfs.measure.tables.stock import skus as skus
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rmfs.measure.checker import CheckReport
+
+MAKERS = {
+    "series": series,
+    "stations": stations,
+    "orders": orders,
+    "trips": trips,
+    "robots": robots,
+    "pods": pods,
+    "skus": skus,
+    "heat": heat,
+    "decisions": decisions,
+}
+"""How each table but the footprint is made from a recorder."""
+
+
+def all_tables(run: Measured, report: CheckReport | None = None) -> dict[str, pd.DataFrame]:
+    """Make every table of a run, by name."""
+    made = {name: make(run.recorder) for name, make in MAKERS.items()}
+    return {"footprint": footprint(run, report), **made}

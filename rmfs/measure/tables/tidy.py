@@ -1,0 +1,32 @@
+"""Bringing a table into the order and the types that the data dictionary promises."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from rmfs.measure.dictionary import TABLES
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+
+def tidy(table: str, columns: Mapping[str, Any] | pd.DataFrame) -> pd.DataFrame:
+    """Return a frame with exactly the columns of the dictionary.
+
+    Raises
+    ------
+    ValueError
+        If a column is missing or not in the dictionary: nothing is written that is not described.
+    """
+    described = {column.name: column.dtype for column in TABLES[table]}
+    wrong = described.keys() ^ set(columns.keys())
+    if wrong:
+        raise ValueError(f"table {table} and its dictionary differ in {', '.join(sorted(wrong))}")
+    return pd.DataFrame({name: columns[name] for name in described}).astype(described)
+
+
+def log(rows: Sequence[tuple[Any, ...]], *names: str) -> pd.DataFrame:
+    """Turn a list of rows into a frame, also if there are none."""
+    return pd.DataFrame(list(rows), columns=list(names))

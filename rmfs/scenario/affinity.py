@@ -1,0 +1,71 @@
+"""Which SKUs are ordered together."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.scenario.categorical import Categorical
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Affinity:
+    """Weights of pairs of SKUs: a further line may be drawn by affinity to the line before it.
+
+    Attributes
+    ----------
+    first, second
+        The pairs that have a weight of their own, as SKU indices, shape (n,) each. A pair counts
+        in the given direction (line before, next line); the reader adds the opposite direction
+        where a file gives only one.
+    weight
+        Weight of each pair, shape (n,).
+    default_weight
+        Weight of all other pairs.
+    share
+        Probability that a further line is drawn by affinity and not by popularity.
+    """
+
+    first: NDArray[np.int64]
+    second: NDArray[np.int64]
+    weight: NDArray[np.float64]
+    default_weight: float
+    share: float
+
+    def __post_init__(self) -> None:
+        for array in (self.first, self.second, self.weight):
+            array.setflags(write=False)
+
+    def samplers(self, skus: int) -> Callable[[int], Categorical | None]:
+        """Return the function that gives the sampler of SKUs to follow a given SKU.
+
+        A sampler takes memory in proportion to the number of SKUs, so only the latest are kept.
+        None where no SKU has a positive affinity to the given one.
+        """
+        order = np.argsort(self.first, kind="stable")
+        starts = np.searchsorted(self.first[order], np.arange(skus + 1))
+
+        @lru_cache(maxsize=1024)
+        def sampler(sku: int) -> Categorical | None:
+            pairs = order[starts[sku] : starts[sku + 1]]
+            weights = np.full(skus, self.default_weight)
+            weights[self.second[pairs]] = self.weight[pairs]
+            return Categorical(weights) if weights.any() else None
+
+        return sampler
+
+    def digest(self) -> str:
+        """SHA-256 over all pairs and parameters."""
+        hashed = hashlib.sha256(f"{self.default_weight!r} {self.share!r}".encode())
+        for array in (self.first, self.second, self.weight):
+            hashed.update(array.astype(array.dtype.newbyteorder("<")).tobytes())
+        return hashed.hexdigest()

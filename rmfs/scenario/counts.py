@@ -1,0 +1,87 @@
+"""Distributions of whole numbers that a scenario can name."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+import pydantic
+from scipy import special
+
+from rmfs.scenario.categorical import Categorical
+from rmfs.scenario.distributions import LEAST_MASS
+from rmfs.scenario.quantities import Block, Count, NotNegative, not_below
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+
+class _Range(Block):
+    """Whole numbers from `min` to `max`, both included."""
+
+    distribution: str
+    min: Count
+    max: Count
+
+    @pydantic.field_validator("max")
+    @classmethod
+    def _in_order(cls, value: int, info: pydantic.ValidationInfo) -> int:
+        return not_below(value, info, "min")
+
+    def probabilities(self) -> NDArray[np.float64]:
+        """Probability of `min`, `min` + 1, ..., `max`."""
+        raise NotImplementedError
+
+    def sampler(self) -> Callable[[float], int]:
+        """Return the function that turns a number in [0, 1) into a count."""
+        pick, least = Categorical(self.probabilities()).pick, self.min
+        return lambda uniform: least + pick(uniform)
+
+
+class UniformCount(_Range):
+    """Every whole number from `min` to `max` equally likely."""
+
+    distribution: Literal["uniform"] = "uniform"
+
+    def probabilities(self) -> NDArray[np.float64]:
+        """Probability of `min`, `min` + 1, ..., `max`."""
+        n = self.max - self.min + 1
+        return np.full(n, 1.0 / n)
+
+
+class NormalCount(_Range):
+    """Normal, cut to [min - 0.5, max + 0.5) and rounded; `mean` and `sd` are those before the cut.
+
+    With `sd` = 0 the count is the rounded mean.
+    """
+
+    distribution: Literal["normal"] = "normal"
+    mean: NotNegative
+    sd: NotNegative
+
+    @pydantic.model_validator(mode="after")
+    def _holds_enough(self) -> NormalCount:
+        if self._mass().sum() < LEAST_MASS:
+            raise ValueError("mean and sd put almost no count between min and max")
+        return self
+
+    def probabilities(self) -> NDArray[np.float64]:
+        """Probability of `min`, `min` + 1, ..., `max`."""
+        mass = self._mass()
+        probabilities: NDArray[np.float64] = mass / mass.sum()
+        return probabilities
+
+    def _mass(self) -> NDArray[np.float64]:
+        """Probability of each count before the cut; it lacks what lies outside [min, max]."""
+        counts = np.arange(self.min, self.max + 1)
+        if self.sd == 0:
+            return np.equal(counts, np.floor(self.mean + 0.5)).astype(np.float64)
+        low, high = (counts - 0.5 - self.mean) / self.sd, (counts + 0.5 - self.mean) / self.sd
+        # above the mean the difference is taken between upper tails, where the digits are
+        lower = special.ndtr(high) - special.ndtr(low)
+        return np.where(low > 0, special.ndtr(-low) - special.ndtr(-high), lower)
+
+
+Counts = Annotated[UniformCount | NormalCount, pydantic.Field(discriminator="distribution")]

@@ -1,0 +1,63 @@
+"""When an order is due, counted from its arrival."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import pydantic
+from pydantic import Field
+
+from rmfs.scenario.distributions import Normal
+from rmfs.scenario.quantities import Block, Positive, Share, not_below
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+class PriorityDue(Block):
+    """Two classes of orders: a share of urgent ones, and the rest."""
+
+    mode: Literal["priority"] = "priority"
+    urgent_share: Share = Field(0.2, description="share of orders that are urgent")
+    urgent_offset_s: Positive = Field(
+        1800.0, description="s from arrival to due time, urgent orders"
+    )
+    ordinary_offset_s: Positive = Field(
+        7200.0, description="s from arrival to due time, all others"
+    )
+
+    def sampler(self) -> Callable[[float], float]:
+        """Return the function that turns a number in [0, 1) into an offset in seconds."""
+        share, urgent, ordinary = self.urgent_share, self.urgent_offset_s, self.ordinary_offset_s
+        return lambda uniform: urgent if uniform < share else ordinary
+
+
+class NormalDue(Block):
+    """Offsets are normal, cut to [min_s, max_s], in whole milliseconds."""
+
+    mode: Literal["normal"] = "normal"
+    mean_s: Positive = Field(10800.0, description="s from arrival to due time, before the cut")
+    sd_s: Positive = Field(900.0, description="s, before the cut")
+    min_s: Positive = Field(7200.0, description="s, least offset")
+    max_s: Positive = Field(14400.0, description="s, greatest offset")
+
+    @pydantic.field_validator("max_s")
+    @classmethod
+    def _in_order(cls, value: float, info: pydantic.ValidationInfo) -> float:
+        return not_below(value, info, "min_s")
+
+    @pydantic.model_validator(mode="after")
+    def _holds_enough(self) -> NormalDue:
+        self._offsets()
+        return self
+
+    def sampler(self) -> Callable[[float], float]:
+        """Return the function that turns a number in [0, 1) into an offset in seconds."""
+        quantile = self._offsets().quantile
+        return lambda uniform: round(float(quantile(uniform)), 3)
+
+    def _offsets(self) -> Normal:
+        return Normal(mean=self.mean_s, sd=self.sd_s, min=self.min_s, max=self.max_s)
+
+
+Due = Annotated[PriorityDue | NormalDue, Field(discriminator="mode")]

@@ -1,0 +1,40 @@
+"""Numbers that come out alike on every processor.
+
+Additions, products, quotients and square roots are rounded the same way everywhere; logarithms,
+error functions and their inverses are not, and may differ in the last bits. Whatever is computed
+with such a function once (a popularity, a space, a probability) is therefore rounded here to far
+fewer digits before anything is drawn from it. What is left after that are integers and comparisons.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+SIGNIFICANT_BITS = 30
+"""Precision that `significant` keeps: about nine decimal digits."""
+
+SPACE_STEPS = 2**20
+"""Steps per space unit: about a millionth, so that 2**33 space units still add up exactly."""
+
+
+def significant(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Round to `SIGNIFICANT_BITS` significant bits."""
+    mantissa, exponent = np.frexp(values)
+    whole = np.rint(np.ldexp(mantissa, SIGNIFICANT_BITS))
+    rounded: NDArray[np.float64] = np.ldexp(whole, exponent - SIGNIFICANT_BITS)
+    return rounded
+
+
+def space(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Cut to whole steps of 1 / `SPACE_STEPS` space units, one step at least.
+
+    Sums and differences of such spaces are exact, so the space used on a pod does not drift and
+    does not depend on the order of what came and went. Cut, not rounded, so that ten units of 0.1
+    fit where one space unit is free.
+    """
+    return np.maximum(np.floor(values * SPACE_STEPS), 1.0) / SPACE_STEPS

@@ -1,0 +1,145 @@
+"""Contents of orders that the present stock can serve."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.random import Stream
+from rmfs.scenario.parameters import Orders, not_above_skus
+from rmfs.scenario.substreams import Substreams
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from rmfs.scenario.categorical import Categorical
+    from rmfs.scenario.skus import SkuSet
+
+DRAWS_PER_LINE = 32
+"""Draws by popularity for one line before the SKUs that qualify are looked up."""
+
+
+class OrderDraft(NamedTuple):
+    """An order before it exists.
+
+    Attributes
+    ----------
+    skus, units
+        The SKU of each line, all different, and how many units of it.
+    due_offset_s
+        Time from arrival to due time.
+    redraws
+        How often a SKU was drawn of which too little was uncommitted; `DRAWS_PER_LINE` at most for
+        each line.
+    """
+
+    skus: tuple[int, ...]
+    units: tuple[int, ...]
+    due_offset_s: float
+    redraws: int
+
+
+class OrderSource:
+    """Draws orders from SKUs that are in stock (design: backlog demand).
+
+    Order k is drawn from substream (seed, k), so it depends on nothing but the seed, its ordinal
+    and the stock: two runs with one seed get the same orders until their stock differs. A line
+    whose SKU lacks uncommitted stock takes the next draw of the substream, which is the same as
+    drawing by popularity among the SKUs that qualify. The first draws of all lines come before any
+    redraw, so that a shortage in one line does not shift the others.
+
+    Parameters
+    ----------
+    config
+        The table `orders` of a scenario.
+    skus
+        The SKUs.
+    seed
+        The run's seed.
+    source
+        Name of the scenario, for messages.
+
+    Raises
+    ------
+    InputError
+        If an order may need more lines than there are SKUs.
+    """
+
+    def __init__(self, config: Orders, skus: SkuSet, seed: int, source: str = "orders") -> None:
+        try:
+            not_above_skus(config.lines.max, len(skus))
+        except ValueError as error:
+            raise InputError(f"{source}: orders: {error}") from None
+        self._substreams = Substreams(seed, Stream.ORDER_CONTENTS)
+        self._lines = config.lines.sampler()
+        self._units = config.units_per_line.sampler()
+        self._due = config.due.sampler()
+        self._by_popularity = skus.by_popularity
+        self._affinity_share = 0.0 if skus.affinity is None else skus.affinity.share
+        self._by_affinity = None if skus.affinity is None else skus.affinity.samplers(len(skus))
+
+    def draw(self, ordinal: int, uncommitted: NDArray[np.int64]) -> OrderDraft | None:
+        """Draw the order of an ordinal from the stock there is.
+
+        Parameters
+        ----------
+        ordinal
+            Number k of the order, 0 or greater. Each is to be drawn once: after None, the next
+            attempt is with k + 1.
+        uncommitted
+            Units of each SKU stored and not promised to an order, shape (K,).
+
+        Returns
+        -------
+        OrderDraft or None
+            None if some line finds no SKU of which enough is uncommitted.
+        """
+        uniform = self._substreams.at(ordinal)
+        lines = self._lines(uniform())
+        due_offset_s = self._due(uniform())
+        units = [self._units(uniform()) for _ in range(lines)]
+        first = [uniform() for _ in range(lines)]
+        related = self._related(lines, uniform)
+        stored = uncommitted.item
+        chosen: list[int] = []
+        redraws = 0
+        for line in range(lines):
+            sampler = self._sampler(related[line], chosen)
+            number, wanted = first[line], units[line]
+            for _ in range(DRAWS_PER_LINE):
+                sku = sampler.pick(number)
+                if sku not in chosen:
+                    if stored(sku) >= wanted:
+                        break
+                    redraws += 1
+                number = uniform()
+            else:
+                found = self._among_qualifying(sampler, chosen, uncommitted >= wanted, number)
+                if found is None:
+                    return None
+                sku = found
+            chosen.append(sku)
+        return OrderDraft(tuple(chosen), tuple(units), due_offset_s, redraws)
+
+    def _related(self, lines: int, uniform: Callable[[], float]) -> list[bool]:
+        """Which lines are drawn by affinity to the line before."""
+        if not self._affinity_share:
+            return [False] * lines
+        return [False, *(uniform() < self._affinity_share for _ in range(lines - 1))]
+
+    def _sampler(self, related: bool, chosen: list[int]) -> Categorical:
+        if not related or self._by_affinity is None:
+            return self._by_popularity
+        return self._by_affinity(chosen[-1]) or self._by_popularity
+
+    @staticmethod
+    def _among_qualifying(
+        sampler: Categorical, chosen: list[int], enough: NDArray[np.bool_], number: float
+    ) -> int | None:
+        """Draw at once from the SKUs that qualify; None if there are none."""
+        enough[chosen] = False
+        return sampler.pick_among(enough, number)

@@ -1,0 +1,40 @@
+"""Numbers in a scenario file: what each may be, and pairs that must be in order."""
+
+from __future__ import annotations
+
+from typing import Annotated, TypeVar
+
+import pydantic
+
+from rmfs.config import Model
+
+Positive = Annotated[float, pydantic.Field(gt=0)]
+NotNegative = Annotated[float, pydantic.Field(ge=0)]
+Share = Annotated[float, pydantic.Field(ge=0, le=1)]
+Natural = Annotated[int, pydantic.Field(ge=0)]
+Count = Annotated[int, pydantic.Field(ge=1, le=1_000_000)]
+
+Number = TypeVar("Number", int, float)
+
+
+class Block(Model):
+    """A table of a scenario: numbers must be written as numbers, and be finite."""
+
+    model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)
+
+
+def not_below(value: Number, info: pydantic.ValidationInfo, key: str) -> Number:
+    """Return `value` if it reaches that of another key, read before it.
+
+    Checked at the later field, the two are compared even if other keys of the table are wrong, so
+    that one message lists all problems. A key that is wrong itself is not compared.
+
+    Raises
+    ------
+    ValueError
+        If it is below.
+    """
+    least = info.data.get(key)
+    if least is not None and value < least:
+        raise ValueError(f"must be at least {key} = {least:g}")
+    return value

@@ -1,0 +1,148 @@
+"""What the pods hold at time zero."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.random import Stream, generator
+from rmfs.scenario.bundles import bundle_of_each
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from numpy.typing import NDArray
+
+    from rmfs.scenario.bundles import BundleDraft
+    from rmfs.scenario.skus import SkuSet
+
+    ChoosePod = Callable[[BundleDraft, NDArray[np.float64]], int]
+    Place = Callable[[BundleDraft, NDArray[np.float64]], int | None]
+
+POD_DRAWS = 32
+"""Pods tried for one bundle before those with room are looked up."""
+
+
+@dataclass(frozen=True)
+class InitialStock:
+    """Bundles in the order in which they were put into pods.
+
+    Attributes
+    ----------
+    pod, sku, units
+        Of each of the n bundles, shape (n,).
+    share
+        Space stored / capacity of all pods: less than asked for only if nothing more fitted.
+    """
+
+    pod: NDArray[np.int64]
+    sku: NDArray[np.int64]
+    units: NDArray[np.int64]
+    share: float
+
+    def contents(self, pods: int, skus: int) -> NDArray[np.int64]:
+        """Units of each SKU on each pod, shape (pods, skus)."""
+        units = np.zeros((pods, skus), dtype=np.int64)
+        np.add.at(units, (self.pod, self.sku), self.units)
+        return units
+
+
+def initial_stock(
+    skus: SkuSet,
+    pod_capacity: NDArray[np.float64],
+    share: float,
+    seed: int,
+    choose: ChoosePod | None = None,
+) -> InitialStock:
+    """Fill the pods with bundles, their SKUs drawn by popularity, until a share is reached.
+
+    A bundle that fits into no pod is left out and another one drawn; if no bundle of any SKU fits,
+    the filling ends.
+
+    Parameters
+    ----------
+    pod_capacity
+        Space units of each pod, shape (P,).
+    share
+        Share of all capacity to fill, in [0, 1]; the last bundle may exceed it.
+    seed
+        The run's seed.
+    choose
+        Given a bundle and the free space of each pod (P,), returns a pod that has room for it;
+        only asked if there is one. Default: any such pod, all equally likely.
+
+    Raises
+    ------
+    InputError
+        If a bundle of some SKU fits into no empty pod.
+    ValueError
+        If `choose` returns a pod without room.
+    """
+    skus.check_fit(pod_capacity.max(initial=0.0))
+    place = _into_random_pods(seed) if choose is None else _where_possible(choose)
+    uniform = _uniform_numbers(seed, 0)
+    free = pod_capacity.astype(np.float64)
+    capacity = math.fsum(free.tolist())
+    bundles = bundle_of_each(skus)
+    placed: list[tuple[int, int, int]] = []
+    stored = 0.0
+    # free space only shrinks: what did not fit once never will, nor will anything larger
+    too_large = math.inf
+    while stored < share * capacity:
+        sku = _draw_sku(skus, too_large, next(uniform))
+        if sku is None:
+            break
+        bundle = bundles[sku]
+        pod = place(bundle, free)
+        if pod is None:
+            too_large = bundle.space
+            continue
+        if free[pod] < bundle.space:
+            raise ValueError(f"pod {pod} has no room for {bundle}")
+        free[pod] -= bundle.space
+        stored += bundle.space
+        placed.append((pod, sku, bundle.units))
+    pods, stored_skus, units = np.array(placed, dtype=np.int64).reshape(-1, 3).T.copy()
+    return InitialStock(pods, stored_skus, units, share=stored / capacity if capacity else 0.0)
+
+
+def _draw_sku(skus: SkuSet, too_large: float, number: float) -> int | None:
+    """Draw a SKU whose bundle takes less than `too_large` space units; None if there is none."""
+    if too_large == math.inf:
+        return skus.by_popularity.pick(number)
+    return skus.by_popularity.pick_among(skus.bundle_space < too_large, number)
+
+
+def _into_random_pods(seed: int) -> Place:
+    """Return the rule that takes any pod with room, all equally likely."""
+    # a stream of its own, so that the same SKUs are stored whatever rule places them
+    uniform = _uniform_numbers(seed, 1)
+
+    def place(bundle: BundleDraft, free: NDArray[np.float64]) -> int | None:
+        for _ in range(POD_DRAWS):
+            pod = int(next(uniform) * len(free))
+            if free.item(pod) >= bundle.space:
+                return pod
+        fitting = np.flatnonzero(free >= bundle.space)
+        return int(fitting[int(next(uniform) * len(fitting))]) if len(fitting) else None
+
+    return place
+
+
+def _where_possible(choose: ChoosePod) -> Place:
+    """Return the rule that asks `choose` if there is room at all."""
+
+    def place(bundle: BundleDraft, free: NDArray[np.float64]) -> int | None:
+        return choose(bundle, free) if free.max() >= bundle.space else None
+
+    return place
+
+
+def _uniform_numbers(seed: int, part: int) -> Iterator[float]:
+    """Yield uniform numbers in [0, 1) of a part of the stream of initial stock, without end."""
+    numbers = generator(seed, Stream.INITIAL_STOCK, part)
+    while True:
+        yield from numbers.random(4096).tolist()

@@ -1,0 +1,50 @@
+"""Writing a configuration as TOML, its explanations as comments."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pydantic
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+def to_toml(model: pydantic.BaseModel) -> str:
+    """Write every parameter of a model, defaults included; what is None is left out.
+
+    Reading the text back gives an equal model.
+    """
+    return "\n".join(_table(model, [])).lstrip("\n") + "\n"
+
+
+def _table(model: pydantic.BaseModel, path: list[str]) -> Iterator[str]:
+    """Yield the lines of a table: first its own values, then the tables in it."""
+    tables: list[tuple[str, pydantic.BaseModel, str | None]] = []
+    for name, field in type(model).model_fields.items():
+        value = getattr(model, name)
+        if isinstance(value, pydantic.BaseModel):
+            tables.append((name, value, field.description))
+        elif value is not None:
+            yield _with_comment(f"{name} = {_value(value)}", field.description)
+    for name, table, description in tables:
+        yield ""
+        yield _with_comment(f"[{'.'.join([*path, name])}]", description)
+        yield from _table(table, [*path, name])
+
+
+def _with_comment(line: str, comment: str | None) -> str:
+    return f"{line:<32}  # {comment}" if comment else line
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, (str, Path)):
+        # a JSON string is a TOML string, but for a character that JSON leaves as it is
+        return json.dumps(str(value), ensure_ascii=False).replace("\x7f", "\\u007f")
+    raise TypeError(f"no TOML value: {value!r}")

@@ -1,0 +1,120 @@
+"""When a backlog is topped up: pauses by stock level, and a rest after a failure."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rmfs.scenario.parameters import BacklogDemand, BacklogReplenishment
+
+
+class Hysteresis:
+    """A switch that goes on above one level and off below another.
+
+    Parameters
+    ----------
+    on_above, off_below
+        The two levels, `off_below` <= `on_above`; at a level itself nothing changes.
+    on
+        State at the start.
+    """
+
+    def __init__(self, on_above: float, off_below: float, *, on: bool) -> None:
+        self._on_above = on_above
+        self._off_below = off_below
+        self.on = on
+
+    def update(self, level: float) -> bool:
+        """Take note of the present level and return the state."""
+        if level > self._on_above:
+            self.on = True
+        elif level < self._off_below:
+            self.on = False
+        return self.on
+
+
+class OrderTopUp:
+    """Says when the next order of a constant backlog is to be made.
+
+    Parameters
+    ----------
+    config
+        The table `demand` of a scenario.
+    capacity
+        Space units of all pods together.
+    """
+
+    def __init__(self, config: BacklogDemand, capacity: float) -> None:
+        self._config = config
+        self._capacity = capacity
+        self._enough = Hysteresis(config.resume_above_share, config.pause_below_share, on=True)
+        self.blocked_until_s = 0.0
+
+    def wants(self, time_s: float, waiting: int, stored: float) -> bool:
+        """Say whether an order is to be made now.
+
+        To be asked after every change of stock or backlog, since a pause begins when the level is
+        crossed.
+
+        Parameters
+        ----------
+        time_s
+            Present simulated time.
+        waiting
+            Orders not yet at a station.
+        stored
+            Space units stored on all pods.
+        """
+        enough = self._enough.update(stored / self._capacity) or not self._config.pause_by_stock
+        return enough and waiting < self._config.orders and time_s >= self.blocked_until_s
+
+    def failed(self, time_s: float) -> None:
+        """Take note that no order could be drawn: none is wanted for a while."""
+        self.blocked_until_s = time_s + self._config.retry_s
+
+
+class BundleTopUp:
+    """Says when the next bundle of a constant backlog is to be made.
+
+    All loads are in space units. (RAWSim-O adds a number of units to a load in space units when it
+    compares a new bundle with its limit.)
+
+    Parameters
+    ----------
+    config
+        The table `replenishment` of a scenario.
+    capacity
+        Space units of all pods together.
+    """
+
+    def __init__(self, config: BacklogReplenishment, capacity: float) -> None:
+        self._config = config
+        self._capacity = capacity
+        self._full = Hysteresis(config.pause_above_share, config.resume_below_share, on=False)
+        self.blocked_until_s = 0.0
+
+    def wants(self, time_s: float, waiting: int, load: float) -> bool:
+        """Say whether a bundle is to be made now.
+
+        To be asked after every change of load or backlog, since a pause begins when the level is
+        crossed.
+
+        Parameters
+        ----------
+        time_s
+            Present simulated time.
+        waiting
+            Bundles not yet assigned to a station and a pod.
+        load
+            Space units of stored units, bundles assigned to pods, and waiting bundles.
+        """
+        full = self._full.update(load / self._capacity) and self._config.pause_by_stock
+        return not full and waiting < self._config.bundles and time_s >= self.blocked_until_s
+
+    def accepts(self, load: float, space: float) -> bool:
+        """Say whether a bundle of so much space may join the load; if not, call `failed`."""
+        return load + space <= self._config.load_limit_share * self._capacity
+
+    def failed(self, time_s: float) -> None:
+        """Take note that a bundle was not accepted: none is wanted for a while."""
+        self.blocked_until_s = time_s + self._config.retry_s

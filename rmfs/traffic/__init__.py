@@ -1,0 +1,263 @@
+"""What moves: robots on a waypoint graph, planned without conflict in continuous time.
+
+A thin face of the compiled core. Traffic knows nothing of orders, SKUs or tasks: it takes programs
+("drive there, lift this pod, go to that station") and yields events.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from rmfs.traffic._core import Core, Motion
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+
+__all__ = ["EventKind", "Motion", "Piece", "Step", "Traffic", "TrafficEvent", "TripKind"]
+
+COST_TABLE_BYTES = 200_000_000
+EXPANSION_BUDGET = 50_000
+
+
+class Step(IntEnum):
+    """What a robot can be told to do."""
+
+    DRIVE = 0
+    LIFT = 1
+    SET_DOWN = 2
+    STATION = 3
+
+
+class EventKind(IntEnum):
+    """What traffic reports; the value of the event is named in brackets."""
+
+    ARRIVED = 0
+    """A drive ended (waypoint)."""
+    LIFT_STARTED = 1
+    """The robot stands beneath the pod and lifts it (pod)."""
+    LIFTED = 2
+    """The pod is up (pod)."""
+    DEPARTED = 3
+    """A plan that leaves a storage place was accepted (the waypoint left)."""
+    QUEUE_ENTERED = 4
+    """The robot reached a queue zone (station); not reported at present."""
+    AT_HEAD = 5
+    """The robot stands at the station (station)."""
+    SET_DOWN_STARTED = 6
+    """The robot starts to set its pod down (pod)."""
+    SET_DOWN = 7
+    """The pod stands (pod)."""
+    IDLE = 8
+    """The program is done (waypoint)."""
+
+
+class Piece(IntEnum):
+    """Kinds of rows in a trace."""
+
+    HOLD = 0
+    TURN = 1
+    RUN = 2
+    RIDE = 3
+    LIFT = 4
+    SET_DOWN = 5
+
+
+class TripKind(IntEnum):
+    """What a trip was for."""
+
+    TO_POD = 0
+    TO_STATION = 1
+    TO_STORAGE = 2
+    TO_REST = 3
+
+
+class TrafficEvent(NamedTuple):
+    """An event of traffic, as `Traffic.advance` yields it (a plain tuple in the same order)."""
+
+    time_us: int
+    kind: int
+    robot: int
+    value: int
+
+
+class Traffic:
+    """The robots of one layout.
+
+    Parameters
+    ----------
+    layout
+        The warehouse; its stations' common numbering names the queues.
+    record_trace
+        Whether every piece of motion is kept (see `trace`).
+    cost_table_bytes
+        Memory for tables of unhindered times; the least recently used are dropped.
+    expansion_budget
+        Labels a search may expand before it waits for all planned motion to end; a count of work,
+        so that results repeat.
+
+    Raises
+    ------
+    ValueError
+        If two robots start at one waypoint, or a waypoint has two edges in one direction.
+    """
+
+    def __init__(
+        self,
+        layout: Layout,
+        *,
+        record_trace: bool = False,
+        cost_table_bytes: int = COST_TABLE_BYTES,
+        expansion_budget: int = EXPANSION_BUDGET,
+    ) -> None:
+        self._kind = layout.robot_kind
+        self._from_cache: dict[tuple[int, int, bool], NDArray[np.float64]] = {}
+        self._to_cache: dict[tuple[int, int, bool], NDArray[np.float64]] = {}
+        self._core = Core(
+            layout.x_m,
+            layout.y_m,
+            layout.tier.astype(np.int16),
+            layout.edge_start.astype(np.uint32),
+            layout.edge_target.astype(np.uint32),
+            layout.is_storage,
+            layout.is_queue,
+            [list(station.queue) for station in layout.stations],
+            [list(elevator.waypoints) for elevator in layout.elevators],
+            [
+                (a, b, _us(seconds))
+                for elevator in layout.elevators
+                for (a, b), seconds in elevator.travel_s.items()
+            ],
+            list(
+                zip(
+                    layout.robot_waypoint.tolist(),
+                    layout.robot_heading_rad.tolist(),
+                    layout.robot_kind.tolist(),
+                    strict=True,
+                )
+            ),
+            [
+                (
+                    kind.acceleration_m_s2,
+                    kind.deceleration_m_s2,
+                    kind.top_speed_m_s,
+                    _us(kind.full_turn_s),
+                    _us(kind.pod_transfer_s),
+                )
+                for kind in layout.robot_kinds
+            ],
+            expansion_budget,
+            cost_table_bytes,
+            record_trace,
+        )
+        # the two calls of the hot path, without a frame in between
+        self.advance = self._core.advance
+        self.command = self._core.command
+
+    @property
+    def now_us(self) -> int:
+        """The time up to which traffic has advanced, in microseconds."""
+        return self._core.now
+
+    def rest_waypoint(self, robot: int) -> int:
+        """Where the robot stands, or where its plan ends."""
+        return self._core.rest_waypoint(robot)
+
+    def robot_waypoint(self, robot: int) -> int:
+        """Where the robot stands, or the next waypoint at which it stops."""
+        return self._core.next_stop(robot)
+
+    def blocked(self) -> list[int]:
+        """Robots that want to drive and have found no way yet."""
+        return self._core.blocked()
+
+    def travel_times_to(
+        self, waypoint: int, loaded: bool, robot: int = 0
+    ) -> NDArray[np.float64]:
+        """Unhindered times from every waypoint to one, from rest to rest, best start heading.
+
+        Returns
+        -------
+        Seconds, shape (N,); infinite where there is no way. Do not write into it.
+        """
+        key = (waypoint, int(self._kind[robot]), loaded)
+        if key not in self._to_cache:
+            self._to_cache[key] = self._core.travel_times_to(*key)
+        return self._to_cache[key]
+
+    def travel_times_from(
+        self, waypoint: int, loaded: bool, robot: int = 0
+    ) -> NDArray[np.float64]:
+        """Unhindered times from one waypoint to every other, from rest to rest, any start heading.
+
+        Returns
+        -------
+        Seconds, shape (N,); infinite where there is no way. Do not write into it.
+        """
+        key = (waypoint, int(self._kind[robot]), loaded)
+        if key not in self._from_cache:
+            self._from_cache[key] = self._core.travel_times_from(*key)
+        return self._from_cache[key]
+
+    def motion(self) -> dict[str, NDArray[Any]]:
+        """Totals per robot since the last reset, up to now, each of shape (R,).
+
+        `distance_m`, `loaded_distance_m`; the times `moving_s`, `turning_s`, `waiting_s` (standing
+        with a way to go), `served_s` (standing at a station), `idle_s`, `transfer_s` (lifting,
+        setting down) and `riding_s` (elevators) add up to the time passed; `queueing_s` counts from
+        entering a queue zone to reaching the station and overlaps with the others.
+        """
+        return self._core.motion()
+
+    def heat(self) -> dict[str, NDArray[Any]]:
+        """Per waypoint since the last reset, each of shape (N,).
+
+        `visits`, `loaded_visits`, and `waiting_s` of robots that are not idle.
+        """
+        return self._core.heat()
+
+    def trips(self) -> dict[str, NDArray[Any]]:
+        """Trips finished since the last reset, in order of their end.
+
+        `robot`, `kind` (`TripKind`), `t0_us`, `t1_us` (a trip to a station ends at its queue
+        zone), `from_wp`, `to_wp`, `loaded`, `distance_m`, `unhindered_s` (lower bound of the
+        time from rest to rest).
+        """
+        return self._core.trips()
+
+    def trace(self) -> dict[str, NDArray[Any]]:
+        """Every piece of motion so far, sorted by robot and time.
+
+        `robot`, `t0_us`, `t1_us`, `kind` (`Piece`), `from_wp`, `to_wp`, `heading0_rad`,
+        `heading1_rad`, `pod` (carried, -1 without).
+
+        Raises
+        ------
+        ValueError
+            If the trace is not recorded.
+        """
+        return self._core.trace()
+
+    def counters(self) -> dict[str, float]:
+        """`plans`, `plan_failures`, `replans`, `expansions`, `cost_tables`, `planning_s` (wall)."""
+        counts: dict[str, float] = dict(self._core.counters())
+        counts["planning_s"] = counts.pop("planning_ns") / 1e9
+        return counts
+
+    def reset_statistics(self) -> None:
+        """Forget totals, heat, trips and counters; the trace stays whole."""
+        self._core.reset_statistics()
+
+    def state_report(self) -> str:
+        """One line per robot, for a report when nothing can move any more."""
+        return self._core.state_report()
+
+
+def _us(seconds: float) -> int:
+    return round(seconds * 1e6)

@@ -1,0 +1,14 @@
+//! Traffic of a Robotic Mobile Fulfillment System: what moves, without knowing why.
+
+pub mod costs;
+pub mod fleet;
+pub mod kinematics;
+pub mod network;
+pub mod record;
+pub mod reservations;
+pub mod robot;
+pub mod search;
+pub mod units;
+
+#[cfg(feature = "python")]
+mod python;

@@ -1,0 +1,282 @@
+//! The waypoint graph as the planner sees it: straight lines by heading, zones and shared resources.
+
+use crate::units::{MicroTurn, Us, heading_of};
+
+/// "No waypoint", "no zone".
+pub const NONE: u32 = u32::MAX;
+
+/// One directed way between tiers.
+#[derive(Clone, Debug)]
+pub struct Lift {
+    pub from: u32,
+    pub to: u32,
+    pub travel: Us,
+}
+
+/// What is needed to build a [`Network`]: plain arrays, one entry per waypoint.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    pub x: Vec<f64>,
+    pub y: Vec<f64>,
+    pub tier: Vec<i16>,
+    pub edge_start: Vec<u32>,
+    pub edge_target: Vec<u32>,
+    pub storage: Vec<bool>,
+    pub queue: Vec<bool>,
+    /// Queue places per station, head first.
+    pub stations: Vec<Vec<u32>>,
+    /// Waypoints of each elevator.
+    pub elevators: Vec<Vec<u32>>,
+    pub lifts: Vec<Lift>,
+    /// Headings of robots at the start, which need not be those of an edge.
+    pub extra_headings: Vec<MicroTurn>,
+}
+
+/// The immutable graph.
+#[derive(Debug)]
+pub struct Network {
+    pub nodes: usize,
+    /// Distinct headings, ascending.
+    pub headings: Vec<MicroTurn>,
+    /// Waypoint reached from `v` in direction `h`: `next[v * H + h]`.
+    next: Vec<u32>,
+    /// Length of that edge in metres.
+    length: Vec<f64>,
+    /// Waypoints from which `v` is reached in direction `h`, CSR by `v * H + h`.
+    before_start: Vec<u32>,
+    before: Vec<u32>,
+    pub storage: Vec<bool>,
+    /// Station whose private queue zone the waypoint belongs to, or `NONE`.
+    pub zone: Vec<u32>,
+    /// What a robot at the waypoint occupies: the waypoint, or the shaft of its elevator.
+    pub resource: Vec<u32>,
+    pub resources: usize,
+    pub stations: Vec<Vec<u32>>,
+    lifts_from: Vec<Vec<Lift>>,
+    lifts_to: Vec<Vec<Lift>>,
+    x: Vec<f64>,
+    y: Vec<f64>,
+    metric: Metric,
+}
+
+/// What bounds the length of a way from below.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Metric {
+    Manhattan,
+    Euclid,
+    /// Elevators that move robots sideways leave no bound.
+    Nothing,
+}
+
+impl Network {
+    /// Builds the graph.
+    ///
+    /// # Errors
+    /// If a waypoint has two edges in one direction.
+    pub fn new(plan: Plan) -> Result<Self, String> {
+        let nodes = plan.x.len();
+        let angle = |v: usize, w: usize| heading_of(plan.x[w] - plan.x[v], plan.y[w] - plan.y[v]);
+        let targets = |v: usize| {
+            let range = plan.edge_start[v] as usize..plan.edge_start[v + 1] as usize;
+            plan.edge_target[range].iter().map(|&w| w as usize)
+        };
+        let mut headings = plan.extra_headings.clone();
+        for v in 0..nodes {
+            headings.extend(targets(v).map(|w| angle(v, w)));
+        }
+        headings.sort_unstable();
+        headings.dedup();
+        let count = headings.len();
+        let mut next = vec![NONE; nodes * count];
+        let mut length = vec![0.0; nodes * count];
+        let mut incoming: Vec<Vec<u32>> = vec![Vec::new(); nodes * count];
+        for v in 0..nodes {
+            for w in targets(v) {
+                let h = headings.binary_search(&angle(v, w)).expect("collected above");
+                if next[v * count + h] != NONE {
+                    return Err(format!("waypoint {v} has two edges in one direction"));
+                }
+                next[v * count + h] = w as u32;
+                length[v * count + h] = (plan.x[w] - plan.x[v]).hypot(plan.y[w] - plan.y[v]);
+                incoming[w * count + h].push(v as u32);
+            }
+        }
+        let (before_start, before) = csr(&incoming);
+        let zone = zones(&plan, nodes);
+        let metric = metric(&plan, &headings);
+        let (resource, resources) = shared_resources(&plan.elevators, nodes);
+        let mut lifts_from = vec![Vec::new(); nodes];
+        let mut lifts_to = vec![Vec::new(); nodes];
+        for lift in plan.lifts {
+            lifts_to[lift.to as usize].push(lift.clone());
+            lifts_from[lift.from as usize].push(lift);
+        }
+        Ok(Self {
+            nodes,
+            headings,
+            next,
+            length,
+            before_start,
+            before,
+            storage: plan.storage,
+            zone,
+            resource,
+            resources,
+            stations: plan.stations,
+            lifts_from,
+            lifts_to,
+            x: plan.x,
+            y: plan.y,
+            metric,
+        })
+    }
+
+    /// Metres that a robot drives at least from one waypoint to another.
+    pub fn least_distance(&self, from: u32, to: u32) -> f64 {
+        let dx = (self.x[from as usize] - self.x[to as usize]).abs();
+        let dy = (self.y[from as usize] - self.y[to as usize]).abs();
+        match self.metric {
+            Metric::Manhattan => dx + dy,
+            Metric::Euclid => dx.hypot(dy),
+            Metric::Nothing => 0.0,
+        }
+    }
+
+    /// Number of distinct headings.
+    pub fn heading_count(&self) -> usize {
+        self.headings.len()
+    }
+
+    /// Index of the pair in arrays over (waypoint, heading).
+    pub fn index(&self, node: u32, heading: u8) -> usize {
+        node as usize * self.headings.len() + heading as usize
+    }
+
+    /// The waypoint straight ahead and the metres to it.
+    pub fn ahead(&self, node: u32, heading: u8) -> Option<(u32, f64)> {
+        let index = self.index(node, heading);
+        let target = self.next[index];
+        (target != NONE).then(|| (target, self.length[index]))
+    }
+
+    /// Waypoints from which `node` is reached by driving in direction `heading`.
+    pub fn behind(&self, node: u32, heading: u8) -> &[u32] {
+        let index = self.index(node, heading);
+        &self.before[self.before_start[index] as usize..self.before_start[index + 1] as usize]
+    }
+
+    /// Elevator rides that start at `node`.
+    pub fn lifts_from(&self, node: u32) -> &[Lift] {
+        &self.lifts_from[node as usize]
+    }
+
+    /// Elevator rides that end at `node`.
+    pub fn lifts_to(&self, node: u32) -> &[Lift] {
+        &self.lifts_to[node as usize]
+    }
+
+    /// Whether a robot on its way to `goal` may drive from `from` onto `to`: queue zones are for
+    /// those who want to the station, storage places for empty robots and for the goal itself.
+    pub fn may_enter(&self, from: u32, to: u32, goal: u32, loaded: bool) -> bool {
+        let zone = self.zone[to as usize];
+        let private = zone != NONE
+            && zone != self.zone[from as usize]
+            && (goal == NONE || zone != self.zone[goal as usize]);
+        let blocked = loaded && self.storage[to as usize] && to != goal;
+        !private && !blocked
+    }
+
+    /// Walks the straight line from `from` (exclusive) to `to` (inclusive) with the distance covered.
+    pub fn line(&self, from: u32, to: u32, heading: u8) -> impl Iterator<Item = (u32, f64)> + '_ {
+        let mut here = from;
+        let mut distance = 0.0;
+        std::iter::from_fn(move || {
+            if here == to {
+                return None;
+            }
+            let (node, length) = self.ahead(here, heading)?;
+            here = node;
+            distance += length;
+            Some((node, distance))
+        })
+    }
+}
+
+fn metric(plan: &Plan, headings: &[MicroTurn]) -> Metric {
+    let sideways = |lift: &Lift| {
+        let (from, to) = (lift.from as usize, lift.to as usize);
+        (plan.x[from] - plan.x[to]).abs() + (plan.y[from] - plan.y[to]).abs() > 1e-6
+    };
+    if plan.lifts.iter().any(sideways) {
+        Metric::Nothing
+    } else if headings.iter().all(|heading| heading % 250_000 == 0) {
+        Metric::Manhattan
+    } else {
+        Metric::Euclid
+    }
+}
+
+/// Flattens lists into offsets and items.
+fn csr(lists: &[Vec<u32>]) -> (Vec<u32>, Vec<u32>) {
+    let mut start = Vec::with_capacity(lists.len() + 1);
+    let mut items = Vec::new();
+    start.push(0);
+    for list in lists {
+        items.extend_from_slice(list);
+        start.push(items.len() as u32);
+    }
+    (start, items)
+}
+
+/// Gives each queue waypoint to the station whose queue list it is nearest to, over queue edges.
+fn zones(plan: &Plan, nodes: usize) -> Vec<u32> {
+    let mut neighbours = vec![Vec::new(); nodes];
+    for v in 0..nodes {
+        for &w in &plan.edge_target[plan.edge_start[v] as usize..plan.edge_start[v + 1] as usize] {
+            if plan.queue[v] && plan.queue[w as usize] {
+                neighbours[v].push(w);
+                neighbours[w as usize].push(v as u32);
+            }
+        }
+    }
+    let mut zone = vec![NONE; nodes];
+    let mut shared = vec![false; nodes];
+    for elevator in &plan.elevators {
+        // an elevator's access is for everybody
+        let mut open: Vec<u32> = elevator.clone();
+        while let Some(v) = open.pop() {
+            if plan.queue[v as usize] && !std::mem::replace(&mut shared[v as usize], true) {
+                open.extend_from_slice(&neighbours[v as usize]);
+            }
+        }
+    }
+    let mut front: std::collections::VecDeque<u32> = std::collections::VecDeque::new();
+    for (station, places) in plan.stations.iter().enumerate() {
+        for &v in places {
+            if plan.queue[v as usize] && !shared[v as usize] && zone[v as usize] == NONE {
+                zone[v as usize] = station as u32;
+                front.push_back(v);
+            }
+        }
+    }
+    while let Some(v) = front.pop_front() {
+        for &w in &neighbours[v as usize] {
+            if zone[w as usize] == NONE {
+                zone[w as usize] = zone[v as usize];
+                front.push_back(w);
+            }
+        }
+    }
+    zone
+}
+
+/// All waypoints of an elevator are one resource: its shaft holds one robot.
+fn shared_resources(elevators: &[Vec<u32>], nodes: usize) -> (Vec<u32>, usize) {
+    let mut resource: Vec<u32> = (0..nodes as u32).collect();
+    for waypoints in elevators {
+        for &v in waypoints {
+            resource[v as usize] = waypoints[0];
+        }
+    }
+    (resource, nodes)
+}

@@ -1,0 +1,292 @@
+//! The Python face of the crate: arrays in, arrays and events out.
+
+use std::collections::HashMap;
+
+use numpy::{IntoPyArray, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::costs;
+use crate::fleet::Fleet;
+use crate::kinematics::{Kind, Profile};
+use crate::network::{Lift, Network, Plan};
+use crate::record::{Totals, partly};
+use crate::robot::{Phase, Step};
+use crate::units::{Us, from_radians, to_radians};
+
+/// A robot kind as it comes from Python: acceleration, deceleration, top speed, full turn (µs),
+/// pod transfer (µs).
+type KindTuple = (f64, f64, f64, Us, Us);
+
+fn kind_of((acceleration, deceleration, top_speed, full_turn, pod_transfer): KindTuple) -> Kind {
+    Kind { acceleration, deceleration, top_speed, full_turn, pod_transfer }
+}
+
+fn step_of((code, value): (u8, u32)) -> PyResult<Step> {
+    match code {
+        0 => Ok(Step::Drive(value)),
+        1 => Ok(Step::Lift(value)),
+        2 => Ok(Step::SetDown(value)),
+        3 => Ok(Step::Station(value)),
+        _ => Err(PyValueError::new_err(format!("unknown step {code}"))),
+    }
+}
+
+/// Seconds, positions and speeds of a straight line driven from an initial speed.
+#[pyclass(frozen)]
+struct Motion {
+    profile: Profile,
+}
+
+#[pymethods]
+impl Motion {
+    #[new]
+    fn new(acceleration: f64, deceleration: f64, top_speed: f64, initial_speed: f64, length: f64) -> Self {
+        let kind = Kind { acceleration, deceleration, top_speed, full_turn: 0, pod_transfer: 0 };
+        Self { profile: Profile::new(&kind, initial_speed, length) }
+    }
+
+    fn duration(&self) -> f64 {
+        self.profile.duration()
+    }
+
+    fn time_at(&self, distance: f64) -> f64 {
+        self.profile.time_at(distance)
+    }
+
+    fn position_at(&self, time: f64) -> f64 {
+        self.profile.position_at(time)
+    }
+
+    fn speed_at(&self, time: f64) -> f64 {
+        self.profile.speed_at(time)
+    }
+}
+
+/// The traffic of one warehouse.
+#[pyclass]
+struct Core {
+    fleet: Fleet,
+}
+
+impl Core {
+    fn robot(&self, robot: usize) -> PyResult<&crate::robot::Robot> {
+        self.fleet.robots.get(robot).ok_or_else(|| PyValueError::new_err(format!("no robot {robot}")))
+    }
+
+    fn seconds(&self, entries: &[u32]) -> Vec<f64> {
+        entries.iter().map(|&entry| costs::time(entry).map_or(f64::INFINITY, |t| t as f64 / 1e6)).collect()
+    }
+}
+
+#[pymethods]
+impl Core {
+    #[new]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        x: PyReadonlyArray1<f64>,
+        y: PyReadonlyArray1<f64>,
+        tier: PyReadonlyArray1<i16>,
+        edge_start: PyReadonlyArray1<u32>,
+        edge_target: PyReadonlyArray1<u32>,
+        storage: PyReadonlyArray1<bool>,
+        queue: PyReadonlyArray1<bool>,
+        stations: Vec<Vec<u32>>,
+        elevators: Vec<Vec<u32>>,
+        lifts: Vec<(u32, u32, Us)>,
+        robots: Vec<(u32, f64, u8)>,
+        kinds: Vec<KindTuple>,
+        budget: u64,
+        cost_bytes: usize,
+        with_trace: bool,
+    ) -> PyResult<Self> {
+        let plan = Plan {
+            x: x.as_slice()?.to_vec(),
+            y: y.as_slice()?.to_vec(),
+            tier: tier.as_slice()?.to_vec(),
+            edge_start: edge_start.as_slice()?.to_vec(),
+            edge_target: edge_target.as_slice()?.to_vec(),
+            storage: storage.as_slice()?.to_vec(),
+            queue: queue.as_slice()?.to_vec(),
+            stations,
+            elevators,
+            lifts: lifts.into_iter().map(|(from, to, travel)| Lift { from, to, travel }).collect(),
+            extra_headings: robots.iter().map(|robot| from_radians(robot.1)).collect(),
+        };
+        let network = Network::new(plan).map_err(PyValueError::new_err)?;
+        let place = |&(node, angle, kind): &(u32, f64, u8)| {
+            let heading = network.headings.binary_search(&from_radians(angle)).expect("given to the network");
+            (node, heading as u8, kind)
+        };
+        let robots: Vec<(u32, u8, u8)> = robots.iter().map(place).collect();
+        let kinds = kinds.into_iter().map(kind_of).collect();
+        let fleet = Fleet::new(network, kinds, &robots, budget, cost_bytes, with_trace);
+        fleet.map(|fleet| Self { fleet }).map_err(PyValueError::new_err)
+    }
+
+    #[getter]
+    fn now(&self) -> Us {
+        self.fleet.now
+    }
+
+    fn command(&mut self, robot: u32, program: Vec<(u8, u32)>) -> PyResult<()> {
+        self.robot(robot as usize)?;
+        let steps = program.into_iter().map(step_of).collect::<PyResult<Vec<Step>>>()?;
+        self.fleet.command(robot, &steps).map_err(PyValueError::new_err)
+    }
+
+    fn advance(&mut self, py: Python<'_>, until: Us) -> Vec<(Us, i64, u32, u32)> {
+        let fleet = &mut self.fleet;
+        let events = py.detach(|| fleet.advance(until));
+        events.into_iter().map(|event| (event.time, event.kind as i64, event.robot, event.value)).collect()
+    }
+
+    fn rest_waypoint(&self, robot: usize) -> PyResult<u32> {
+        Ok(self.robot(robot)?.destination().0)
+    }
+
+    fn next_stop(&self, robot: usize) -> PyResult<u32> {
+        Ok(self.robot(robot)?.next_stop())
+    }
+
+    fn blocked(&self) -> Vec<u32> {
+        self.fleet.blocked().to_vec()
+    }
+
+    fn travel_times_to<'py>(&mut self, py: Python<'py>, waypoint: u32, kind: u8, loaded: bool) -> Bound<'py, PyAny> {
+        let fleet = &mut self.fleet;
+        let count = fleet.network.heading_count();
+        let table = fleet.costs.towards(&fleet.network, waypoint, kind, loaded);
+        let best: Vec<u32> = table.chunks(count).map(|headings| headings.iter().copied().min().expect("a heading")).collect();
+        self.seconds(&best).into_pyarray(py).into_any()
+    }
+
+    fn travel_times_from<'py>(&self, py: Python<'py>, waypoint: u32, kind: u8, loaded: bool) -> Bound<'py, PyAny> {
+        let times = self.fleet.costs.away_from(&self.fleet.network, waypoint, kind, loaded);
+        self.seconds(&times).into_pyarray(py).into_any()
+    }
+
+    /// Totals per robot since the last reset, at the current time.
+    fn motion<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.fleet.settle_all();
+        let now = self.fleet.now;
+        let totals: Vec<Totals> = self.fleet.robots.iter().enumerate().map(|(id, robot)| {
+            let mut totals = self.fleet.record.totals[id].clone();
+            if let Some(step) = robot.moves.front() && robot.phase != Phase::Transferring {
+                let kind = &self.fleet.kinds[robot.kind as usize];
+                let (turning, driving, metres) = partly(&self.fleet.network, kind, step, now);
+                totals.turning += turning;
+                totals.distance += metres;
+                if step.ride { totals.riding += driving } else { totals.moving += driving }
+                if robot.pod.is_some() {
+                    totals.loaded_distance += metres;
+                }
+            } else if robot.phase == Phase::Transferring {
+                totals.transferring += now - self.fleet.record.recorded(id as u32);
+            }
+            totals
+        }).collect();
+        let result = PyDict::new(py);
+        let metres = |pick: fn(&Totals) -> f64| totals.iter().map(pick).collect::<Vec<f64>>();
+        let seconds = |pick: fn(&Totals) -> Us| totals.iter().map(|t| pick(t) as f64 / 1e6).collect::<Vec<f64>>();
+        result.set_item("distance_m", metres(|t| t.distance).into_pyarray(py))?;
+        result.set_item("loaded_distance_m", metres(|t| t.loaded_distance).into_pyarray(py))?;
+        for (name, pick) in [
+            ("moving_s", (|t: &Totals| t.moving) as fn(&Totals) -> Us),
+            ("turning_s", |t| t.turning),
+            ("waiting_s", |t| t.waiting),
+            ("served_s", |t| t.served),
+            ("idle_s", |t| t.idle),
+            ("transfer_s", |t| t.transferring),
+            ("riding_s", |t| t.riding),
+            ("queueing_s", |t| t.queueing),
+        ] {
+            result.set_item(name, seconds(pick).into_pyarray(py))?;
+        }
+        Ok(result)
+    }
+
+    /// Visits and standing time per waypoint since the last reset.
+    fn heat<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.fleet.settle_all();
+        let record = &self.fleet.record;
+        let result = PyDict::new(py);
+        result.set_item("visits", record.visits.clone().into_pyarray(py))?;
+        result.set_item("loaded_visits", record.loaded_visits.clone().into_pyarray(py))?;
+        let waiting: Vec<f64> = record.waiting.iter().map(|&t| t as f64 / 1e6).collect();
+        result.set_item("waiting_s", waiting.into_pyarray(py))?;
+        Ok(result)
+    }
+
+    /// Trips finished since the last reset.
+    fn trips<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let trips = &self.fleet.record.trips;
+        let result = PyDict::new(py);
+        result.set_item("robot", trips.iter().map(|t| t.robot).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("kind", trips.iter().map(|t| t.kind as i8).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("t0_us", trips.iter().map(|t| t.start).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("t1_us", trips.iter().map(|t| t.end).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("from_wp", trips.iter().map(|t| t.from).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("to_wp", trips.iter().map(|t| t.to).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("loaded", trips.iter().map(|t| t.loaded).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("distance_m", trips.iter().map(|t| t.distance).collect::<Vec<_>>().into_pyarray(py))?;
+        let unhindered: Vec<f64> = trips.iter().map(|t| t.unhindered as f64 / 1e6).collect();
+        result.set_item("unhindered_s", unhindered.into_pyarray(py))?;
+        Ok(result)
+    }
+
+    /// The trace up to now, sorted by robot and time.
+    fn trace<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.fleet.settle_all();
+        let headings: Vec<f64> = self.fleet.network.headings.iter().map(|&h| to_radians(h)).collect();
+        let mut rows = self.fleet.record.trace.clone().ok_or_else(|| PyValueError::new_err("the trace is not recorded"))?;
+        rows.sort_by_key(|row| (row.robot, row.start));
+        let result = PyDict::new(py);
+        result.set_item("robot", rows.iter().map(|r| r.robot as i32).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("t0_us", rows.iter().map(|r| r.start).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("t1_us", rows.iter().map(|r| r.end).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("kind", rows.iter().map(|r| r.piece as i8).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("from_wp", rows.iter().map(|r| r.from as i32).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("to_wp", rows.iter().map(|r| r.to as i32).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("heading0_rad", rows.iter().map(|r| headings[r.heading_before as usize]).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("heading1_rad", rows.iter().map(|r| headings[r.heading as usize]).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item("pod", rows.iter().map(|r| r.pod).collect::<Vec<_>>().into_pyarray(py))?;
+        Ok(result)
+    }
+
+    fn counters(&self) -> HashMap<&'static str, u64> {
+        let fleet = &self.fleet;
+        HashMap::from([
+            ("plans", fleet.counters.plans),
+            ("plan_failures", fleet.counters.failures),
+            ("replans", fleet.counters.replans),
+            ("expansions", fleet.planner.expansions),
+            ("cost_tables", fleet.costs.computed),
+            ("planning_ns", fleet.counters.planning.as_nanos() as u64),
+        ])
+    }
+
+    fn reset_statistics(&mut self) {
+        self.fleet.settle_all();
+        self.fleet.record.reset();
+        self.fleet.counters = crate::fleet::Counters::default();
+        self.fleet.planner.expansions = 0;
+    }
+
+    /// One line per robot, for reports on traffic that stands still.
+    fn state_report(&self) -> String {
+        let lines = self.fleet.robots.iter().enumerate().map(|(id, robot)| {
+            let (to, _, end) = robot.destination();
+            format!("robot {id}: {:?} at waypoint {}, plan ends at {to} at {:.3} s, program {:?}, queue place {:?}", robot.phase, robot.anchor, end as f64 / 1e6, robot.program, robot.place)
+        });
+        lines.collect::<Vec<_>>().join("\n")
+    }
+}
+
+#[pymodule]
+#[pyo3(name = "_core")]
+mod core_module {
+    #[pymodule_export]
+    use super::{Core, Motion};
+}

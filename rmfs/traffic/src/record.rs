@@ -1,0 +1,219 @@
+//! What is remembered of the motion: totals per robot, heat per waypoint, trips and the trace.
+
+use crate::kinematics::Kind;
+use crate::network::Network;
+use crate::search::Move;
+use crate::units::{Us, floor_us};
+
+/// Kinds of pieces of motion in the trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i8)]
+pub enum Piece {
+    Hold = 0,
+    Turn = 1,
+    Run = 2,
+    Ride = 3,
+    Lift = 4,
+    SetDown = 5,
+}
+
+/// Why a robot stands still.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    Idle,
+    Waiting,
+    Served,
+}
+
+/// One piece of motion of one robot.
+#[derive(Clone, Debug)]
+pub struct Row {
+    pub robot: u32,
+    pub start: Us,
+    pub end: Us,
+    pub piece: Piece,
+    pub from: u32,
+    pub to: u32,
+    pub heading_before: u8,
+    pub heading: u8,
+    pub pod: i32,
+}
+
+/// Totals of one robot since the last reset.
+#[derive(Clone, Debug, Default)]
+pub struct Totals {
+    pub distance: f64,
+    pub loaded_distance: f64,
+    pub moving: Us,
+    pub turning: Us,
+    pub waiting: Us,
+    pub served: Us,
+    pub idle: Us,
+    pub transferring: Us,
+    pub riding: Us,
+    /// From entering a queue zone to reaching its head; overlaps with the others.
+    pub queueing: Us,
+}
+
+/// One leg, from the decision to drive to the arrival (for a station: at the queue zone).
+#[derive(Clone, Debug)]
+pub struct Trip {
+    pub robot: u32,
+    pub kind: TripKind,
+    pub start: Us,
+    pub end: Us,
+    pub from: u32,
+    pub to: u32,
+    pub loaded: bool,
+    pub distance: f64,
+    pub unhindered: Us,
+}
+
+/// What a trip is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i8)]
+pub enum TripKind {
+    ToPod = 0,
+    ToStation = 1,
+    ToStorage = 2,
+    ToRest = 3,
+}
+
+/// Everything recorded.
+#[derive(Debug)]
+pub struct Record {
+    pub totals: Vec<Totals>,
+    pub visits: Vec<u32>,
+    pub loaded_visits: Vec<u32>,
+    pub waiting: Vec<Us>,
+    pub trips: Vec<Trip>,
+    pub trace: Option<Vec<Row>>,
+    /// Until when each robot's motion is recorded.
+    recorded: Vec<Us>,
+}
+
+impl Record {
+    /// An empty record.
+    pub fn new(robots: usize, nodes: usize, with_trace: bool) -> Self {
+        Self {
+            totals: vec![Totals::default(); robots],
+            visits: vec![0; nodes],
+            loaded_visits: vec![0; nodes],
+            waiting: vec![0; nodes],
+            trips: Vec::new(),
+            trace: with_trace.then(Vec::new),
+            recorded: vec![0; robots],
+        }
+    }
+
+    /// Forgets all totals, heat and trips; the trace stays.
+    pub fn reset(&mut self) {
+        self.totals.fill(Totals::default());
+        self.visits.fill(0);
+        self.loaded_visits.fill(0);
+        self.waiting.fill(0);
+        self.trips.clear();
+    }
+
+    /// Until when the robot's motion is recorded.
+    pub fn recorded(&self, robot: u32) -> Us {
+        self.recorded[robot as usize]
+    }
+
+    /// Records that the robot stood still until `end`.
+    pub fn stand(&mut self, robot: u32, end: Us, node: u32, heading: u8, pod: Option<u32>, why: Standing) {
+        let start = self.recorded[robot as usize];
+        if end <= start {
+            return;
+        }
+        let totals = &mut self.totals[robot as usize];
+        match why {
+            Standing::Idle => totals.idle += end - start,
+            Standing::Waiting => totals.waiting += end - start,
+            Standing::Served => totals.served += end - start,
+        }
+        if why != Standing::Idle {
+            self.waiting[node as usize] += end - start;
+        }
+        self.push(Row { robot, start, end, piece: Piece::Hold, from: node, to: node, heading_before: heading, heading, pod: pod_id(pod) });
+    }
+
+    /// Records a lift or set-down that ends now.
+    pub fn transfer(&mut self, robot: u32, end: Us, node: u32, heading: u8, pod: u32, piece: Piece) {
+        let start = self.recorded[robot as usize];
+        self.totals[robot as usize].transferring += end - start;
+        self.push(Row { robot, start, end, piece, from: node, to: node, heading_before: heading, heading, pod: pod as i32 });
+    }
+
+    /// Records a whole move, the turn before it included; the robot stood until the turn.
+    pub fn drive(&mut self, network: &Network, kind: &Kind, robot: u32, step: &Move, pod: Option<u32>) {
+        let turn = kind.turn(network.headings[step.heading_before as usize], network.headings[step.heading as usize]);
+        let totals = &mut self.totals[robot as usize];
+        let pod_number = pod_id(pod);
+        if turn > 0 {
+            totals.turning += turn;
+            self.push(Row { robot, start: step.start - turn, end: step.start, piece: Piece::Turn, from: step.from, to: step.from, heading_before: step.heading_before, heading: step.heading, pod: pod_number });
+        }
+        let totals = &mut self.totals[robot as usize];
+        if step.ride {
+            totals.riding += step.end - step.start;
+            self.visit(step.to, pod);
+        } else {
+            totals.moving += step.end - step.start;
+            let mut length = 0.0;
+            for (node, distance) in network.line(step.from, step.to, step.heading) {
+                length = distance;
+                self.visit(node, pod);
+            }
+            let totals = &mut self.totals[robot as usize];
+            totals.distance += length;
+            if pod.is_some() {
+                totals.loaded_distance += length;
+            }
+        }
+        let piece = if step.ride { Piece::Ride } else { Piece::Run };
+        self.push(Row { robot, start: step.start, end: step.end, piece, from: step.from, to: step.to, heading_before: step.heading, heading: step.heading, pod: pod_number });
+    }
+
+    fn visit(&mut self, node: u32, pod: Option<u32>) {
+        self.visits[node as usize] += 1;
+        self.loaded_visits[node as usize] += u32::from(pod.is_some());
+    }
+
+    fn push(&mut self, row: Row) {
+        self.recorded[row.robot as usize] = row.end;
+        if let Some(trace) = &mut self.trace {
+            trace.push(row);
+        }
+    }
+}
+
+fn pod_id(pod: Option<u32>) -> i32 {
+    pod.map_or(-1, |pod| pod as i32)
+}
+
+/// Distance and time of a move in progress at `now`: `(turning, driving, metres)`.
+pub fn partly(network: &Network, kind: &Kind, step: &Move, now: Us) -> (Us, Us, f64) {
+    let turn = kind.turn(network.headings[step.heading_before as usize], network.headings[step.heading as usize]);
+    let turning = (now - (step.start - turn)).clamp(0, turn);
+    let driving = (now - step.start).clamp(0, step.end - step.start);
+    if step.ride || driving == 0 {
+        return (turning, driving, 0.0);
+    }
+    let length = network.line(step.from, step.to, step.heading).last().map_or(0.0, |end| end.1);
+    (turning, driving, kind.run(length).position_at(driving as f64 / 1e6))
+}
+
+/// When a run enters a zone: the time at which its first waypoint there is reached.
+pub fn enters_zone(network: &Network, kind: &Kind, step: &Move, zone: u32) -> Option<Us> {
+    if network.zone[step.from as usize] == zone {
+        return None;
+    }
+    if step.ride {
+        return (network.zone[step.to as usize] == zone).then_some(step.end);
+    }
+    let line: Vec<(u32, f64)> = network.line(step.from, step.to, step.heading).collect();
+    let length = line.last()?.1;
+    let (_, distance) = line.iter().find(|(node, _)| network.zone[*node as usize] == zone)?;
+    Some(step.start + floor_us(kind.run(length).time_at(*distance)))
+}

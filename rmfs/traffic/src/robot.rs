@@ -1,0 +1,148 @@
+//! One robot: what it was told, where it is, and the plan it owns.
+
+use std::collections::VecDeque;
+
+use crate::network::{NONE, Network};
+use crate::search::Move;
+use crate::units::{FOREVER, Us, ceil_us, floor_us};
+use crate::kinematics::Kind;
+
+/// What a robot is told to do, one after another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Drive to a waypoint and stop there.
+    Drive(u32),
+    /// Lift the pod stored here.
+    Lift(u32),
+    /// Set the carried pod down here.
+    SetDown(u32),
+    /// Drive to a station's queue, move up and reach its head.
+    Station(u32),
+}
+
+/// What a robot is doing with the first step of its program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// No program.
+    Idle,
+    /// On the way, or standing in a queue.
+    Driving,
+    /// Wants to drive and has found no way yet.
+    Blocked,
+    /// At rest until a lift or set-down ends.
+    Transferring,
+}
+
+/// An occupation in the reservation table that belongs to the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Held {
+    pub resource: u32,
+    pub start: Us,
+    pub end: Us,
+}
+
+/// The state of one robot.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    pub kind: u8,
+    /// Where the robot rests, or where the first of `moves` began.
+    pub anchor: u32,
+    pub heading: u8,
+    /// Since when the anchor is occupied.
+    pub anchored: Us,
+    /// When the robot is (or was) at rest at the anchor.
+    pub rested: Us,
+    pub moves: VecDeque<Move>,
+    pub held: Vec<Held>,
+    pub pod: Option<u32>,
+    pub program: VecDeque<Step>,
+    pub phase: Phase,
+    /// When the current lift or set-down ends; the robot stays until then.
+    pub busy_until: Us,
+    /// Station and place promised in its queue.
+    pub place: Option<(u32, usize)>,
+    /// Changes whenever the plan changes, so that events of old plans are recognised.
+    pub version: u32,
+}
+
+impl Robot {
+    /// A robot at rest.
+    pub fn at(anchor: u32, heading: u8, kind: u8) -> Self {
+        Self {
+            kind,
+            anchor,
+            heading,
+            anchored: 0,
+            rested: 0,
+            moves: VecDeque::new(),
+            held: Vec::new(),
+            pod: None,
+            program: VecDeque::new(),
+            phase: Phase::Idle,
+            busy_until: 0,
+            place: None,
+            version: 0,
+        }
+    }
+
+    /// Where the plan ends, with heading and time.
+    pub fn destination(&self) -> (u32, u8, Us) {
+        self.moves.back().map_or((self.anchor, self.heading, self.rested), |last| (last.to, last.heading, last.end))
+    }
+
+    /// Everything the robot occupies: anchor, the way, and the end of the plan without limit.
+    pub fn occupation(&self, network: &Network, kind: &Kind) -> Vec<Held> {
+        let mut held = Vec::new();
+        let mut since = self.anchored;
+        for step in &self.moves {
+            if step.ride {
+                // the shaft is one resource, so the ride continues the same occupation
+                continue;
+            }
+            let line: Vec<(u32, f64)> = network.line(step.from, step.to, step.heading).collect();
+            let length = line.last().map_or(0.0, |end| end.1);
+            let profile = kind.run(length);
+            let mut node = step.from;
+            let mut passed = 0.0;
+            for &(next, distance) in &line {
+                let reached = profile.time_at(distance);
+                held.push(Held { resource: network.resource[node as usize], start: since, end: step.start + ceil_us(reached) });
+                since = step.start + floor_us(passed);
+                passed = reached;
+                node = next;
+            }
+        }
+        let end = self.destination().0;
+        held.push(Held { resource: network.resource[end as usize], start: since, end: FOREVER });
+        held
+    }
+
+    /// How many of the moves can no longer be changed at `now`: those whose turn has begun.
+    pub fn committed(&self, network: &Network, kind: &Kind, now: Us) -> usize {
+        self.moves
+            .iter()
+            .take_while(|step| {
+                let turn = kind.turn(network.headings[step.heading_before as usize], network.headings[step.heading as usize]);
+                step.start - turn < now
+            })
+            .count()
+    }
+
+    /// Whether the robot owns a place in a queue of `station`.
+    pub fn queues_at(&self, station: u32) -> bool {
+        self.place.is_some_and(|(own, _)| own == station)
+    }
+
+    /// The waypoint where the robot stands or will stop next.
+    pub fn next_stop(&self) -> u32 {
+        self.moves.front().map_or(self.anchor, |step| step.to)
+    }
+
+    /// Station of the current step, or `NONE`.
+    pub fn station(&self) -> u32 {
+        match self.program.front() {
+            Some(Step::Station(station)) => *station,
+            _ => NONE,
+        }
+    }
+}

@@ -1,0 +1,189 @@
+"""Orders and bundles that wait for decisions.
+
+The orders of the backlog are kept as objects in order of arrival and, for rules that compare all of
+them, as a padded matrix: one row per order, one column per line. Rows change place when an order
+leaves; nothing is rebuilt.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from rmfs.world.orders import Bundle, Order
+
+
+class OrderBacklog:
+    """Orders not yet assigned to a pick station.
+
+    Attributes
+    ----------
+    orders
+        By index, in order of arrival.
+    at_row
+        The order of each matrix row.
+    """
+
+    def __init__(self) -> None:
+        self.orders: dict[int, Order] = {}
+        self.at_row: list[Order] = []
+        self._row_of: dict[int, int] = {}
+        self._sku = np.zeros((64, 4), np.int64)
+        self._units = np.zeros((64, 4), np.int32)
+        self._due_s = np.zeros(64)
+
+    def __len__(self) -> int:
+        return len(self.orders)
+
+    def __iter__(self) -> Iterator[Order]:
+        return iter(self.orders.values())
+
+    def __contains__(self, order: Order) -> bool:
+        return order.index in self.orders
+
+    @property
+    def sku(self) -> NDArray[np.int64]:
+        """SKU of each line, shape (B, L); rows of orders with fewer lines end with SKU 0."""
+        return self._sku[: len(self.at_row)]
+
+    @property
+    def units(self) -> NDArray[np.int32]:
+        """Units of each line, 0 where there is none, shape (B, L)."""
+        return self._units[: len(self.at_row)]
+
+    @property
+    def due_s(self) -> NDArray[np.float64]:
+        """Due time of each order, shape (B,)."""
+        return self._due_s[: len(self.at_row)]
+
+    def add(self, order: Order) -> None:
+        """Take in an order."""
+        row = len(self.at_row)
+        self._make_room(row + 1, len(order.lines))
+        for column, line in enumerate(order.lines):
+            self._sku[row, column] = line.sku
+            self._units[row, column] = line.units
+        self._due_s[row] = order.due_s
+        self.at_row.append(order)
+        self._row_of[order.index] = row
+        self.orders[order.index] = order
+
+    def remove(self, order: Order) -> None:
+        """Let an order go; the last row takes its place."""
+        del self.orders[order.index]
+        row = self._row_of.pop(order.index)
+        last = self.at_row.pop()
+        end = len(self.at_row)
+        if row != end:
+            self.at_row[row] = last
+            self._row_of[last.index] = row
+            self._sku[row] = self._sku[end]
+            self._units[row] = self._units[end]
+            self._due_s[row] = self._due_s[end]
+        self._sku[end] = 0
+        self._units[end] = 0
+
+    def after(self, index: int) -> list[Order]:
+        """Orders that arrived after the one of this index, latest first."""
+        newer = []
+        for order in reversed(self.orders.values()):
+            if order.index <= index:
+                break
+            newer.append(order)
+        return newer
+
+    def servable(self, stock: NDArray[np.integer]) -> NDArray[np.bool_]:
+        """Rows of orders for which every line finds enough in `stock` (units per SKU), (B,)."""
+        short = stock[self.sku] < self.units
+        short &= self.units > 0
+        servable: NDArray[np.bool_] = ~short.any(axis=1)
+        return servable
+
+    def _make_room(self, rows: int, lines: int) -> None:
+        old_rows, old_lines = self._sku.shape
+        if rows <= old_rows and lines <= old_lines:
+            return
+        more = (max(rows, 2 * old_rows) - old_rows if rows > old_rows else 0, 0)
+        wider = (0, max(lines - old_lines, 0))
+        pad = ((0, more[0]), wider)
+        self._sku = np.pad(self._sku, pad)
+        self._units = np.pad(self._units, pad)
+        self._due_s = np.pad(self._due_s, pad[0])
+
+
+class BundleBacklog:
+    """Bundles not yet assigned, by what they still lack.
+
+    Attributes
+    ----------
+    bundles
+        All of them by index, in order of arrival.
+    without_pod, without_station
+        Those that RPS, or ROA, has not decided yet, in order of arrival.
+    unreleased
+        Per pod, bundles promised to it that RPS holds back.
+    unreleased_since_s
+        Per pod, when the last of these came, oldest first.
+    released
+        Per pod, released bundles that lack a station, the pod released first at the front.
+    space
+        Space units of all of them.
+    """
+
+    def __init__(self) -> None:
+        self.bundles: dict[int, Bundle] = {}
+        self.without_pod: dict[int, Bundle] = {}
+        self.without_station: dict[int, Bundle] = {}
+        self.unreleased: dict[int, list[Bundle]] = {}
+        self.unreleased_since_s: dict[int, float] = {}
+        self.released: dict[int, list[Bundle]] = {}
+        self.space = 0.0
+
+    def __len__(self) -> int:
+        return len(self.bundles)
+
+    def __iter__(self) -> Iterator[Bundle]:
+        return iter(self.bundles.values())
+
+    def add(self, bundle: Bundle) -> None:
+        """Take in a bundle for which nothing has been decided."""
+        self.bundles[bundle.index] = bundle
+        self.without_pod[bundle.index] = bundle
+        self.without_station[bundle.index] = bundle
+        self.space += bundle.space
+
+    def promised(self, bundle: Bundle, time_s: float) -> None:
+        """Take note that RPS chose the pod but holds the choice back."""
+        del self.without_pod[bundle.index]
+        self.unreleased.setdefault(bundle.pod, []).append(bundle)
+        self.unreleased_since_s.pop(bundle.pod, None)
+        self.unreleased_since_s[bundle.pod] = time_s
+
+    def release(self, pod: int) -> list[Bundle]:
+        """Hand over the bundles held back for a pod."""
+        del self.unreleased_since_s[pod]
+        bundles = self.unreleased.pop(pod)
+        waiting = [bundle for bundle in bundles if bundle.station < 0]
+        if waiting:
+            self.released.setdefault(pod, []).extend(waiting)
+        return bundles
+
+    def station_chosen(self, bundle: Bundle) -> None:
+        """Take note that ROA chose the station."""
+        del self.without_station[bundle.index]
+        if bundle.released:
+            waiting = self.released[bundle.pod]
+            waiting.remove(bundle)
+            if not waiting:
+                del self.released[bundle.pod]
+
+    def remove(self, bundle: Bundle) -> None:
+        """Let a bundle go for which both decisions are taken."""
+        del self.bundles[bundle.index]
+        self.space -= bundle.space

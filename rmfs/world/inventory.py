@@ -1,0 +1,179 @@
+"""What the pods hold: contained, available and promised, in one place.
+
+- *contained*: units that are physically on a pod; falls when a pick starts.
+- *available*: contained units not yet bound to an extract request.
+- *promised*: space kept free on a pod for bundles that are to be stored there.
+
+Everything else (totals per SKU, loads, what is inbound to a station) is derived from these and
+changed in the same operations, so that no two counts can disagree. Arrays handed out are
+read-only views.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+def read_only(array: NDArray[np.generic]) -> NDArray:  # type: ignore[type-arg]
+    """Return a view of an array through which it cannot be changed."""
+    view = array.view()
+    view.flags.writeable = False
+    return view
+
+
+class Inventory:
+    """Stock of K SKUs on P pods.
+
+    Spaces of units are multiples of 2**-20 (see `rmfs.scenario`), so their sums are exact in any
+    order and the loads here never drift.
+
+    Parameters
+    ----------
+    unit_space
+        Space units of one unit of each SKU, shape (K,).
+    capacity
+        Space units of each pod, shape (P,).
+    pick_stations
+        Number of pick stations.
+
+    Attributes
+    ----------
+    contained, available
+        Units per SKU and pod, shape (K, P): a row per SKU is contiguous, since rules ask for few
+        SKUs on all pods.
+    load
+        Space used by stored units plus space promised, per pod, shape (P,).
+    inbound
+        Available units on the pods on their way to, or at, each pick station, shape (S, K).
+    uncommitted
+        Available units less those wanted by orders but not bound, per SKU, shape (K,). Negative
+        only if orders exceed the stock.
+    free_stock
+        As `uncommitted`, but orders in the backlog want nothing yet, shape (K,).
+    """
+
+    def __init__(
+        self,
+        unit_space: NDArray[np.float64],
+        capacity: NDArray[np.float64],
+        pick_stations: int,
+    ) -> None:
+        skus, pods = len(unit_space), len(capacity)
+        self._contained = np.zeros((skus, pods), np.int32)
+        self._available = np.zeros((skus, pods), np.int32)
+        self._used = np.zeros(pods)
+        self._promised = np.zeros(pods)
+        self._load = np.zeros(pods)
+        self._inbound = np.zeros((pick_stations, skus), np.int32)
+        self._uncommitted = np.zeros(skus, np.int64)
+        self._free_stock = np.zeros(skus, np.int64)
+        self.contained: NDArray[np.int32] = read_only(self._contained)
+        self.available: NDArray[np.int32] = read_only(self._available)
+        self.used: NDArray[np.float64] = read_only(self._used)
+        self.promised: NDArray[np.float64] = read_only(self._promised)
+        self.load: NDArray[np.float64] = read_only(self._load)
+        self.inbound: NDArray[np.int32] = read_only(self._inbound)
+        self.uncommitted: NDArray[np.int64] = read_only(self._uncommitted)
+        self.free_stock: NDArray[np.int64] = read_only(self._free_stock)
+        self.capacity: NDArray[np.float64] = read_only(capacity.astype(np.float64))
+        self.unit_space: NDArray[np.float64] = read_only(unit_space.astype(np.float64))
+        self._unit_space_list: list[float] = unit_space.tolist()
+        self._inbound_station = [-1] * pods
+        self.total_capacity = float(capacity.sum())
+        self.stored_space = 0.0
+        self.promised_space = 0.0
+
+    def stock(self, pod: int, sku: int, units: int) -> None:
+        """Put units on a pod that were not promised: the stock at time zero."""
+        space = units * self._unit_space_list[sku]
+        self._contained[sku, pod] += units
+        self._available[sku, pod] += units
+        self._used[pod] += space
+        self._load[pod] += space
+        self._uncommitted[sku] += units
+        self._free_stock[sku] += units
+        self.stored_space += space
+        station = self._inbound_station[pod]
+        if station >= 0:
+            self._inbound[station, sku] += units
+
+    def promise(self, pod: int, space: float) -> None:
+        """Keep space free on a pod.
+
+        Raises
+        ------
+        ValueError
+            If the pod has no such space.
+        """
+        if self._load[pod] + space > self.capacity[pod]:
+            raise ValueError(f"pod {pod} has no room for {space:g} space units")
+        self._promised[pod] += space
+        self._load[pod] += space
+        self.promised_space += space
+
+    def withdraw(self, pod: int, space: float) -> None:
+        """Take a promise of space back."""
+        self._promised[pod] -= space
+        self._load[pod] -= space
+        self.promised_space -= space
+
+    def store(self, pod: int, sku: int, units: int) -> None:
+        """Put a bundle on the pod that was promised to it."""
+        self.withdraw(pod, units * self._unit_space_list[sku])
+        self.stock(pod, sku, units)
+
+    def demand(self, sku: int, units: int) -> None:
+        """Commit stock to a new order in the backlog."""
+        self._uncommitted[sku] -= units
+
+    def commit(self, sku: int, units: int) -> None:
+        """Commit stock to an order that now is on a station."""
+        self._free_stock[sku] -= units
+
+    def bind(self, pod: int, sku: int, units: int) -> None:
+        """Bind units on a pod to extract requests of committed orders.
+
+        Raises
+        ------
+        ValueError
+            If fewer units are available on the pod.
+        """
+        left = self._available[sku, pod] - units
+        if left < 0:
+            raise ValueError(f"pod {pod} lacks {units} available units of SKU {sku}")
+        self._available[sku, pod] = left
+        station = self._inbound_station[pod]
+        if station >= 0:
+            self._inbound[station, sku] -= units
+
+    def pick(self, pod: int, sku: int) -> None:
+        """Take one bound unit from a pod."""
+        space = self._unit_space_list[sku]
+        self._contained[sku, pod] -= 1
+        self._used[pod] -= space
+        self._load[pod] -= space
+        self.stored_space -= space
+
+    def begin_inbound(self, pod: int, station: int) -> None:
+        """Count what the pod has available as inbound to a pick station."""
+        self._inbound_station[pod] = station
+        self._inbound[station] += self._available[:, pod]
+
+    def end_inbound(self, pod: int) -> None:
+        """Count the pod as inbound no longer."""
+        self._inbound[self._inbound_station[pod]] -= self._available[:, pod]
+        self._inbound_station[pod] = -1
+
+    def inbound_station(self, pod: int) -> int:
+        """Pick station the pod is inbound to, or -1."""
+        return self._inbound_station[pod]
+
+    def serves(self, pod: int, skus: list[int]) -> bool:
+        """Whether a unit of any of these SKUs is available on the pod."""
+        available = self._available.item
+        return any(available(sku, pod) for sku in skus)

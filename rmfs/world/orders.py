@@ -1,0 +1,112 @@
+"""Pick orders, their lines, and replenishment bundles.
+
+Times are simulated seconds and nan until the event has happened; indices are -1 until decided.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import nan
+
+
+@dataclass(slots=True, eq=False)
+class OrderLine:
+    """Units of one SKU wanted by one order.
+
+    Each unit is an extract request of its own. A request is *open* until a unit on a certain pod
+    is bound to it, which happens late: when a robot gets the task to bring that pod, or while the
+    pod is on its way.
+
+    Attributes
+    ----------
+    units
+        How many units the customer ordered.
+    open_units
+        Requests not yet bound to a pod.
+    picked_units
+        Requests fulfilled.
+    """
+
+    order: Order
+    sku: int
+    units: int
+    open_units: int
+    picked_units: int = 0
+
+
+@dataclass(slots=True, eq=False)
+class Order:
+    """A pick order: in the backlog, then on one pick station until it is complete.
+
+    Attributes
+    ----------
+    index
+        Ordinal of arrival.
+    lines
+        One per SKU, all SKUs different.
+    open_units, unpicked_units
+        Sums over the lines.
+    station
+        The pick station, or -1 while in the backlog.
+    """
+
+    index: int
+    created_s: float
+    due_s: float
+    lines: tuple[OrderLine, ...]
+    open_units: int
+    unpicked_units: int
+    station: int = -1
+    assigned_s: float = nan
+    completed_s: float = nan
+
+    @classmethod
+    def of(
+        cls,
+        index: int,
+        created_s: float,
+        due_s: float,
+        skus: tuple[int, ...],
+        units: tuple[int, ...],
+    ) -> Order:
+        """Make an order with a line for each SKU."""
+        total = sum(units)
+        order = cls(index, created_s, due_s, (), total, total)
+        order.lines = tuple(
+            OrderLine(order, sku, count, count) for sku, count in zip(skus, units, strict=True)
+        )
+        return order
+
+
+@dataclass(slots=True, eq=False)
+class Bundle:
+    """A replenishment order: units of one SKU that go into one pod at one station.
+
+    Two decisions are needed: RPS promises it room on a pod and, perhaps after waiting for more
+    bundles for the same pod, releases that decision; ROA chooses the station. When both have been
+    taken the bundle is *assigned*, an insert request that only its pod can serve.
+
+    Attributes
+    ----------
+    space
+        Space units of the whole bundle.
+    pod
+        The pod with room promised, or -1.
+    released
+        Whether RPS has released the choice of the pod.
+    station
+        The replenishment station with space reserved, or -1.
+    stored_s
+        When its transfer into the pod began.
+    """
+
+    index: int
+    sku: int
+    units: int
+    space: float
+    created_s: float
+    pod: int = -1
+    released: bool = False
+    station: int = -1
+    assigned_s: float = nan
+    stored_s: float = nan

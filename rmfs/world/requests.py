@@ -1,0 +1,71 @@
+"""The open extract requests of a pick station, by SKU."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rmfs.world.orders import Order, OrderLine
+
+
+class OpenRequests:
+    """Units wanted at one station and not yet bound to a pod.
+
+    Parameters
+    ----------
+    need
+        Open units per SKU, shape (K,): the station's row of a matrix, kept up to date here.
+
+    Attributes
+    ----------
+    lines
+        Per SKU, the lines with open units in the order in which their orders were assigned.
+    units
+        Open units in total.
+    version
+        Grows whenever requests are added: a rule that found nothing to do need not look again
+        before.
+    """
+
+    def __init__(self, need: NDArray[np.int32]) -> None:
+        self._need = need
+        self.lines: dict[int, deque[OrderLine]] = {}
+        self.units = 0
+        self.version = 0
+
+    def add(self, order: Order) -> None:
+        """Open all requests of an order."""
+        for line in order.lines:
+            self.lines.setdefault(line.sku, deque()).append(line)
+            self._need[line.sku] += line.open_units
+        self.units += order.open_units
+        self.version += 1
+
+    def take(self, sku: int, at_most: int) -> list[OrderLine]:
+        """Close requests for a SKU, first come first served.
+
+        Returns
+        -------
+        list of OrderLine
+            The line of each request closed, at most so many.
+        """
+        waiting = self.lines.get(sku)
+        taken: list[OrderLine] = []
+        while waiting and len(taken) < at_most:
+            line = waiting[0]
+            count = min(line.open_units, at_most - len(taken))
+            line.open_units -= count
+            line.order.open_units -= count
+            taken.extend([line] * count)
+            if not line.open_units:
+                waiting.popleft()
+        if waiting is not None and not waiting:
+            del self.lines[sku]
+        if taken:
+            self._need[sku] -= len(taken)
+            self.units -= len(taken)
+        return taken

@@ -1,0 +1,128 @@
+"""State of the stations: what is assigned to them, what is under way to them, who stands there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.world.requests import OpenRequests
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import PickStation as PickStationLayout
+    from rmfs.layout.model import ReplenishmentStation as ReplenishmentStationLayout
+    from rmfs.world.orders import Bundle, Order
+    from rmfs.world.tasks import Task
+
+
+class _Station:
+    """What both kinds of station have.
+
+    Attributes
+    ----------
+    index
+        In the common numbering of stations: pick stations come first.
+    waypoint, tier
+        Where the robot stands that is being served.
+    active
+        Whether new work may be assigned; what is assigned is finished in any case.
+    robot
+        The robot at the head of the queue, or -1.
+    visits
+        How many robots have reached the head so far.
+    tasks
+        The task of each pod that is to be, or is being, served here; in order of creation.
+    """
+
+    def __init__(self, index: int, waypoint: int, tier: int) -> None:
+        self.index = index
+        self.waypoint = waypoint
+        self.tier = tier
+        self.active = False
+        self.robot = -1
+        self.visits = 0
+        self.tasks: dict[int, Task] = {}
+
+
+class PickStation(_Station):
+    """A station where units go from pods into orders.
+
+    Attributes
+    ----------
+    slots
+        How many orders may be open at once.
+    orders
+        The open orders by index, in the order of their assignment.
+    requests
+        Their requests not yet bound to a pod.
+    """
+
+    def __init__(
+        self, index: int, layout: PickStationLayout, tier: int, need: NDArray[np.int32]
+    ) -> None:
+        super().__init__(index, layout.waypoint, tier)
+        self.slots = layout.order_slots
+        self.orders: dict[int, Order] = {}
+        self.requests = OpenRequests(need)
+
+    @property
+    def free_slots(self) -> int:
+        """Slots without an order."""
+        return self.slots - len(self.orders)
+
+    @property
+    def has_work(self) -> bool:
+        """Whether an order is open here."""
+        return bool(self.orders)
+
+
+class ReplenishmentStation(_Station):
+    """A station where bundles go into pods.
+
+    Attributes
+    ----------
+    capacity
+        Space units of bundles that may be assigned at once.
+    used
+        Space units of the bundles assigned, or reserved by ROA, whose transfer has not begun.
+    waiting
+        Per pod, the bundles assigned but not yet in a robot's task; oldest pod first.
+    version
+        Grows whenever a bundle is added to `waiting`.
+    """
+
+    def __init__(
+        self,
+        index: int,
+        layout: ReplenishmentStationLayout,
+        tier: int,
+        waiting_count: NDArray[np.int32],
+    ) -> None:
+        super().__init__(index, layout.waypoint, tier)
+        self.capacity = layout.capacity
+        self.used = 0.0
+        self.waiting: dict[int, list[Bundle]] = {}
+        self.version = 0
+        self._waiting_count = waiting_count
+
+    @property
+    def free_space(self) -> float:
+        """Space units of bundles that may still be assigned."""
+        return self.capacity - self.used
+
+    @property
+    def has_work(self) -> bool:
+        """Whether bundles are assigned here whose transfer has not begun."""
+        return self.used > 0
+
+    def add(self, bundle: Bundle) -> None:
+        """Let a bundle wait for its pod."""
+        self.waiting.setdefault(bundle.pod, []).append(bundle)
+        self._waiting_count[bundle.pod] += 1
+        self.version += 1
+
+    def take(self, pod: int) -> list[Bundle]:
+        """Hand over all bundles that wait for a pod."""
+        self._waiting_count[pod] = 0
+        return self.waiting.pop(pod, [])

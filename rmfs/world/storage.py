@@ -1,0 +1,178 @@
+"""Storage places: which pod stands where, and which robot keeps which place.
+
+A place is *kept* by a robot that stands there or is on its way there, until traffic reports that
+the robot has departed; nobody else may be sent there meanwhile (condition W2 of the planner). An
+empty robot may keep a place beneath a stored pod, and only a loaded one needs a place without pod.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.world.inventory import read_only
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+    from rmfs.world.robots import Robot
+
+
+class Storage:
+    """Places, pods and the robots that keep them.
+
+    Parameters
+    ----------
+    layout
+        The warehouse at time zero.
+    robots
+        All robots, as kept by the world.
+
+    Attributes
+    ----------
+    places
+        Waypoints of the L storage places, ascending, shape (L,).
+    place_index
+        Index into `places` of each waypoint, -1 if it is none.
+    pod_at
+        Pod stored at each waypoint, or -1.
+    place_of
+        Where each pod is stored, or -1 while it is carried.
+    claimed_by
+        Robot whose task each pod belongs to, or -1.
+    kept_by
+        Robot that keeps each waypoint, or -1.
+    pod_waypoint
+        Where each pod is stored, or was last, shape (P,).
+    is_empty
+        Places without pod that no robot keeps: a pod may be parked there, shape (L,).
+    is_restful
+        Places beneath a stored, unclaimed pod that no robot keeps: a robot may rest there,
+        shape (L,).
+    is_at_hand
+        Pods that a robot may be sent to: stored, unclaimed, and nobody beneath them but a robot
+        without work, shape (P,).
+    version
+        Grows whenever a pod comes to hand.
+    """
+
+    def __init__(self, layout: Layout, robots: list[Robot]) -> None:
+        self._robots = robots
+        self.places: NDArray[np.int32] = read_only(
+            np.flatnonzero(layout.is_storage).astype(np.int32)
+        )
+        self.place_index = [-1] * layout.waypoints
+        for index, place in enumerate(self.places.tolist()):
+            self.place_index[place] = index
+        self.place_of: list[int] = layout.pod_waypoint.tolist()
+        self.pod_at = [-1] * layout.waypoints
+        for pod, place in enumerate(self.place_of):
+            self.pod_at[place] = pod
+        self.claimed_by = [-1] * layout.pods
+        self.kept_by = [-1] * layout.waypoints
+        self._pod_waypoint = layout.pod_waypoint.astype(np.int32)
+        self._is_empty = np.zeros(len(self.places), np.bool_)
+        self._is_restful = np.zeros(len(self.places), np.bool_)
+        self._is_at_hand = np.zeros(layout.pods, np.bool_)
+        self.pod_waypoint: NDArray[np.int32] = read_only(self._pod_waypoint)
+        self.is_empty: NDArray[np.bool_] = read_only(self._is_empty)
+        self.is_restful: NDArray[np.bool_] = read_only(self._is_restful)
+        self.is_at_hand: NDArray[np.bool_] = read_only(self._is_at_hand)
+        self.version = 0
+        for place in self.places.tolist():
+            self._refresh(place)
+
+    def claim(self, pod: int, robot: int) -> None:
+        """Reserve a pod for a robot's task.
+
+        Raises
+        ------
+        ValueError
+            If another robot has claimed it.
+        """
+        if self.claimed_by[pod] not in (-1, robot):
+            raise ValueError(f"pod {pod} is claimed by robot {self.claimed_by[pod]}")
+        self.claimed_by[pod] = robot
+        if self.place_of[pod] >= 0:
+            self._refresh(self.place_of[pod])
+
+    def release(self, pod: int) -> None:
+        """Make a pod available to all robots."""
+        self.claimed_by[pod] = -1
+        if self.place_of[pod] >= 0:
+            self._refresh(self.place_of[pod])
+
+    def keep(self, robot: Robot, place: int) -> None:
+        """Reserve a storage place for a robot that is to stand there.
+
+        Raises
+        ------
+        ValueError
+            If another robot keeps it.
+        """
+        if self.place_index[place] < 0:
+            return
+        if self.kept_by[place] not in (-1, robot.index):
+            raise ValueError(f"place {place} is kept by robot {self.kept_by[place]}")
+        if self.kept_by[place] < 0:
+            self.kept_by[place] = robot.index
+            robot.places.append(place)
+        self._refresh(place)
+
+    def departed(self, robot: Robot) -> list[int]:
+        """Give up all places a robot keeps but the one it now drives to; returns these."""
+        left = [place for place in robot.places if place != robot.waypoint]
+        if left:
+            robot.places = [place for place in robot.places if place == robot.waypoint]
+            for place in left:
+                self.kept_by[place] = -1
+                self._refresh(place)
+        return left
+
+    def lift(self, pod: int) -> None:
+        """Let a pod leave its place."""
+        place = self.place_of[pod]
+        self.place_of[pod] = -1
+        self.pod_at[place] = -1
+        self._is_at_hand[pod] = False
+        self._refresh(place)
+
+    def set_down(self, pod: int, place: int) -> None:
+        """Store a pod and release it.
+
+        Raises
+        ------
+        ValueError
+            If a pod is stored there already.
+        """
+        if self.pod_at[place] >= 0:
+            raise ValueError(f"pod {self.pod_at[place]} is already stored at {place}")
+        self.place_of[pod] = place
+        self.pod_at[place] = pod
+        self._pod_waypoint[pod] = place
+        self.claimed_by[pod] = -1
+        self._refresh(place)
+
+    def robot_changed(self, robot: Robot) -> None:
+        """Take note that a robot has got work or has become free."""
+        for place in robot.places:
+            self._refresh(place)
+
+    def _refresh(self, place: int) -> None:
+        """Derive the three masks at a place from pod, claim and keeper."""
+        index = self.place_index[place]
+        pod = self.pod_at[place]
+        keeper = self.kept_by[place]
+        if pod < 0:
+            self._is_empty[index] = keeper < 0
+            self._is_restful[index] = False
+            return
+        unclaimed = self.claimed_by[pod] < 0
+        self._is_empty[index] = False
+        self._is_restful[index] = unclaimed and keeper < 0
+        at_hand = unclaimed and (keeper < 0 or self._robots[keeper].is_free)
+        if at_hand and not self._is_at_hand[pod]:
+            self.version += 1
+        self._is_at_hand[pod] = at_hand

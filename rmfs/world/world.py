@@ -1,0 +1,310 @@
+"""The world: the operations that change the state, each of which keeps all counts consistent."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.world.backlog import BundleBacklog, OrderBacklog
+from rmfs.world.inventory import Inventory, read_only
+from rmfs.world.robots import Robot
+from rmfs.world.stations import PickStation, ReplenishmentStation
+from rmfs.world.storage import Storage
+from rmfs.world.tasks import Pick, Task, TaskKind
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+    from rmfs.scenario import SkuSet
+    from rmfs.world.orders import Bundle, Order, OrderLine
+
+
+class World:
+    """A warehouse with its stock, its work and its robots.
+
+    Operations raise ValueError where they would break a rule (a pod claimed twice, a unit bound
+    twice, a station overfilled); decisions have to respect these.
+
+    Parameters
+    ----------
+    layout
+        The warehouse at time zero.
+    skus
+        The K SKUs.
+
+    Attributes
+    ----------
+    now_s
+        Present simulated time.
+    inventory, storage
+        Stock on pods, and where the pods are.
+    orders, bundles
+        The two backlogs.
+    pick_stations, replenishment_stations
+        In the order of the layout; `stations` has both, in the common numbering.
+    need
+        Open units per pick station and SKU, shape (S, K).
+    bundles_waiting
+        Assigned bundles not yet in a task, per replenishment station and pod, shape (S, P).
+    robots
+        By index.
+    asking, resting
+        Robots without task, in the order in which they became free, and robots at rest or on their
+        way there.
+    orders_created, orders_completed, bundles_created, bundles_stored, units_picked, units_stored
+        Counts since time zero.
+    units_initial
+        Units on the pods at time zero.
+    """
+
+    def __init__(self, layout: Layout, skus: SkuSet) -> None:
+        self.layout = layout
+        self.skus = skus
+        self.now_s = 0.0
+        tier: list[int] = layout.tier.tolist()
+        self.robots = [Robot(i, tier[w], w) for i, w in enumerate(layout.robot_waypoint.tolist())]
+        self.inventory = Inventory(
+            skus.space_per_unit, layout.pod_capacity, len(layout.pick_stations)
+        )
+        self.asking: dict[int, Robot] = dict(enumerate(self.robots))
+        self.resting: dict[int, Robot] = {}
+        self.storage = Storage(layout, self.robots)
+        for robot in self.robots:
+            self.storage.keep(robot, robot.waypoint)
+        self.orders = OrderBacklog()
+        self.bundles = BundleBacklog()
+        need = np.zeros((len(layout.pick_stations), len(skus)), np.int32)
+        waiting = np.zeros((len(layout.replenishment_stations), layout.pods), np.int32)
+        self.need: NDArray[np.int32] = read_only(need)
+        self.bundles_waiting: NDArray[np.int32] = read_only(waiting)
+        self.pick_stations = [
+            PickStation(i, station, tier[station.waypoint], need[i])
+            for i, station in enumerate(layout.pick_stations)
+        ]
+        self.replenishment_stations = [
+            ReplenishmentStation(
+                len(self.pick_stations) + i, station, tier[station.waypoint], waiting[i]
+            )
+            for i, station in enumerate(layout.replenishment_stations)
+        ]
+        self.stations: list[PickStation | ReplenishmentStation] = [
+            *self.pick_stations,
+            *self.replenishment_stations,
+        ]
+        self.orders_created = 0
+        self.orders_completed = 0
+        self.bundles_created = 0
+        self.bundles_stored = 0
+        self.units_picked = 0
+        self.units_stored = 0
+        self.units_initial = 0
+
+    # --- stock and work that appear ---------------------------------------------------------
+
+    def stock(self, pods: list[int], skus: list[int], units: list[int]) -> None:
+        """Put the stock of time zero on the pods, one entry per bundle."""
+        for pod, sku, count in zip(pods, skus, units, strict=True):
+            self.inventory.stock(pod, sku, count)
+        self.units_initial += sum(units)
+
+    def add_order(self, order: Order) -> None:
+        """Let an order join the backlog."""
+        for line in order.lines:
+            self.inventory.demand(line.sku, line.units)
+        self.orders.add(order)
+        self.orders_created += 1
+
+    def add_bundle(self, bundle: Bundle) -> None:
+        """Let a bundle join the backlog."""
+        self.bundles.add(bundle)
+        self.bundles_created += 1
+
+    # --- orders ---------------------------------------------------------------------------------
+
+    def assign_order(self, order: Order, station: int) -> None:
+        """Put an order of the backlog on a pick station and open its extract requests."""
+        target = self.pick_stations[station]
+        if not target.active or target.free_slots <= 0:
+            raise ValueError(f"station {station} takes no order now")
+        self.orders.remove(order)
+        order.station = station
+        order.assigned_s = self.now_s
+        target.orders[order.index] = order
+        target.requests.add(order)
+        for line in order.lines:
+            self.inventory.commit(line.sku, line.units)
+
+    def complete_order(self, order: Order) -> None:
+        """Take an order whose units are all picked off its station."""
+        if order.unpicked_units:
+            raise ValueError(f"order {order.index} lacks {order.unpicked_units} units")
+        del self.pick_stations[order.station].orders[order.index]
+        order.completed_s = self.now_s
+        self.orders_completed += 1
+
+    # --- bundles --------------------------------------------------------------------------------
+
+    def promise(self, bundle: Bundle, pod: int) -> None:
+        """Keep room on a pod for a bundle (the choice of RPS, not yet released)."""
+        if bundle.pod >= 0:
+            raise ValueError(f"bundle {bundle.index} has pod {bundle.pod} already")
+        self.inventory.promise(pod, bundle.space)
+        bundle.pod = pod
+        self.bundles.promised(bundle, self.now_s)
+
+    def release_bundles(self, pod: int) -> list[Bundle]:
+        """Release what is held back for a pod; returns the bundles that now are assigned."""
+        bundles = self.bundles.release(pod)
+        for bundle in bundles:
+            bundle.released = True
+        assigned = [bundle for bundle in bundles if bundle.station >= 0]
+        for bundle in assigned:
+            self._assign_bundle(bundle)
+        return assigned
+
+    def choose_station(self, bundle: Bundle, station: int) -> bool:
+        """Reserve a station's space for a bundle (the choice of ROA); whether it now is assigned."""
+        target = self.replenishment_station(station)
+        if bundle.station >= 0:
+            raise ValueError(f"bundle {bundle.index} has station {bundle.station} already")
+        if not target.active or bundle.space > target.free_space:
+            raise ValueError(f"station {station} takes no bundle of {bundle.space:g} space units")
+        target.used += bundle.space
+        bundle.station = station
+        self.bundles.station_chosen(bundle)
+        if bundle.released:
+            self._assign_bundle(bundle)
+        return bundle.released
+
+    def _assign_bundle(self, bundle: Bundle) -> None:
+        self.bundles.remove(bundle)
+        bundle.assigned_s = self.now_s
+        self.replenishment_station(bundle.station).add(bundle)
+
+    # --- tasks ----------------------------------------------------------------------------------
+
+    def start_pick(self, robot: Robot, pod: int, station: int) -> Task:
+        """Make the task to bring a pod to a pick station; binds all requests it can serve."""
+        task = Task(TaskKind.PICK, robot.index, pod, station)
+        self._begin_pod_task(robot, task)
+        self.pick_stations[station].tasks[pod] = task
+        self.inventory.begin_inbound(pod, station)
+        requests = self.pick_stations[station].requests
+        for sku in [sku for sku in requests.lines if self.inventory.available[sku, pod]]:
+            self.extend_pick(task, sku, late_bound=False)
+        return task
+
+    def extend_pick(self, task: Task, sku: int, late_bound: bool = True) -> int:
+        """Bind open requests for a SKU to the pod of a task; returns how many."""
+        at_most = self.inventory.available.item(sku, task.pod)
+        lines = self.pick_stations[task.station].requests.take(sku, at_most)
+        if lines:
+            self.inventory.bind(task.pod, sku, len(lines))
+            task.picks.extend([Pick(line, late_bound) for line in lines])
+        return len(lines)
+
+    def start_replenish(self, robot: Robot, pod: int, station: int) -> Task:
+        """Make the task to bring a pod to a replenishment station for all its bundles there."""
+        task = Task(TaskKind.REPLENISH, robot.index, pod, station)
+        self._begin_pod_task(robot, task)
+        target = self.replenishment_station(station)
+        target.tasks[pod] = task
+        task.bundles.extend(target.take(pod))
+        return task
+
+    def extend_replenish(self, task: Task) -> int:
+        """Add the bundles that wait at the station for the pod of a task; returns how many."""
+        bundles = self.replenishment_station(task.station).take(task.pod)
+        task.bundles.extend(bundles)
+        return len(bundles)
+
+    def start_park(self, robot: Robot, place: int) -> Task:
+        """Make the task to store the pod a robot carries at an empty place."""
+        task = Task(TaskKind.PARK, robot.index, robot.pod, place=place)
+        if self.storage.pod_at[place] >= 0:
+            raise ValueError(f"place {place} holds pod {self.storage.pod_at[place]}")
+        self.storage.keep(robot, place)
+        self._set_task(robot, task)
+        return task
+
+    def start_rest(self, robot: Robot, place: int) -> Task:
+        """Make the task to rest at a place, beneath a stored pod or not."""
+        task = Task(TaskKind.REST, robot.index, place=place)
+        self.storage.keep(robot, place)
+        self._set_task(robot, task)
+        return task
+
+    def end_task(self, robot: Robot) -> None:
+        """End the task of a robot; a pod it carries stays claimed by it."""
+        task = robot.task
+        if task is not None and task.station >= 0:
+            del self.stations[task.station].tasks[task.pod]
+            if task.kind is TaskKind.PICK:
+                self.inventory.end_inbound(task.pod)
+        self._set_task(robot, None)
+
+    def _begin_pod_task(self, robot: Robot, task: Task) -> None:
+        if robot.pod not in (-1, task.pod):
+            raise ValueError(f"robot {robot.index} carries pod {robot.pod}, not {task.pod}")
+        self.storage.claim(task.pod, robot.index)
+        self._set_task(robot, task)
+
+    def _set_task(self, robot: Robot, task: Task | None) -> None:
+        robot.task = task
+        self.asking.pop(robot.index, None)
+        self.resting.pop(robot.index, None)
+        if task is None:
+            self.asking[robot.index] = robot
+        elif task.kind is TaskKind.REST:
+            self.resting[robot.index] = robot
+        self.storage.robot_changed(robot)
+
+    # --- what robots and stations do ------------------------------------------------------------
+
+    def lift(self, robot: Robot, pod: int) -> None:
+        """Let a robot start to lift a pod."""
+        self.storage.lift(pod)
+        robot.pod = pod
+
+    def set_down(self, robot: Robot, place: int) -> None:
+        """Let a robot end setting down its pod, which then is anyone's."""
+        pod = robot.pod
+        robot.pod = -1
+        self.storage.set_down(pod, place)
+
+    def pick_unit(self, task: Task) -> Pick:
+        """Let the next unit of a task leave its pod."""
+        pick = task.picks.popleft()
+        line = pick.line
+        self.inventory.pick(task.pod, line.sku)
+        line.picked_units += 1
+        line.order.unpicked_units -= 1
+        self.units_picked += 1
+        return pick
+
+    def store_bundle(self, task: Task) -> Bundle:
+        """Let the next bundle of a task go into its pod."""
+        bundle = task.bundles.popleft()
+        self.inventory.store(task.pod, bundle.sku, bundle.units)
+        self.replenishment_station(task.station).used -= bundle.space
+        bundle.stored_s = self.now_s
+        self.bundles_stored += 1
+        self.units_stored += bundle.units
+        return bundle
+
+    # --- questions ------------------------------------------------------------------------------
+
+    def replenishment_station(self, station: int) -> ReplenishmentStation:
+        """Look up a replenishment station by its number among all stations."""
+        return self.replenishment_stations[station - len(self.pick_stations)]
+
+    def is_pick_station(self, station: int) -> bool:
+        """Whether a station in the common numbering is a pick station."""
+        return station < len(self.pick_stations)
+
+    def open_lines(self, station: int) -> list[OrderLine]:
+        """Lines with open requests at a pick station, by SKU in order of first request."""
+        lines = self.pick_stations[station].requests.lines
+        return [line for waiting in lines.values() for line in waiting]
