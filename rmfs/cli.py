@@ -173,7 +173,7 @@ def run(
         report = proven(done) if check else None
         step("writing the tables")
         fill(folder, done, report=report, trace=trace, inputs=inputs)
-    conclude(done, report, target)
+    conclude(target, report)
 
 
 def default_name(inputs: dict[str, str], seed: int) -> str:
@@ -189,15 +189,15 @@ def proven(done: Run) -> CheckReport:
     return check(done.layout, done.trace, until_us=round(done.end_s * 1e6))
 
 
-def conclude(done: Run, report: CheckReport | None, target: Path) -> None:
+def conclude(target: Path, report: CheckReport | None) -> None:
     """Print the main figures; an unsafe trace is a defect and ends in exit code 1."""
     from rich.console import Console
 
-    from rmfs.measure import footprint
+    from rmfs.measure import load_run
     from rmfs.measure.summary import summary
 
-    Console().print(summary(footprint(done, report)))
-    print(f"{target}")
+    Console(highlight=False).print(summary(load_run(target).footprint))
+    print(target)
     if report is not None and not report.ok:
         print(f"rmfs: {report.summary()}", file=sys.stderr)
         raise typer.Exit(UNSAFE)

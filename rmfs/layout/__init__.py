@@ -4,6 +4,8 @@
 `check` says what is wrong with one, `draw` shows it.
 """
 
+from typing import TYPE_CHECKING, Any
+
 from rmfs.layout.checks import Violation as Violation
 from rmfs.layout.checks import check as check
 from rmfs.layout.checks import refuse as refuse
@@ -19,5 +21,16 @@ from rmfs.layout.model import ReplenishmentStation as ReplenishmentStation
 from rmfs.layout.model import RobotKind as RobotKind
 from rmfs.layout.model import Tier as Tier
 from rmfs.layout.parameters import LayoutParameters as LayoutParameters
-from rmfs.layout.picture import draw as draw
-from rmfs.layout.picture import save_picture as save_picture
+
+if TYPE_CHECKING:
+    from rmfs.layout.picture import draw as draw
+    from rmfs.layout.picture import save_picture as save_picture
+
+
+def __getattr__(name: str) -> Any:
+    """Import the drawing functions when they are asked for: runs do without matplotlib."""
+    if name in ("draw", "save_picture"):
+        from rmfs.layout import picture
+
+        return getattr(picture, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

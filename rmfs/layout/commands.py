@@ -18,7 +18,6 @@ from rmfs.layout.checks import IMPOSSIBLE, check
 from rmfs.layout.explicit import save_json
 from rmfs.layout.loading import load_with_notes
 from rmfs.layout.parameters import LayoutParameters
-from rmfs.layout.picture import save_picture
 from rmfs.layout.rawsimo.xinst import read_xinst
 from rmfs.layout.rawsimo.xlayo import read_xlayo
 from rmfs.layout.toml import to_toml
@@ -61,6 +60,8 @@ def show(
     settings: Settings = None,
 ) -> None:
     """Write a picture of a layout."""
+    from rmfs.layout.picture import save_picture  # matplotlib is slow to import
+
     loaded, _ = load_with_notes(layout, _overrides(settings))
     path = out if out is not None else Path(f"{Path(layout).stem}.svg")
     save_picture(loaded, path, arrows=arrows)

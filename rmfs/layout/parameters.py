@@ -14,7 +14,7 @@ from pydantic import Field
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from rmfs.config import Model
-from rmfs.layout.generator.rules import RULES
+from rmfs.layout.generator.conditions import RULES
 
 Positive = Annotated[float, Field(gt=0)]
 Radius = Annotated[float, Field(gt=0, lt=0.5)]
@@ -124,8 +124,9 @@ class LayoutParameters(_Strict):
         except pydantic.ValidationError as error:
             wrong = [_again(detail) for detail in error.errors()]
             wrong_keys = {str(detail["loc"][0]) for detail in wrong if detail["loc"]}
-            sound = {k: v for k, v in dict(data).items() if k not in wrong_keys}
-            parameters = handler(sound)
+            if not isinstance(data, dict):
+                raise
+            parameters = handler({k: v for k, v in data.items() if k not in wrong_keys})
         wrong += [
             InitErrorDetails(type=PydanticCustomError("layout", cast("Any", problem)), input={})
             for keys, rule in RULES

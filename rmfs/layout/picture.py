@@ -11,6 +11,7 @@ from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Rectangle
+from matplotlib.transforms import IdentityTransform, ScaledTranslation
 
 from rmfs.errors import InputError
 from rmfs.files import replacing
@@ -38,8 +39,10 @@ STORAGE_SIDE = 0.8
 ELEVATOR_SIDE = 0.9
 ARROW_SHARE = 0.55
 """Length of an arrow as a share of its edge."""
-WIDTH_IN = 12.0
-"""Width of a saved picture in inches."""
+LARGEST_IN = (12.0, 9.0)
+"""Width and height in inches that the floor plan of a saved picture may have."""
+LEGEND_IN = 0.45
+"""Distance of the legend below the axes in inches."""
 
 
 def draw(
@@ -80,7 +83,7 @@ def draw(
     _stations(layout, ax, points, pitch_m)
     if robots:
         _robots(layout, ax, points)
-    _frame(layout, ax)
+    _frame(layout, ax, margin_m=pitch_m / 2)
     if legend:
         _legend(layout, ax)
 
@@ -98,7 +101,8 @@ def save_picture(layout: Layout, path: Path, *, arrows: bool = False) -> None:
         raise InputError(f"{path}: pictures are written as {', '.join(FORMATS)}")
     length_m = _offsets(layout)[-1] - TIER_GAP_M
     width_m = max(tier.width_m for tier in layout.tiers)
-    figure = Figure(figsize=(WIDTH_IN, max(3.0, WIDTH_IN * width_m / length_m) + 1.2))
+    scale = min(LARGEST_IN[0] / length_m, LARGEST_IN[1] / width_m)
+    figure = Figure(figsize=(scale * length_m, scale * width_m))
     FigureCanvasAgg(figure)
     draw(layout, figure.add_subplot(), arrows=arrows)
     # a fixed salt and no date: the same layout gives the same file
@@ -240,7 +244,7 @@ def _outline(places: Points, pitch_m: float, colour: str, style: str) -> LineCol
     return LineCollection(lines, colors=colour, linestyles=style, linewidths=0.9, zorder=4)
 
 
-def _frame(layout: Layout, ax: Axes) -> None:
+def _frame(layout: Layout, ax: Axes, margin_m: float) -> None:
     """Draw the borders of the tiers and label the axes in metres, tier by tier."""
     offsets = _offsets(layout)
     several = len(layout.tiers) > 1
@@ -258,11 +262,11 @@ def _frame(layout: Layout, ax: Axes) -> None:
             ax.text(
                 x_m + tier.length_m / 2, tier.width_m, f"tier {number}", ha="center", va="bottom"
             )
-    margin_m = 0.5
     ax.set_xlim(-margin_m, float(offsets[-1]) - TIER_GAP_M + margin_m)
     ax.set_ylim(-margin_m, max(tier.width_m for tier in layout.tiers) + margin_m)
     ax.set_xticks(ticks, labels)
     ax.set_aspect("equal")
+    ax.spines[:].set_visible(False)
     ax.set_xlabel("x (m)")
     ax.set_ylabel("y (m)")
 
@@ -295,6 +299,15 @@ def _legend(layout: Layout, ax: Axes) -> None:
     ]
     if layout.elevators:
         entries.insert(2, mark("elevator", colours.ELEVATOR, "s"))
+    figure = ax.get_figure(root=True)
+    below = (
+        ScaledTranslation(0, -LEGEND_IN, figure.dpi_scale_trans) if figure else IdentityTransform()
+    )
     ax.legend(
-        handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=4, frameon=False
+        handles=entries,
+        loc="upper center",
+        bbox_to_anchor=(0.5, 0.0),
+        bbox_transform=ax.transAxes + below,
+        ncols=4,
+        frameon=False,
     )

@@ -241,7 +241,7 @@ def load_run(path: Path) -> RunFolder:
 
 def _read_table(path: Path) -> pd.DataFrame:
     import pandas as pd
-    import pyarrow
+    import pyarrow  # type: ignore[import-untyped]
 
     try:
         return pd.read_parquet(path)

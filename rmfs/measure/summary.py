@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pandas as pd
-    from rich.table import Table
+    from rich.console import Group
 
 FIGURES: tuple[tuple[str, str, str], ...] = (
     ("orders completed", "orders_completed", "{:,.0f}"),
@@ -30,23 +30,25 @@ FIGURES: tuple[tuple[str, str, str], ...] = (
 """Label, column and format of each figure."""
 
 
-def summary(footprint: pd.Series) -> Table:
-    """Return the main figures as an aligned table; what was not measured shows as a dash."""
+def summary(footprint: pd.Series) -> Group:
+    """Return the main figures as an aligned table; what was not measured shows as -."""
     from rich import box
+    from rich.console import Group
     from rich.table import Table
 
-    title = "{layout} / {scenario} / {controllers}, seed {seed}".format(**footprint.to_dict())
-    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, show_header=False)
+    names = " / ".join(footprint[["layout", "scenario", "controllers"]])
+    title = f"{names}, seed {footprint['seed']}"
+    table = Table(box=box.SIMPLE_HEAD, show_header=False)
     table.add_column()
     table.add_column(justify="right")
     for label, column, form in FIGURES:
         table.add_row(label, _shown(footprint[column], column, form))
-    return table
+    return Group(title, table)
 
 
 def _shown(value: Any, column: str, form: str) -> str:
     import pandas as pd
 
     if pd.isna(value):
-        return "–"
+        return "-"
     return form.format(value / 1000.0 if column == "distance_m" else value)

@@ -121,15 +121,21 @@ class Storage:
             robot.places.append(place)
         self._refresh(place)
 
-    def departed(self, robot: Robot) -> list[int]:
-        """Give up all places a robot keeps but the one it now drives to; returns these."""
-        left = [place for place in robot.places if place != robot.waypoint]
-        if left:
-            robot.places = [place for place in robot.places if place == robot.waypoint]
-            for place in left:
-                self.kept_by[place] = -1
-                self._refresh(place)
-        return left
+    def departed(self, robot: Robot, rest: int) -> bool:
+        """Give up the places a robot has left; returns whether there were any.
+
+        Parameters
+        ----------
+        rest
+            Where the robot's present plan ends; a place it is told to go to, but has no plan for
+            yet, is kept as well.
+        """
+        left = [place for place in robot.places if place not in (robot.waypoint, rest)]
+        for place in left:
+            robot.places.remove(place)
+            self.kept_by[place] = -1
+            self._refresh(place)
+        return bool(left)
 
     def lift(self, pod: int) -> None:
         """Let a pod leave its place."""

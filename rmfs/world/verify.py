@@ -110,7 +110,7 @@ def _bundles(world: World) -> None:
     """Every bundle not stored is in the backlog, waits at a station, or is in a task."""
     promised = np.zeros_like(world.inventory.promised)
     used = dict.fromkeys((s.index for s in world.replenishment_stations), 0.0)
-    alive = 0
+    alive, space = 0, 0.0
     assigned = [
         bundle
         for station in world.replenishment_stations
@@ -119,11 +119,13 @@ def _bundles(world: World) -> None:
     ]
     for bundle in (*world.bundles, *assigned):
         alive += 1
+        space += bundle.space
         if bundle.pod >= 0:
             promised[bundle.pod] += bundle.space
         if bundle.station >= 0:
             used[bundle.station] += bundle.space
     _check(alive == world.bundles_created - world.bundles_stored, "number of bundles")
+    _check(world.unstored_space == space, "space of bundles not stored")
     _check(np.array_equal(world.inventory.promised, promised), "space promised")
     _check(world.inventory.promised_space == promised.sum(), "space promised in total")
     _check(world.bundles.space == sum(b.space for b in world.bundles), "space of the backlog")

@@ -57,6 +57,10 @@ class World:
         Counts since time zero.
     units_initial
         Units on the pods at time zero.
+    unstored_space
+        Space units of all bundles created and not yet stored.
+    order_redraws
+        How often an order was drawn anew because stock could not serve the first draw.
     """
 
     def __init__(self, layout: Layout, skus: SkuSet) -> None:
@@ -94,11 +98,13 @@ class World:
             *self.replenishment_stations,
         ]
         self.orders_created = 0
+        self.order_redraws = 0
         self.orders_completed = 0
         self.bundles_created = 0
         self.bundles_stored = 0
         self.units_picked = 0
         self.units_stored = 0
+        self.unstored_space = 0.0
         self.units_initial = 0
 
     # --- stock and work that appear ---------------------------------------------------------
@@ -120,6 +126,7 @@ class World:
         """Let a bundle join the backlog."""
         self.bundles.add(bundle)
         self.bundles_created += 1
+        self.unstored_space += bundle.space
 
     # --- orders ---------------------------------------------------------------------------------
 
@@ -291,6 +298,7 @@ class World:
         self.replenishment_station(task.station).used -= bundle.space
         bundle.stored_s = self.now_s
         self.bundles_stored += 1
+        self.unstored_space -= bundle.space
         self.units_stored += bundle.units
         return bundle
 
@@ -299,6 +307,11 @@ class World:
     def replenishment_station(self, station: int) -> ReplenishmentStation:
         """Look up a replenishment station by its number among all stations."""
         return self.replenishment_stations[station - len(self.pick_stations)]
+
+    @property
+    def load(self) -> float:
+        """Space units stored, on their way into pods, and waiting; each bundle counts once."""
+        return self.inventory.stored_space + self.unstored_space
 
     def is_pick_station(self, station: int) -> bool:
         """Whether a station in the common numbering is a pick station."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import csr_array
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
-from rmfs.layout.graph import adjacency
+from rmfs.layout.graph import edge_sources
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-    from scipy.sparse import csr_array
 
     from rmfs.layout.model import Layout
 
@@ -28,7 +28,7 @@ class Reach:
     """
 
     def __init__(self, layout: Layout, allowed: Mask) -> None:
-        self._graph: csr_array = adjacency(layout, allowed)
+        self._graph: csr_array = _adjacency(layout, allowed)
         self._back: csr_array = self._graph.T.tocsr()
         self.allowed = allowed
 
@@ -69,6 +69,19 @@ def leading_to(layout: Layout, tails: NDArray[np.int32], goals: Mask) -> Mask:
     found = np.zeros(layout.waypoints, dtype=np.bool_)
     found[tails[goals[layout.edge_target]]] = True
     return found
+
+
+def _adjacency(layout: Layout, allowed: Mask) -> csr_array:
+    """Return the graph of the edges and elevator rides whose both ends are allowed."""
+    tails, heads = edge_sources(layout), layout.edge_target
+    rides = [pair for elevator in layout.elevators for pair in elevator.travel_s]
+    if rides:
+        more = np.array(rides, dtype=np.int32)
+        tails, heads = np.append(tails, more[:, 0]), np.append(heads, more[:, 1])
+    kept = allowed[tails] & allowed[heads]
+    ones = np.ones(int(kept.sum()), dtype=np.int8)
+    size = layout.waypoints
+    return csr_array((ones, (tails[kept], heads[kept])), shape=(size, size))
 
 
 def _search(graph: csr_array, sources: Mask) -> Mask:

@@ -38,14 +38,10 @@ def separation(layout: Layout) -> Iterator[Violation]:
         radii.append(layout.pod_radius_m)
     needed_m = 2 * max(radii)
     points = _points(layout, needed_m)
-    near = _near_waypoints(points, needed_m)
-    yield from _report(
-        near.tolist(),
-        needed_m,
-        [_pair(layout, int(a), int(b)) for a, b in near],
-        np.hypot(*(points[near[:, 0]] - points[near[:, 1]]).T),
-    )
+    near, distance_m = _near_waypoints(points, needed_m)
     if near.size:
+        labels = [_pair(layout, int(a), int(b)) for a, b in near]
+        yield from _report(labels, distance_m, needed_m)
         return  # close waypoints make every edge between them close too
     edges = _undirected(layout)
     yield from _beside_edges(layout, points, edges, needed_m)
@@ -58,9 +54,19 @@ def _points(layout: Layout, needed_m: float) -> Points:
     return np.column_stack([layout.x_m, layout.y_m + layout.tier * reach_m])
 
 
-def _near_waypoints(points: Points, needed_m: float) -> Pairs:
-    pairs: Pairs = KDTree(points).query_pairs(needed_m - TOLERANCE_M, output_type="ndarray")
-    return pairs
+def _near_waypoints(points: Points, needed_m: float) -> tuple[Pairs, Points]:
+    """Return each waypoint that is too near to its nearest other, that other, and how near."""
+    if len(points) < 2:
+        return np.empty((0, 2), dtype=np.int64), np.empty(0)
+    # the annotations of the library allow for single points
+    distances_m, found = (np.asarray(part) for part in KDTree(points).query(points, k=2))
+    own = np.arange(len(points))
+    # of two waypoints at one place either may come first
+    other = np.where(found[:, 0] == own, found[:, 1], found[:, 0])
+    near = distances_m[:, 1] < needed_m - TOLERANCE_M
+    pairs = np.sort(np.column_stack([own, other])[near], axis=1)
+    pairs, first = np.unique(pairs, axis=0, return_index=True)
+    return pairs, distances_m[near, 1][first]
 
 
 def _undirected(layout: Layout) -> Pairs:
@@ -88,7 +94,7 @@ def _beside_edges(
     labels = [
         f"{waypoint_label(layout, int(waypoint[i]))} and edge {_edge(edges[edge[i]])}" for i in bad
     ]
-    yield from _report(bad.tolist(), needed_m, labels, distance_m[bad])
+    yield from _report(labels, distance_m[bad], needed_m)
 
 
 def _close_edges(points: Points, edges: Pairs, needed_m: float) -> Iterator[Violation]:
@@ -102,7 +108,7 @@ def _close_edges(points: Points, edges: Pairs, needed_m: float) -> Iterator[Viol
     )
     bad = np.flatnonzero(distance_m < needed_m - TOLERANCE_M)
     labels = [f"edges {_edge(first[i])} and {_edge(second[i])}" for i in bad]
-    yield from _report(bad.tolist(), needed_m, labels, distance_m[bad])
+    yield from _report(labels, distance_m[bad], needed_m)
 
 
 def _candidates(points: Points, edges: Pairs, needed_m: float) -> Pairs:
@@ -157,9 +163,7 @@ def _edge(ends: NDArray[np.int64]) -> str:
     return f"{ends[0]}-{ends[1]}"
 
 
-def _report(
-    labels: list[str], distances_m: Points, needed_m: float
-) -> Iterator[Violation]:
+def _report(labels: list[str], distances_m: Points, needed_m: float) -> Iterator[Violation]:
     if labels:
         message = (
             f"{float(distances_m.min()):.3g} m apart at the nearest, less than the two radii that "

@@ -20,6 +20,7 @@ from rmfs.layout.graph import edge_sources
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rmfs.layout.checks.reach import Mask
     from rmfs.layout.checks.violation import Violation
     from rmfs.layout.model import Layout
 
@@ -60,8 +61,6 @@ def ways(layout: Layout) -> Iterator[Violation]:
     )
 
 
-def _report(
-    layout: Layout, bad: np.ndarray[tuple[int], np.dtype[np.bool_]], message: str
-) -> Iterator[Violation]:
+def _report(layout: Layout, bad: Mask, message: str) -> Iterator[Violation]:
     labels = (waypoint_label(layout, int(v)) for v in np.flatnonzero(bad))
     yield from grouped(NOT_WELL_FORMED, labels, message)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.layout.generator.buffers import Buffer, buffer
-from rmfs.layout.generator.compass import SIDES, Tile
+from rmfs.layout.generator.compass import SIDES
 from rmfs.layout.generator.placement import draw_pods, draw_robots
 from rmfs.layout.generator.sites import sites
 from rmfs.layout.generator.tiles import ROAD, Kind, tile_kinds
@@ -27,8 +27,6 @@ from rmfs.layout.model import (
 )
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from rmfs.layout.parameters import LayoutParameters
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rmfs.config import Table, validate
 from rmfs.errors import InputError
 from rmfs.layout.parameters import LayoutParameters
-from rmfs.layout.rawsimo.xml import read_root, Unknown
+from rmfs.layout.rawsimo.xml import Unknown, read_root
 
 if TYPE_CHECKING:
     from pathlib import Path

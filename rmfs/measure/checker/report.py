@@ -24,7 +24,7 @@ class FindingKind(StrEnum):
 
 
 MEANING = {
-    FindingKind.GAP: "trace is not gapless: {amount:g} s missing (negative: told twice)",
+    FindingKind.GAP: "{amount:g} s are missing from the trace (negative: told twice)",
     FindingKind.JUMP: "position jumps by {amount:g} m",
     FindingKind.HEADING: "heading is off by {amount:g} rad",
     FindingKind.DURATION: "motion lasts {amount:+g} s against the robot's limits",

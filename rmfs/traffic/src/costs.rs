@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::kinematics::Kind;
-use crate::network::Network;
+use crate::network::{Metric, Network};
 use crate::units::Us;
 
 /// Time that stands for "cannot be reached".
@@ -81,7 +81,7 @@ impl Model {
         let mut search = Backward::new(network);
         search.begin(network, goal, loaded, None);
         search.advance(network, self, u32::MAX);
-        (0..network.nodes * self.headings).map(|index| search.best(index * 2)).collect()
+        (0..network.nodes * self.headings).map(|index| search.best(index)).collect()
     }
 
     /// Times from rest at `source` (any heading) to rest at every waypoint.
@@ -107,7 +107,13 @@ impl Model {
                 }
             } else if !ends_here {
                 for towards in 0..count as u8 {
-                    self.set_off(network, &mut queue, (node, towards), cost + self.turning(heading, towards), loaded);
+                    self.set_off(
+                        network,
+                        &mut queue,
+                        (node, towards),
+                        cost + self.turning(heading, towards),
+                        loaded,
+                    );
                 }
                 for lift in network.lifts_from(node) {
                     let cost = cost + lift.travel as u32;
@@ -116,12 +122,24 @@ impl Model {
             }
         }
         (0..network.nodes)
-            .map(|v| (v * count..(v + 1) * count).map(|index| queue.best(index * 2)).min().unwrap_or(UNREACHABLE))
+            .map(|v| {
+                (v * count..(v + 1) * count)
+                    .map(|index| queue.best(index * 2))
+                    .min()
+                    .unwrap_or(UNREACHABLE)
+            })
             .collect()
     }
 
     /// Offers all short runs in one direction, and the first long one as rolling on.
-    fn set_off(&self, network: &Network, queue: &mut Buckets, from: (u32, u8), cost: u32, loaded: bool) {
+    fn set_off(
+        &self,
+        network: &Network,
+        queue: &mut Buckets,
+        from: (u32, u8),
+        cost: u32,
+        loaded: bool,
+    ) {
         let (mut here, heading) = from;
         let mut total = 0.0;
         while let Some((next, length)) = network.ahead(here, heading) {
@@ -153,6 +171,8 @@ pub struct Backward {
     goal: u32,
     loaded: bool,
     start: Option<u32>,
+    /// Times of going straight on from rest: needed as values, but nobody stops to go straight on.
+    straight: Vec<(u32, u32)>,
     walk: Vec<(u32, f64)>,
 }
 
@@ -161,7 +181,8 @@ impl Backward {
     pub fn new(network: &Network) -> Self {
         let headings = network.heading_count();
         let queue = Buckets::new(network.nodes * headings * 2);
-        Self { queue, headings, goal: 0, loaded: false, start: None, walk: Vec::new() }
+        let straight = vec![(0, UNREACHABLE); network.nodes * headings];
+        Self { queue, headings, goal: 0, loaded: false, start: None, straight, walk: Vec::new() }
     }
 
     /// Starts anew: times to `goal`, first where they matter on the way from `start`.
@@ -173,21 +194,36 @@ impl Backward {
         }
     }
 
-    /// The time of a state, or `UNREACHABLE` if it is not known.
-    fn best(&self, state: usize) -> u32 {
-        self.queue.best(state)
+    /// The least time found so far from rest at an index of (waypoint, heading).
+    fn best(&self, index: usize) -> u32 {
+        let (stamp, straight) = self.straight[index];
+        let turning = self.queue.best(index * 2);
+        if stamp == self.queue.stamp { straight.min(turning) } else { turning }
     }
 
-    /// A lower bound of the time from the start to a waypoint.
-    fn bound(&self, network: &Network, model: &Model, node: u32) -> u32 {
-        self.start.map_or(0, |start| (network.least_distance(start, node) * model.pace * SAFETY) as u32)
+    /// A lower bound of the time from the start to rest at a waypoint, or (`rolling`) to passing it
+    /// in a run whose speeding up and braking is counted on the way from there to the goal.
+    fn bound(&self, network: &Network, model: &Model, node: u32, rolling: Option<u8>) -> u32 {
+        let Some(start) = self.start else { return 0 };
+        let (dx, dy) = network.offset(start, node);
+        let along = |metres: f64| (metres * model.pace) as u32;
+        let time = match (network.metric, rolling) {
+            (Metric::Manhattan, None) => model.run(dx) + model.run(dy),
+            (Metric::Manhattan, Some(heading)) if network.along_x(heading) => {
+                along(dx) + model.run(dy)
+            }
+            (Metric::Manhattan, Some(_)) => model.run(dx) + along(dy),
+            (Metric::Euclid, _) => along(dx.hypot(dy)),
+            (Metric::Nothing, _) => 0,
+        };
+        (f64::from(time) * SAFETY) as u32
     }
 
     /// Lower bound of the time from rest at (waypoint, heading) to the goal; exact where the search
     /// has been.
     pub fn to_go(&self, network: &Network, model: &Model, node: u32, heading: u8) -> u32 {
-        let known = self.queue.best(network.index(node, heading) * 2);
-        let bound = self.bound(network, model, node);
+        let known = self.best(network.index(node, heading));
+        let bound = self.bound(network, model, node, None);
         let settled = self.queue.settled();
         if known != UNREACHABLE && known.saturating_add(bound) < settled {
             return known;
@@ -200,11 +236,14 @@ impl Backward {
 
     /// Whether [`Backward::to_go`] cannot get any better for this state.
     pub fn knows(&self, network: &Network, model: &Model, node: u32, heading: u8) -> bool {
-        let known = self.queue.best(network.index(node, heading) * 2);
-        self.queue.exhausted() || (known != UNREACHABLE && known.saturating_add(self.bound(network, model, node)) < self.queue.settled())
+        let known = self.best(network.index(node, heading));
+        self.queue.exhausted()
+            || (known != UNREACHABLE
+                && known.saturating_add(self.bound(network, model, node, None))
+                    < self.queue.settled())
     }
 
-    /// Up to which total time (start to goal over a state) every state is known.
+    /// Total time (from start to goal over a state) up to which every state is known.
     pub fn reach(&self) -> u32 {
         self.queue.settled()
     }
@@ -226,7 +265,9 @@ impl Backward {
     fn roll_back(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
         self.start_here(network, model, node, heading, cost);
         for &from in network.behind(node, heading) {
-            if self.passable(network, from, node) && !(self.loaded && network.storage[from as usize]) {
+            if self.passable(network, from, node)
+                && !(self.loaded && network.storage[from as usize])
+            {
                 let (_, length) = network.ahead(from, heading).expect("it leads here");
                 self.offer(network, model, from, heading, ROLLING, cost + model.roll(length));
             } else if self.passable(network, from, node) {
@@ -275,14 +316,30 @@ impl Backward {
     /// The robot is at rest with any heading, turns and starts a run of known cost.
     fn start_here(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
         for before in 0..self.headings as u8 {
-            self.offer(network, model, node, before, 0, cost + model.turning(before, heading));
+            if before != heading {
+                self.offer(network, model, node, before, 0, cost + model.turning(before, heading));
+            }
+        }
+        let stamp = self.queue.stamp;
+        let known = &mut self.straight[network.index(node, heading)];
+        if known.0 != stamp || cost < known.1 {
+            *known = (stamp, cost);
         }
     }
 
-    fn offer(&mut self, network: &Network, model: &Model, node: u32, heading: u8, rolling: usize, cost: u32) {
+    fn offer(
+        &mut self,
+        network: &Network,
+        model: &Model,
+        node: u32,
+        heading: u8,
+        rolling: usize,
+        cost: u32,
+    ) {
         let state = network.index(node, heading) * 2 + rolling;
         if cost < self.queue.best(state) {
-            let total = cost + self.bound(network, model, node);
+            let total =
+                cost + self.bound(network, model, node, (rolling == ROLLING).then_some(heading));
             self.queue.improve(state, cost, total);
         }
     }
@@ -301,7 +358,14 @@ struct Buckets {
 
 impl Buckets {
     fn new(states: usize) -> Self {
-        Self { best: vec![UNREACHABLE; states], stamps: vec![0; states], stamp: 0, buckets: Vec::new(), at: 0, waiting: 0 }
+        Self {
+            best: vec![UNREACHABLE; states],
+            stamps: vec![0; states],
+            stamp: 0,
+            buckets: Vec::new(),
+            at: 0,
+            waiting: 0,
+        }
     }
 
     fn clear(&mut self) {

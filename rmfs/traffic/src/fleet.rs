@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use crate::costs::Cache;
 use crate::kinematics::Kind;
 use crate::network::{NONE, Network};
-use crate::record::{Piece, Record, Standing, Trip, TripKind, enters_zone};
+use crate::record::{Piece, Record, Row, Standing, Trip, TripKind, enters_zone, move_rows};
 use crate::reservations::{Interval, Table};
 use crate::robot::{Phase, Robot, Step};
 use crate::search::{Move, Outcome, Planner, Query};
@@ -120,7 +120,14 @@ impl Fleet {
     ///
     /// # Errors
     /// If two robots stand on one waypoint.
-    pub fn new(network: Network, kinds: Vec<Kind>, robots: &[(u32, u8, u8)], budget: u64, cost_bytes: usize, with_trace: bool) -> Result<Self, String> {
+    pub fn new(
+        network: Network,
+        kinds: Vec<Kind>,
+        robots: &[(u32, u8, u8)],
+        budget: u64,
+        cost_bytes: usize,
+        with_trace: bool,
+    ) -> Result<Self, String> {
         let mut fleet = Self {
             planner: Planner::new(&network),
             costs: Cache::new(&network, &kinds, cost_bytes),
@@ -162,7 +169,9 @@ impl Fleet {
         }
         self.settle(robot);
         let state = &mut self.robots[robot as usize];
-        if !state.moves.is_empty() && matches!(program.first(), Some(Step::Lift(_) | Step::SetDown(_))) {
+        if !state.moves.is_empty()
+            && matches!(program.first(), Some(Step::Lift(_) | Step::SetDown(_)))
+        {
             return Err(format!("robot {robot} is driving and cannot lift or set down"));
         }
         state.program = VecDeque::from(program.to_vec());
@@ -194,7 +203,9 @@ impl Fleet {
             self.agenda.pop();
             match due {
                 Due::TransferEnd => self.transfer_ended(robot),
-                Due::LegEnd if self.robots[robot as usize].version == version => self.leg_ended(robot),
+                Due::LegEnd if self.robots[robot as usize].version == version => {
+                    self.leg_ended(robot)
+                }
                 Due::LegEnd => {}
                 Due::Retry => {
                     self.retry_due = false;
@@ -289,7 +300,8 @@ impl Fleet {
 
     fn transfer_ended(&mut self, robot: u32) {
         let state = &mut self.robots[robot as usize];
-        let (step, node, heading) = (state.program.pop_front().expect("a transfer"), state.anchor, state.heading);
+        let (step, node, heading) =
+            (state.program.pop_front().expect("a transfer"), state.anchor, state.heading);
         match step {
             Step::Lift(pod) => {
                 self.record.transfer(robot, self.now, node, heading, pod, Piece::Lift);
@@ -344,7 +356,8 @@ impl Fleet {
             self.move_up(station);
             return;
         }
-        let entered = self.legs[robot as usize].as_ref().and_then(|leg| leg.zone_entered).unwrap_or(self.now);
+        let entered =
+            self.legs[robot as usize].as_ref().and_then(|leg| leg.zone_entered).unwrap_or(self.now);
         self.record.totals[robot as usize].queueing += self.now - entered;
         self.finish_trip(robot, TripKind::ToStation, entered);
         self.at_head(robot, station);
@@ -376,23 +389,38 @@ impl Fleet {
 
     /// Plans from the first rest that can still be chosen to `goal` and, if that works, makes it
     /// the robot's plan. `keep` says which of the moves not yet begun stay as they are.
-    fn plan(&mut self, robot: u32, goal: u32, effort: Effort, keep: impl Fn(&Network, &Move) -> bool) -> bool {
+    fn plan(
+        &mut self,
+        robot: u32,
+        goal: u32,
+        effort: Effort,
+        keep: impl Fn(&Network, &Move) -> bool,
+    ) -> bool {
         let begun = Instant::now();
         let planned = self.plan_untimed(robot, goal, effort, keep);
         self.counters.planning += begun.elapsed();
         planned
     }
 
-    fn plan_untimed(&mut self, robot: u32, goal: u32, effort: Effort, keep: impl Fn(&Network, &Move) -> bool) -> bool {
+    fn plan_untimed(
+        &mut self,
+        robot: u32,
+        goal: u32,
+        effort: Effort,
+        keep: impl Fn(&Network, &Move) -> bool,
+    ) -> bool {
         self.settle(robot);
         let Fleet { network, kinds, robots, table, planner, costs, .. } = self;
         let state = &robots[robot as usize];
         let kind = &kinds[state.kind as usize];
-        if table.final_holder(network.resource[goal as usize]).is_some_and(|holder| holder != robot) {
+        if table.final_holder(network.resource[goal as usize]).is_some_and(|holder| holder != robot)
+        {
             self.counters.failures += 1;
             return false;
         }
-        let kept = state.committed(network, kind, self.now).max(state.moves.iter().take_while(|step| keep(network, step)).count());
+        let kept = state
+            .committed(network, kind, self.now)
+            .max(state.moves.iter().take_while(|step| keep(network, step)).count());
         let (start, heading, rested) = match kept.checked_sub(1) {
             Some(last) => (state.moves[last].to, state.moves[last].heading, state.moves[last].end),
             None => (state.anchor, state.heading, state.rested),
@@ -403,7 +431,16 @@ impl Fleet {
         for held in &state.held {
             table.remove(held.resource, robot);
         }
-        let mut query = Query { start, heading, ready, goal, loaded, kind, model, budget: self.budget.min(effort.labels()) };
+        let mut query = Query {
+            start,
+            heading,
+            ready,
+            goal,
+            loaded,
+            kind,
+            model,
+            budget: self.budget.min(effort.labels()),
+        };
         let mut outcome = planner.search(network, table, &query);
         if outcome == Outcome::OutOfBudget && effort == Effort::Full {
             // with every planned motion over, the search is an ordinary shortest path
@@ -481,8 +518,18 @@ impl Fleet {
         };
         while state.moves.front().is_some_and(|step| step.end <= now) {
             let step = state.moves.pop_front().expect("checked");
-            let turn = kind.turn(self.network.headings[step.heading_before as usize], self.network.headings[step.heading as usize]);
-            self.record.stand(robot, step.start - turn, step.from, step.heading_before, state.pod, why);
+            let turn = kind.turn(
+                self.network.headings[step.heading_before as usize],
+                self.network.headings[step.heading as usize],
+            );
+            self.record.stand(
+                robot,
+                step.start - turn,
+                step.from,
+                step.heading_before,
+                state.pod,
+                why,
+            );
             self.record.drive(&self.network, kind, robot, &step, state.pod);
             let station = state.station();
             if let Some(leg) = &mut self.legs[robot as usize]
@@ -503,7 +550,10 @@ impl Fleet {
         }
         let standing_until = match state.moves.front() {
             Some(step) => {
-                let turn = kind.turn(self.network.headings[step.heading_before as usize], self.network.headings[step.heading as usize]);
+                let turn = kind.turn(
+                    self.network.headings[step.heading_before as usize],
+                    self.network.headings[step.heading as usize],
+                );
                 now.min(step.start - turn)
             }
             None => now,
@@ -516,6 +566,43 @@ impl Fleet {
         for robot in 0..self.robots.len() as u32 {
             self.settle(robot);
         }
+    }
+
+    /// The trace up to now, by robot and time; the motion each robot is in the middle of is whole.
+    /// `None` if it is not recorded.
+    pub fn trace(&mut self) -> Option<Vec<Row>> {
+        self.settle_all();
+        let mut rows = self.record.trace.clone()?;
+        for (id, state) in self.robots.iter().enumerate() {
+            let robot = id as u32;
+            let kind = &self.kinds[state.kind as usize];
+            match (state.phase, state.program.front()) {
+                (Phase::Transferring, Some(&(Step::Lift(pod) | Step::SetDown(pod)))) => {
+                    let piece = if matches!(state.program.front(), Some(Step::Lift(_))) {
+                        Piece::Lift
+                    } else {
+                        Piece::SetDown
+                    };
+                    rows.push(Row {
+                        robot,
+                        start: self.record.recorded(robot),
+                        end: state.busy_until,
+                        piece,
+                        from: state.anchor,
+                        to: state.anchor,
+                        heading_before: state.heading,
+                        heading: state.heading,
+                        pod: pod as i32,
+                    });
+                }
+                _ if state.committed(&self.network, kind, self.now) > 0 => {
+                    rows.extend(move_rows(&self.network, kind, robot, &state.moves[0], state.pod));
+                }
+                _ => {}
+            }
+        }
+        rows.sort_by_key(|row| (row.robot, row.start));
+        Some(rows)
     }
 
     // ------------------------------------------------------------------ robots without a way
@@ -537,7 +624,9 @@ impl Fleet {
             }
             self.retry(|fleet, robot| match fleet.robots[robot as usize].program.front() {
                 Some(Step::Drive(goal)) => released.contains(goal),
-                Some(Step::Station(station)) => released.iter().any(|&v| fleet.network.stations[*station as usize].contains(&v)),
+                Some(Step::Station(station)) => {
+                    released.iter().any(|&v| fleet.network.stations[*station as usize].contains(&v))
+                }
                 _ => true,
             });
         }
@@ -616,8 +705,9 @@ impl Fleet {
         let left_place = self.robots[robot as usize].place;
         let last = self.queues[station as usize].len();
         let wanted = self.rank(robot, station);
-        let joined = (wanted < last && self.make_room(station, wanted) && self.join(robot, station, wanted))
-            || self.join(robot, station, last);
+        let joined =
+            (wanted < last && self.make_room(station, wanted) && self.join(robot, station, wanted))
+                || self.join(robot, station, last);
         if joined && let Some((old, _)) = left_place {
             self.leave_queue_list(robot, old);
         }
@@ -634,12 +724,16 @@ impl Fleet {
         while rank > 0 {
             let other = queue[rank - 1];
             let state = &self.robots[other as usize];
-            let inside = |node: u32| self.network.zone[node as usize] == station || self.network.stations[station as usize].contains(&node);
+            let inside = |node: u32| {
+                self.network.zone[node as usize] == station
+                    || self.network.stations[station as usize].contains(&node)
+            };
             if inside(state.anchor) || inside(state.next_stop()) {
                 break;
             }
             let (node, heading, end) = state.destination();
-            let to_go = self.costs.towards(&self.network, head, state.kind, state.pod.is_some())[self.network.index(node, heading)];
+            let to_go = self.costs.towards(&self.network, head, state.kind, state.pod.is_some())
+                [self.network.index(node, heading)];
             if end + Us::from(to_go) <= mine {
                 break;
             }
@@ -679,7 +773,8 @@ impl Fleet {
         let place = if rank == 0 { 0 } else { self.place_of(queue[rank - 1]) + 1 };
         let taken = queue.get(rank).is_some_and(|&next| self.place_of(next) <= place);
         let Some(&goal) = self.network.stations[station as usize].get(place) else { return false };
-        let effort = if rank < self.queues[station as usize].len() { Effort::Try } else { Effort::Full };
+        let effort =
+            if rank < self.queues[station as usize].len() { Effort::Try } else { Effort::Full };
         if taken || !self.plan(robot, goal, effort, |_, _| false) {
             return false;
         }
@@ -692,7 +787,8 @@ impl Fleet {
     fn change_place(&mut self, robot: u32, station: u32, place: usize) -> bool {
         let goal = self.network.stations[station as usize][place];
         let outside = |network: &Network, step: &Move| {
-            network.zone[step.to as usize] != station && !network.stations[station as usize].contains(&step.to)
+            network.zone[step.to as usize] != station
+                && !network.stations[station as usize].contains(&step.to)
         };
         let phase = self.robots[robot as usize].phase;
         let changed = self.plan(robot, goal, Effort::Try, outside);

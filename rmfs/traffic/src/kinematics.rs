@@ -180,13 +180,25 @@ mod tests {
     use super::*;
 
     fn slow() -> Kind {
-        Kind { acceleration: 0.5, deceleration: 0.5, top_speed: 1.5, full_turn: 2_500_000, pod_transfer: 3_000_000 }
+        Kind {
+            acceleration: 0.5,
+            deceleration: 0.5,
+            top_speed: 1.5,
+            full_turn: 2_500_000,
+            pod_transfer: 3_000_000,
+        }
     }
 
     #[test]
     fn known_run_times() {
         // path-planning study: 1, 2, 5, 10, 20 m at 0.5 m/s² and 1.5 m/s
-        for (length, seconds) in [(1.0, 2.828_427), (2.0, 4.0), (5.0, 19.0 / 3.0), (10.0, 29.0 / 3.0), (20.0, 49.0 / 3.0)] {
+        for (length, seconds) in [
+            (1.0, 2.828_427),
+            (2.0, 4.0),
+            (5.0, 19.0 / 3.0),
+            (10.0, 29.0 / 3.0),
+            (20.0, 49.0 / 3.0),
+        ] {
             assert!((slow().run(length).duration() - seconds).abs() < 1e-6);
         }
     }
@@ -206,7 +218,10 @@ mod tests {
                 for step in 0..=20 {
                     let distance = length * f64::from(step) / 20.0;
                     let back = profile.position_at(profile.time_at(distance));
-                    assert!((back - distance).abs() < 1e-9, "{initial_speed} {length} {distance}: {back}");
+                    assert!(
+                        (back - distance).abs() < 1e-9,
+                        "{initial_speed} {length} {distance}: {back}"
+                    );
                 }
             }
         }

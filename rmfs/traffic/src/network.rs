@@ -56,12 +56,13 @@ pub struct Network {
     lifts_to: Vec<Vec<Lift>>,
     x: Vec<f64>,
     y: Vec<f64>,
-    metric: Metric,
+    pub metric: Metric,
 }
 
 /// What bounds the length of a way from below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Metric {
+pub enum Metric {
+    /// All edges run along x or y.
     Manhattan,
     Euclid,
     /// Elevators that move robots sideways leave no bound.
@@ -131,15 +132,16 @@ impl Network {
         })
     }
 
-    /// Metres that a robot drives at least from one waypoint to another.
-    pub fn least_distance(&self, from: u32, to: u32) -> f64 {
+    /// Offsets in x and y, in metres, between two waypoints.
+    pub fn offset(&self, from: u32, to: u32) -> (f64, f64) {
         let dx = (self.x[from as usize] - self.x[to as usize]).abs();
         let dy = (self.y[from as usize] - self.y[to as usize]).abs();
-        match self.metric {
-            Metric::Manhattan => dx + dy,
-            Metric::Euclid => dx.hypot(dy),
-            Metric::Nothing => 0.0,
-        }
+        (dx, dy)
+    }
+
+    /// Whether a heading points along x (or against it); only on axis-parallel networks.
+    pub fn along_x(&self, heading: u8) -> bool {
+        self.headings[heading as usize] % 500_000 == 0
     }
 
     /// Number of distinct headings.

@@ -42,7 +42,13 @@ struct Motion {
 #[pymethods]
 impl Motion {
     #[new]
-    fn new(acceleration: f64, deceleration: f64, top_speed: f64, initial_speed: f64, length: f64) -> Self {
+    fn new(
+        acceleration: f64,
+        deceleration: f64,
+        top_speed: f64,
+        initial_speed: f64,
+        length: f64,
+    ) -> Self {
         let kind = Kind { acceleration, deceleration, top_speed, full_turn: 0, pod_transfer: 0 };
         Self { profile: Profile::new(&kind, initial_speed, length) }
     }
@@ -72,11 +78,17 @@ struct Core {
 
 impl Core {
     fn robot(&self, robot: usize) -> PyResult<&crate::robot::Robot> {
-        self.fleet.robots.get(robot).ok_or_else(|| PyValueError::new_err(format!("no robot {robot}")))
+        self.fleet
+            .robots
+            .get(robot)
+            .ok_or_else(|| PyValueError::new_err(format!("no robot {robot}")))
     }
 
     fn seconds(&self, entries: &[u32]) -> Vec<f64> {
-        entries.iter().map(|&entry| costs::time(entry).map_or(f64::INFINITY, |t| t as f64 / 1e6)).collect()
+        entries
+            .iter()
+            .map(|&entry| costs::time(entry).map_or(f64::INFINITY, |t| t as f64 / 1e6))
+            .collect()
     }
 }
 
@@ -116,7 +128,8 @@ impl Core {
         };
         let network = Network::new(plan).map_err(PyValueError::new_err)?;
         let place = |&(node, angle, kind): &(u32, f64, u8)| {
-            let heading = network.headings.binary_search(&from_radians(angle)).expect("given to the network");
+            let heading =
+                network.headings.binary_search(&from_radians(angle)).expect("given to the network");
             (node, heading as u8, kind)
         };
         let robots: Vec<(u32, u8, u8)> = robots.iter().map(place).collect();
@@ -139,7 +152,10 @@ impl Core {
     fn advance(&mut self, py: Python<'_>, until: Us) -> Vec<(Us, i64, u32, u32)> {
         let fleet = &mut self.fleet;
         let events = py.detach(|| fleet.advance(until));
-        events.into_iter().map(|event| (event.time, event.kind as i64, event.robot, event.value)).collect()
+        events
+            .into_iter()
+            .map(|event| (event.time, event.kind as i64, event.robot, event.value))
+            .collect()
     }
 
     fn rest_waypoint(&self, robot: usize) -> PyResult<u32> {
@@ -154,15 +170,30 @@ impl Core {
         self.fleet.blocked().to_vec()
     }
 
-    fn travel_times_to<'py>(&mut self, py: Python<'py>, waypoint: u32, kind: u8, loaded: bool) -> Bound<'py, PyAny> {
+    fn travel_times_to<'py>(
+        &mut self,
+        py: Python<'py>,
+        waypoint: u32,
+        kind: u8,
+        loaded: bool,
+    ) -> Bound<'py, PyAny> {
         let fleet = &mut self.fleet;
         let count = fleet.network.heading_count();
         let table = fleet.costs.towards(&fleet.network, waypoint, kind, loaded);
-        let best: Vec<u32> = table.chunks(count).map(|headings| headings.iter().copied().min().expect("a heading")).collect();
+        let best: Vec<u32> = table
+            .chunks(count)
+            .map(|headings| headings.iter().copied().min().expect("a heading"))
+            .collect();
         self.seconds(&best).into_pyarray(py).into_any()
     }
 
-    fn travel_times_from<'py>(&self, py: Python<'py>, waypoint: u32, kind: u8, loaded: bool) -> Bound<'py, PyAny> {
+    fn travel_times_from<'py>(
+        &self,
+        py: Python<'py>,
+        waypoint: u32,
+        kind: u8,
+        loaded: bool,
+    ) -> Bound<'py, PyAny> {
         let times = self.fleet.costs.away_from(&self.fleet.network, waypoint, kind, loaded);
         self.seconds(&times).into_pyarray(py).into_any()
     }
@@ -171,25 +202,39 @@ impl Core {
     fn motion<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.fleet.settle_all();
         let now = self.fleet.now;
-        let totals: Vec<Totals> = self.fleet.robots.iter().enumerate().map(|(id, robot)| {
-            let mut totals = self.fleet.record.totals[id].clone();
-            if let Some(step) = robot.moves.front() && robot.phase != Phase::Transferring {
-                let kind = &self.fleet.kinds[robot.kind as usize];
-                let (turning, driving, metres) = partly(&self.fleet.network, kind, step, now);
-                totals.turning += turning;
-                totals.distance += metres;
-                if step.ride { totals.riding += driving } else { totals.moving += driving }
-                if robot.pod.is_some() {
-                    totals.loaded_distance += metres;
+        let totals: Vec<Totals> = self
+            .fleet
+            .robots
+            .iter()
+            .enumerate()
+            .map(|(id, robot)| {
+                let mut totals = self.fleet.record.totals[id].clone();
+                if let Some(step) = robot.moves.front()
+                    && robot.phase != Phase::Transferring
+                {
+                    let kind = &self.fleet.kinds[robot.kind as usize];
+                    let (turning, driving, metres) = partly(&self.fleet.network, kind, step, now);
+                    totals.turning += turning;
+                    totals.distance += metres;
+                    if step.ride {
+                        totals.riding += driving
+                    } else {
+                        totals.moving += driving
+                    }
+                    if robot.pod.is_some() {
+                        totals.loaded_distance += metres;
+                    }
+                } else if robot.phase == Phase::Transferring {
+                    totals.transferring += now - self.fleet.record.recorded(id as u32);
                 }
-            } else if robot.phase == Phase::Transferring {
-                totals.transferring += now - self.fleet.record.recorded(id as u32);
-            }
-            totals
-        }).collect();
+                totals
+            })
+            .collect();
         let result = PyDict::new(py);
         let metres = |pick: fn(&Totals) -> f64| totals.iter().map(pick).collect::<Vec<f64>>();
-        let seconds = |pick: fn(&Totals) -> Us| totals.iter().map(|t| pick(t) as f64 / 1e6).collect::<Vec<f64>>();
+        let seconds = |pick: fn(&Totals) -> Us| {
+            totals.iter().map(|t| pick(t) as f64 / 1e6).collect::<Vec<f64>>()
+        };
         result.set_item("distance_m", metres(|t| t.distance).into_pyarray(py))?;
         result.set_item("loaded_distance_m", metres(|t| t.loaded_distance).into_pyarray(py))?;
         for (name, pick) in [
@@ -223,14 +268,34 @@ impl Core {
     fn trips<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let trips = &self.fleet.record.trips;
         let result = PyDict::new(py);
-        result.set_item("robot", trips.iter().map(|t| t.robot).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("kind", trips.iter().map(|t| t.kind as i8).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("t0_us", trips.iter().map(|t| t.start).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("t1_us", trips.iter().map(|t| t.end).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("from_wp", trips.iter().map(|t| t.from).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("to_wp", trips.iter().map(|t| t.to).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("loaded", trips.iter().map(|t| t.loaded).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("distance_m", trips.iter().map(|t| t.distance).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item(
+            "robot",
+            trips.iter().map(|t| t.robot).collect::<Vec<_>>().into_pyarray(py),
+        )?;
+        result.set_item(
+            "kind",
+            trips.iter().map(|t| t.kind as i8).collect::<Vec<_>>().into_pyarray(py),
+        )?;
+        result.set_item(
+            "t0_us",
+            trips.iter().map(|t| t.start).collect::<Vec<_>>().into_pyarray(py),
+        )?;
+        result
+            .set_item("t1_us", trips.iter().map(|t| t.end).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item(
+            "from_wp",
+            trips.iter().map(|t| t.from).collect::<Vec<_>>().into_pyarray(py),
+        )?;
+        result
+            .set_item("to_wp", trips.iter().map(|t| t.to).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item(
+            "loaded",
+            trips.iter().map(|t| t.loaded).collect::<Vec<_>>().into_pyarray(py),
+        )?;
+        result.set_item(
+            "distance_m",
+            trips.iter().map(|t| t.distance).collect::<Vec<_>>().into_pyarray(py),
+        )?;
         let unhindered: Vec<f64> = trips.iter().map(|t| t.unhindered as f64 / 1e6).collect();
         result.set_item("unhindered_s", unhindered.into_pyarray(py))?;
         Ok(result)
@@ -238,19 +303,42 @@ impl Core {
 
     /// The trace up to now, sorted by robot and time.
     fn trace<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.fleet.settle_all();
-        let headings: Vec<f64> = self.fleet.network.headings.iter().map(|&h| to_radians(h)).collect();
-        let mut rows = self.fleet.record.trace.clone().ok_or_else(|| PyValueError::new_err("the trace is not recorded"))?;
-        rows.sort_by_key(|row| (row.robot, row.start));
+        let headings: Vec<f64> =
+            self.fleet.network.headings.iter().map(|&h| to_radians(h)).collect();
+        let rows =
+            self.fleet.trace().ok_or_else(|| PyValueError::new_err("the trace is not recorded"))?;
         let result = PyDict::new(py);
-        result.set_item("robot", rows.iter().map(|r| r.robot as i32).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("t0_us", rows.iter().map(|r| r.start).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("t1_us", rows.iter().map(|r| r.end).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("kind", rows.iter().map(|r| r.piece as i8).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("from_wp", rows.iter().map(|r| r.from as i32).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("to_wp", rows.iter().map(|r| r.to as i32).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("heading0_rad", rows.iter().map(|r| headings[r.heading_before as usize]).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item("heading1_rad", rows.iter().map(|r| headings[r.heading as usize]).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item(
+            "robot",
+            rows.iter().map(|r| r.robot as i32).collect::<Vec<_>>().into_pyarray(py),
+        )?;
+        result
+            .set_item("t0_us", rows.iter().map(|r| r.start).collect::<Vec<_>>().into_pyarray(py))?;
+        result
+            .set_item("t1_us", rows.iter().map(|r| r.end).collect::<Vec<_>>().into_pyarray(py))?;
+        result.set_item(
+            "kind",
+            rows.iter().map(|r| r.piece as i8).collect::<Vec<_>>().into_pyarray(py),
+        )?;
+        result.set_item(
+            "from_wp",
+            rows.iter().map(|r| r.from as i32).collect::<Vec<_>>().into_pyarray(py),
+        )?;
+        result.set_item(
+            "to_wp",
+            rows.iter().map(|r| r.to as i32).collect::<Vec<_>>().into_pyarray(py),
+        )?;
+        result.set_item(
+            "heading0_rad",
+            rows.iter()
+                .map(|r| headings[r.heading_before as usize])
+                .collect::<Vec<_>>()
+                .into_pyarray(py),
+        )?;
+        result.set_item(
+            "heading1_rad",
+            rows.iter().map(|r| headings[r.heading as usize]).collect::<Vec<_>>().into_pyarray(py),
+        )?;
         result.set_item("pod", rows.iter().map(|r| r.pod).collect::<Vec<_>>().into_pyarray(py))?;
         Ok(result)
     }

@@ -121,7 +121,15 @@ impl Record {
     }
 
     /// Records that the robot stood still until `end`.
-    pub fn stand(&mut self, robot: u32, end: Us, node: u32, heading: u8, pod: Option<u32>, why: Standing) {
+    pub fn stand(
+        &mut self,
+        robot: u32,
+        end: Us,
+        node: u32,
+        heading: u8,
+        pod: Option<u32>,
+        why: Standing,
+    ) {
         let start = self.recorded[robot as usize];
         if end <= start {
             return;
@@ -135,44 +143,77 @@ impl Record {
         if why != Standing::Idle {
             self.waiting[node as usize] += end - start;
         }
-        self.push(Row { robot, start, end, piece: Piece::Hold, from: node, to: node, heading_before: heading, heading, pod: pod_id(pod) });
+        self.push(Row {
+            robot,
+            start,
+            end,
+            piece: Piece::Hold,
+            from: node,
+            to: node,
+            heading_before: heading,
+            heading,
+            pod: pod_id(pod),
+        });
     }
 
     /// Records a lift or set-down that ends now.
-    pub fn transfer(&mut self, robot: u32, end: Us, node: u32, heading: u8, pod: u32, piece: Piece) {
+    pub fn transfer(
+        &mut self,
+        robot: u32,
+        end: Us,
+        node: u32,
+        heading: u8,
+        pod: u32,
+        piece: Piece,
+    ) {
         let start = self.recorded[robot as usize];
         self.totals[robot as usize].transferring += end - start;
-        self.push(Row { robot, start, end, piece, from: node, to: node, heading_before: heading, heading, pod: pod as i32 });
+        self.push(Row {
+            robot,
+            start,
+            end,
+            piece,
+            from: node,
+            to: node,
+            heading_before: heading,
+            heading,
+            pod: pod as i32,
+        });
     }
 
     /// Records a whole move, the turn before it included; the robot stood until the turn.
-    pub fn drive(&mut self, network: &Network, kind: &Kind, robot: u32, step: &Move, pod: Option<u32>) {
-        let turn = kind.turn(network.headings[step.heading_before as usize], network.headings[step.heading as usize]);
-        let totals = &mut self.totals[robot as usize];
-        let pod_number = pod_id(pod);
-        if turn > 0 {
-            totals.turning += turn;
-            self.push(Row { robot, start: step.start - turn, end: step.start, piece: Piece::Turn, from: step.from, to: step.from, heading_before: step.heading_before, heading: step.heading, pod: pod_number });
-        }
-        let totals = &mut self.totals[robot as usize];
+    pub fn drive(
+        &mut self,
+        network: &Network,
+        kind: &Kind,
+        robot: u32,
+        step: &Move,
+        pod: Option<u32>,
+    ) {
+        let mut length = 0.0;
         if step.ride {
-            totals.riding += step.end - step.start;
             self.visit(step.to, pod);
         } else {
-            totals.moving += step.end - step.start;
-            let mut length = 0.0;
             for (node, distance) in network.line(step.from, step.to, step.heading) {
                 length = distance;
                 self.visit(node, pod);
             }
-            let totals = &mut self.totals[robot as usize];
-            totals.distance += length;
-            if pod.is_some() {
-                totals.loaded_distance += length;
-            }
         }
-        let piece = if step.ride { Piece::Ride } else { Piece::Run };
-        self.push(Row { robot, start: step.start, end: step.end, piece, from: step.from, to: step.to, heading_before: step.heading, heading: step.heading, pod: pod_number });
+        let totals = &mut self.totals[robot as usize];
+        totals.distance += length;
+        if pod.is_some() {
+            totals.loaded_distance += length;
+        }
+        for row in move_rows(network, kind, robot, step, pod) {
+            let totals = &mut self.totals[robot as usize];
+            let time = row.end - row.start;
+            match row.piece {
+                Piece::Turn => totals.turning += time,
+                Piece::Ride => totals.riding += time,
+                _ => totals.moving += time,
+            }
+            self.push(row);
+        }
     }
 
     fn visit(&mut self, node: u32, pod: Option<u32>) {
@@ -192,9 +233,42 @@ fn pod_id(pod: Option<u32>) -> i32 {
     pod.map_or(-1, |pod| pod as i32)
 }
 
+/// A move as rows of the trace: the turn before it, if any, and the run or ride.
+pub fn move_rows(
+    network: &Network,
+    kind: &Kind,
+    robot: u32,
+    step: &Move,
+    pod: Option<u32>,
+) -> impl Iterator<Item = Row> + use<> {
+    let turn = kind.turn(
+        network.headings[step.heading_before as usize],
+        network.headings[step.heading as usize],
+    );
+    let row = |start: Us, end: Us, piece: Piece, to: u32, heading_before: u8| Row {
+        robot,
+        start,
+        end,
+        piece,
+        from: step.from,
+        to,
+        heading_before,
+        heading: step.heading,
+        pod: pod_id(pod),
+    };
+    let turning = (turn > 0)
+        .then(|| row(step.start - turn, step.start, Piece::Turn, step.from, step.heading_before));
+    let piece = if step.ride { Piece::Ride } else { Piece::Run };
+    let driving = row(step.start, step.end, piece, step.to, step.heading);
+    turning.into_iter().chain(std::iter::once(driving))
+}
+
 /// Distance and time of a move in progress at `now`: `(turning, driving, metres)`.
 pub fn partly(network: &Network, kind: &Kind, step: &Move, now: Us) -> (Us, Us, f64) {
-    let turn = kind.turn(network.headings[step.heading_before as usize], network.headings[step.heading as usize]);
+    let turn = kind.turn(
+        network.headings[step.heading_before as usize],
+        network.headings[step.heading as usize],
+    );
     let turning = (now - (step.start - turn)).clamp(0, turn);
     let driving = (now - step.start).clamp(0, step.end - step.start);
     if step.ride || driving == 0 {

@@ -57,7 +57,10 @@ impl Table {
 
     /// Who holds the resource without a planned end, if anybody.
     pub fn final_holder(&self, resource: u32) -> Option<u32> {
-        self.rows[resource as usize].last().filter(|last| last.end == FOREVER).map(|last| last.robot)
+        self.rows[resource as usize]
+            .last()
+            .filter(|last| last.end == FOREVER)
+            .map(|last| last.robot)
     }
 
     /// The free interval around `time`, or `None` if the resource is occupied then.
@@ -151,7 +154,10 @@ mod tests {
         table.insert(0, Interval { start: 10, end: 20, robot: 1 }, 0);
         table.insert(0, Interval { start: 20, end: 25, robot: 2 }, 0);
         table.insert(0, Interval { start: 2, end: 4, robot: 3 }, 0);
-        assert_eq!(table.gaps(0).collect::<Vec<_>>(), [(-FOREVER, 2), (4, 10), (20, 20), (25, FOREVER)]);
+        assert_eq!(
+            table.gaps(0).collect::<Vec<_>>(),
+            [(-FOREVER, 2), (4, 10), (20, 20), (25, FOREVER)]
+        );
         assert_eq!(table.gap_at(0, 5), Some((4, 10)));
         assert_eq!(table.gap_at(0, 12), None);
         table.remove(0, 1);
@@ -170,7 +176,9 @@ mod tests {
     fn restricting_agrees_with_trying_every_departure() {
         let mut state = 7_u64;
         let mut random = |limit: u64| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             ((state >> 33) % limit) as Us
         };
         for _ in 0..500 {

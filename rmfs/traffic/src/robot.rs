@@ -2,10 +2,10 @@
 
 use std::collections::VecDeque;
 
+use crate::kinematics::Kind;
 use crate::network::{NONE, Network};
 use crate::search::Move;
 use crate::units::{FOREVER, Us, ceil_us, floor_us};
-use crate::kinematics::Kind;
 
 /// What a robot is told to do, one after another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +87,9 @@ impl Robot {
 
     /// Where the plan ends, with heading and time.
     pub fn destination(&self) -> (u32, u8, Us) {
-        self.moves.back().map_or((self.anchor, self.heading, self.rested), |last| (last.to, last.heading, last.end))
+        self.moves.back().map_or((self.anchor, self.heading, self.rested), |last| {
+            (last.to, last.heading, last.end)
+        })
     }
 
     /// Everything the robot occupies: anchor, the way, and the end of the plan without limit.
@@ -106,7 +108,11 @@ impl Robot {
             let mut passed = 0.0;
             for &(next, distance) in &line {
                 let reached = profile.time_at(distance);
-                held.push(Held { resource: network.resource[node as usize], start: since, end: step.start + ceil_us(reached) });
+                held.push(Held {
+                    resource: network.resource[node as usize],
+                    start: since,
+                    end: step.start + ceil_us(reached),
+                });
                 since = step.start + floor_us(passed);
                 passed = reached;
                 node = next;
@@ -122,7 +128,10 @@ impl Robot {
         self.moves
             .iter()
             .take_while(|step| {
-                let turn = kind.turn(network.headings[step.heading_before as usize], network.headings[step.heading as usize]);
+                let turn = kind.turn(
+                    network.headings[step.heading_before as usize],
+                    network.headings[step.heading as usize],
+                );
                 step.start - turn < now
             })
             .count()

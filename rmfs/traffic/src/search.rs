@@ -78,6 +78,12 @@ struct Label {
     scans: u32,
 }
 
+/// Weights (in quarters) and how many labels may be looked at with each: from optimal to greedy.
+const STAGES: [(Us, u64); 3] = [(4, 400), (6, 2_000), (16, u64::MAX)];
+
+/// By how much the unhindered search goes on at a time, in microseconds.
+const GUIDE_STEP: u32 = 1 << 19;
+
 /// How much later than the label's own estimate successors may arrive in its first scan.
 const SLACK: Us = 500_000;
 
@@ -94,6 +100,8 @@ pub struct Planner {
     line: Vec<(u32, f64)>,
     guide: Backward,
     pub expansions: u64,
+    /// Quarters by which the time to go is weighted: 4 finds the earliest arrival.
+    weight: Us,
     /// Nobody reaches the goal for good before this.
     goal_free: Us,
 }
@@ -111,41 +119,67 @@ impl Planner {
             line: Vec::new(),
             guide: Backward::new(network),
             expansions: 0,
+            weight: 4,
             goal_free: 0,
         }
     }
 
-    /// Finds the earliest arrival at the goal that can be held forever.
+    /// Finds the earliest arrival at the goal that can be held forever; when that takes more than a
+    /// few hundred labels, one that is early enough.
     ///
     /// The robot's own reservations must not be in `table`.
     pub fn search(&mut self, network: &Network, table: &Table, query: &Query) -> Outcome {
+        for (weight, labels) in STAGES {
+            self.weight = weight;
+            let budget = query.budget.min(labels);
+            let outcome = self.search_within(network, table, query, budget);
+            if outcome != Outcome::OutOfBudget || budget == query.budget {
+                return outcome;
+            }
+        }
+        Outcome::OutOfBudget
+    }
+
+    fn search_within(
+        &mut self,
+        network: &Network,
+        table: &Table,
+        query: &Query,
+        budget: u64,
+    ) -> Outcome {
         self.labels.clear();
         self.open.clear();
         self.stamp += 1;
-        let Some((from, until)) = table.gap_at(network.resource[query.start as usize], query.ready) else {
+        let Some((from, until)) = table.gap_at(network.resource[query.start as usize], query.ready)
+        else {
             return Outcome::NoWay;
         };
         self.goal_free = 0;
         if query.goal != NONE {
-            self.goal_free = table.row(network.resource[query.goal as usize]).last().map_or(0, |last| last.end);
+            self.goal_free =
+                table.row(network.resource[query.goal as usize]).last().map_or(0, |last| last.end);
             if self.goal_free == FOREVER || !self.guide_from_start(network, query) {
                 return Outcome::NoWay;
             }
         }
-        self.offer(network, query, Label {
-            node: query.start,
-            heading: query.heading,
-            ride: false,
-            dead: false,
-            from,
-            until,
-            arrival: query.ready,
-            departure: query.ready,
-            parent: NONE,
-            sibling: NONE,
-            scanned: -1,
-            scans: 0,
-        });
+        self.offer(
+            network,
+            query,
+            Label {
+                node: query.start,
+                heading: query.heading,
+                ride: false,
+                dead: false,
+                from,
+                until,
+                arrival: query.ready,
+                departure: query.ready,
+                parent: NONE,
+                sibling: NONE,
+                scanned: -1,
+                scans: 0,
+            },
+        );
         let mut looked = 0;
         while let Some(Reverse((estimate, _, index))) = self.open.pop() {
             let label = self.labels[index as usize].clone();
@@ -160,7 +194,7 @@ impl Planner {
                 break;
             }
             looked += 1;
-            if looked > query.budget {
+            if looked > budget {
                 self.expansions += looked;
                 return Outcome::OutOfBudget;
             }
@@ -189,10 +223,9 @@ impl Planner {
     /// Starts the unhindered search back from the goal. Returns whether there is a way at all.
     fn guide_from_start(&mut self, network: &Network, query: &Query) -> bool {
         self.guide.begin(network, query.goal, query.loaded, Some(query.start));
-        let mut limit = 1 << 22;
         while !self.guide.knows(network, query.model, query.start, query.heading) {
-            self.guide.advance(network, query.model, limit);
-            limit = limit.saturating_add(1 << 20);
+            let reach = self.guide.reach().saturating_add(GUIDE_STEP);
+            self.guide.advance(network, query.model, reach);
         }
         self.guide.to_go(network, query.model, query.start, query.heading) != UNREACHABLE
     }
@@ -206,25 +239,38 @@ impl Planner {
         (time != UNREACHABLE).then_some(Us::from(time))
     }
 
+    /// Total time over a label: when it is reached, and a (weighted) bound of the rest.
+    fn estimate(&self, arrival: Us, to_go: Us) -> Us {
+        (arrival + to_go * self.weight / 4).max(self.goal_free)
+    }
+
     /// Time of the way just searched for if nobody else were there.
     pub fn unhindered(&self, network: &Network, query: &Query) -> Us {
         self.to_go(network, query, query.start, query.heading).unwrap_or(0)
     }
 
-    /// Where the guide has not been yet, lets it search on; a larger estimate comes back.
-    fn sharpen(&mut self, network: &Network, query: &Query, label: &Label, estimate: Us) -> Option<Us> {
-        if query.goal == NONE || self.guide.knows(network, query.model, label.node, label.heading) {
+    /// Where the guide has not been yet, lets it search on until the label is known or can wait; a
+    /// larger estimate comes back.
+    fn sharpen(
+        &mut self,
+        network: &Network,
+        query: &Query,
+        label: &Label,
+        estimate: Us,
+    ) -> Option<Us> {
+        if query.goal == NONE {
             return None;
         }
-        let limit = u32::try_from(estimate - query.ready).unwrap_or(UNREACHABLE).saturating_add(1 << 22);
-        self.guide.advance(network, query.model, limit);
-        match self.to_go(network, query, label.node, label.heading) {
-            Some(time) => {
-                let sharper = (label.arrival + time).max(self.goal_free);
-                (sharper > estimate).then_some(sharper)
+        while !self.guide.knows(network, query.model, label.node, label.heading) {
+            let reach = self.guide.reach().saturating_add(GUIDE_STEP);
+            self.guide.advance(network, query.model, reach);
+            let to_go = self.to_go(network, query, label.node, label.heading);
+            let sharper = to_go.map_or(FOREVER, |time| self.estimate(label.arrival, time));
+            if sharper > estimate {
+                return Some(sharper);
             }
-            None => Some(FOREVER), // never popped before a way is found
         }
+        None
     }
 
     /// Adds a label unless a known one is at least as good.
@@ -248,14 +294,23 @@ impl Planner {
         label.sibling = self.first[at].1;
         let index = self.labels.len() as u32;
         self.first[at].1 = index;
-        self.open.push(Reverse(((label.arrival + to_go).max(self.goal_free), to_go, index)));
+        self.open.push(Reverse((self.estimate(label.arrival, to_go), to_go, index)));
         self.labels.push(label);
     }
 
     /// Offers the useful stops of a straight run in one direction whose total time lies in
     /// `scanned..=upto`. Returns the least total time beyond.
     #[allow(clippy::too_many_arguments)]
-    fn drive(&mut self, network: &Network, table: &Table, query: &Query, parent: u32, label: &Label, heading: u8, upto: Us) -> Us {
+    fn drive(
+        &mut self,
+        network: &Network,
+        table: &Table,
+        query: &Query,
+        parent: u32,
+        label: &Label,
+        heading: u8,
+        upto: Us,
+    ) -> Us {
         let mut beyond = FOREVER;
         let ready = label.arrival + Us::from(query.model.turning(label.heading, heading));
         if ready > label.until {
@@ -277,10 +332,12 @@ impl Planner {
             self.line.push((next, total));
             here = next;
             if let Some(to_go) = self.to_go(network, query, next, heading) {
-                let estimate = (ready + Us::from(query.model.run(total)) + to_go).max(self.goal_free);
+                let estimate = self.estimate(ready + Us::from(query.model.run(total)), to_go);
                 if estimate > upto {
                     beyond = beyond.min(estimate);
-                } else if estimate > label.scanned && useful_stop(network, table, query, next, heading) {
+                } else if estimate > label.scanned
+                    && useful_stop(network, table, query, next, heading)
+                {
                     if !self.settle_line(network, table, query.kind, &mut settled, label.until) {
                         break;
                     }
@@ -296,7 +353,14 @@ impl Planner {
 
     /// Applies the reservations of those waypoints of the line that a robot stopping at its end
     /// passes before it brakes: they bind all longer runs too. Returns whether a departure is left.
-    fn settle_line(&mut self, network: &Network, table: &Table, kind: &Kind, settled: &mut usize, until: Us) -> bool {
+    fn settle_line(
+        &mut self,
+        network: &Network,
+        table: &Table,
+        kind: &Kind,
+        settled: &mut usize,
+        until: Us,
+    ) -> bool {
         let last = self.line.len() - 1;
         let total = self.line[last].1;
         if total < kind.run_up() + kind.braking() {
@@ -316,7 +380,15 @@ impl Planner {
     }
 
     /// Applies one waypoint's reservations to the departures shared by all longer runs.
-    fn settle(&mut self, network: &Network, table: &Table, at: usize, enter: f64, leave: f64, until: Us) {
+    fn settle(
+        &mut self,
+        network: &Network,
+        table: &Table,
+        at: usize,
+        enter: f64,
+        leave: f64,
+        until: Us,
+    ) {
         if at == 0 {
             let latest = until - ceil_us(leave);
             self.stable.retain_mut(|window| {
@@ -331,7 +403,16 @@ impl Planner {
 
     /// Offers a stop at the end of the line, one label per free interval there.
     #[allow(clippy::too_many_arguments)]
-    fn stop(&mut self, network: &Network, table: &Table, query: &Query, parent: u32, label: &Label, heading: u8, settled: usize) {
+    fn stop(
+        &mut self,
+        network: &Network,
+        table: &Table,
+        query: &Query,
+        parent: u32,
+        label: &Label,
+        heading: u8,
+        settled: usize,
+    ) {
         let last = self.line.len() - 1;
         let (node, total) = self.line[last];
         let profile = query.kind.run(total);
@@ -367,20 +448,24 @@ impl Planner {
                 (departure <= high && departure + duration <= until).then_some(departure)
             });
             if let Some(departure) = fits {
-                self.offer(network, query, Label {
-                    node,
-                    heading,
-                    ride: false,
-                    dead: false,
-                    from,
-                    until,
-                    arrival: departure + duration,
-                    departure,
-                    parent,
-                    sibling: NONE,
-                    scanned: -1,
-                    scans: 0,
-                });
+                self.offer(
+                    network,
+                    query,
+                    Label {
+                        node,
+                        heading,
+                        ride: false,
+                        dead: false,
+                        from,
+                        until,
+                        arrival: departure + duration,
+                        departure,
+                        parent,
+                        sibling: NONE,
+                        scanned: -1,
+                        scans: 0,
+                    },
+                );
             }
         }
     }
@@ -390,17 +475,21 @@ impl Planner {
         for lift in network.lifts_from(label.node) {
             let arrival = label.arrival + lift.travel;
             if arrival <= label.until {
-                self.offer(network, query, Label {
-                    node: lift.to,
-                    ride: true,
-                    arrival,
-                    departure: label.arrival,
-                    parent,
-                    sibling: NONE,
-                    scanned: -1,
-                    scans: 0,
-                    ..label.clone()
-                });
+                self.offer(
+                    network,
+                    query,
+                    Label {
+                        node: lift.to,
+                        ride: true,
+                        arrival,
+                        departure: label.arrival,
+                        parent,
+                        sibling: NONE,
+                        scanned: -1,
+                        scans: 0,
+                        ..label.clone()
+                    },
+                );
             }
         }
     }
@@ -446,7 +535,9 @@ fn useful_stop(network: &Network, table: &Table, query: &Query, node: u32, headi
             if !table.row(network.resource[next as usize]).is_empty() {
                 return true;
             }
-        } else if network.may_enter(node, next, query.goal, query.loaded) || is_goal(network, query, next) {
+        } else if network.may_enter(node, next, query.goal, query.loaded)
+            || is_goal(network, query, next)
+        {
             return true;
         }
     }

@@ -31,6 +31,9 @@ STATIONS = ("pick_stations", "replenishment_stations", "elevators")
 AISLES = ("horizontal_aisles", "vertical_aisles")
 SIZE = (*AISLES, *STATIONS, "block_length", "single_lane", "hall_width", "buffer_width")
 
+MOST_TILES = 4_000_000
+"""More would not fit into memory; the largest published layout has 12,000."""
+
 
 def _even_aisles(p: LayoutParameters) -> list[str]:
     if not p.two_directional_aisles:
@@ -76,6 +79,14 @@ def _elevators(p: LayoutParameters) -> list[str]:
     return []
 
 
+def _size(p: LayoutParameters) -> list[str]:
+    size = extent(p)
+    tiles = size.rows * size.columns * p.tiers
+    if tiles > MOST_TILES:
+        return [f"tiers, aisles, block_length: {tiles} tiles, at most {MOST_TILES} are possible"]
+    return []
+
+
 def _room_at_sides(p: LayoutParameters) -> list[str]:
     return [
         f"{' + '.join(STATIONS)}: the {side.name.lower()} side has room for "
@@ -90,7 +101,8 @@ def _queues_fit(p: LayoutParameters) -> list[str]:
     problems = []
     for side in SIDES:
         length = size.height if side in (Direction.EAST, Direction.WEST) else size.width
-        chosen = sites(p, side)
+        crowded = sites_at(p, side) > aisles_at(p, side) // 2  # reported by _room_at_sides
+        chosen = [] if crowded else sites(p, side)
         if any(not 0 <= site.entrance < length for site in chosen):
             problems.append(
                 f"entry_exit_distance: a queue on the {side.name.lower()} side begins outside "
@@ -126,6 +138,7 @@ RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (
     (("entry_exit_distance", "single_lane"), _entrance),
     (STATIONS, _some_stations),
     (("tiers", "elevators"), _elevators),
+    ((*SIZE, "tiers"), _size),
     ((*AISLES, *STATIONS), _room_at_sides),
     (
         (*SIZE, "entry_exit_distance", "counter_clockwise_ring", "two_directional_aisles"),

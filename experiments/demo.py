@@ -1,0 +1,131 @@
+"""The demonstration of `make demo`: the default warehouse, three seeds, a table and a picture.
+
+Every run's trace is checked before its figures are shown; the run folders and the picture are left
+in `results/demo`.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from scipy import stats
+
+from rmfs.errors import InputError
+from rmfs.measure import load_run, tables, write_run
+from rmfs.measure.checker import check
+from rmfs.simulation.run import simulate
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+SEEDS = (1, 2, 3)
+TARGET = Path("results") / "demo"
+FIGURES = {
+    "units_per_h": ("units per hour", "{:,.1f}"),
+    "orders_per_h": ("orders per hour", "{:,.1f}"),
+    "units_per_visit": ("units per pod visit", "{:.3f}"),
+    "distance_per_unit_m": ("distance per unit, m", "{:,.2f}"),
+    "pick_station_idle_share": ("pick stations idle, share", "{:.4f}"),
+    "sim_per_wall": ("simulated seconds per wall second", "{:,.0f}"),
+}
+"""Column of the footprint, label and format of each figure shown."""
+
+
+def interval(values: pd.Series, confidence: float = 0.95) -> tuple[float, float]:
+    """Return the mean of independent runs and half the width of its confidence interval.
+
+    Parameters
+    ----------
+    confidence
+        Probability that intervals made this way cover the true mean, if runs are normally
+        distributed (Student's t).
+    """
+    count = len(values)
+    quantile = stats.t.ppf((1 + confidence) / 2, count - 1)
+    return float(values.mean()), float(quantile * values.std(ddof=1) / np.sqrt(count))
+
+
+def run(seed: int) -> pd.DataFrame:
+    """Simulate one seed, prove its trace safe, write its folder and return its footprint."""
+    done = simulate("default", "default", "default", seed=seed, trace=True)
+    report = check(done.layout, done.trace, until_us=round(done.end_s * 1e6))
+    if not report.ok:
+        raise SystemExit(f"seed {seed}: {report.summary()}")
+    write_run(done, TARGET / f"seed{seed}", report=report)
+    say(f"seed {seed}: {done.end_s:,.0f} s in {done.wall_s:.2f} s; {report.summary()}")
+    return tables.footprint(done, report)
+
+
+def table(footprints: pd.DataFrame) -> Table:
+    """Return mean and confidence interval of each figure over the seeds."""
+    from rich import box
+    from rich.table import Table
+
+    first = footprints.iloc[0]
+    title = (
+        f"{first['robots']} robots, {first['pods']} pods, {first['pick_stations']} pick and "
+        f"{first['replenishment_stations']} replenishment stations, "
+        f"{first['duration_s'] / 3600:g} h, {len(footprints)} seeds"
+    )
+    shown = Table(
+        "", "mean", "95 % interval", title=title, title_justify="left", box=box.SIMPLE_HEAD
+    )
+    for column in shown.columns[1:]:
+        column.justify = "right"
+    for name, (label, form) in FIGURES.items():
+        mean, half = interval(footprints[name])
+        shown.add_row(label, form.format(mean), f"± {form.format(half)}")
+    return shown
+
+
+def picture(path: Path) -> None:
+    """Draw where the robots of all seeds drove."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from matplotlib import pyplot as plt
+
+    from rmfs.files import replacing
+    from rmfs.measure.plots import heat
+
+    frames = [load_run(TARGET / f"seed{seed}").table("heat") for seed in SEEDS]
+    together = frames[0].assign(visits=sum(frame["visits"] for frame in frames))
+    figure, axes = plt.subplots(figsize=(11, 6), layout="constrained")
+    heat(together, axes)
+    axes.set_title(f"Default layout, {len(SEEDS)} seeds")
+    with replacing(path) as temporary:
+        figure.savefig(temporary, format="png", dpi=150)
+    plt.close(figure)
+
+
+def say(text: str) -> None:
+    """Print one step."""
+    print(text, flush=True)
+
+
+def main() -> int:
+    """Run the demonstration and return the exit code."""
+    from rich.console import Console
+
+    began = time.perf_counter()
+    try:
+        footprints = pd.concat([run(seed) for seed in SEEDS], ignore_index=True)
+        picture(TARGET / "heat.png")
+    except InputError as error:
+        print(f"demo: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("demo: interrupted", file=sys.stderr)
+        return 130
+    Console().print(table(footprints))
+    say(f"Run folders and heat map are in {TARGET}; {time.perf_counter() - began:.1f} s in all.")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,175 @@
+"""From tasks to traffic: what robots are commanded to do, and what follows from what they report."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.control.decisions import BringForBundles, BringForPicks, Park, Rest
+from rmfs.control.problems import Problem, Trigger
+from rmfs.traffic import Step
+from rmfs.world.tasks import TaskKind
+
+if TYPE_CHECKING:
+    from rmfs.simulation.simulation import Simulation
+    from rmfs.world.robots import Robot
+    from rmfs.world.tasks import Task
+
+# plain numbers for the hot path
+_DRIVE, _LIFT, _SET_DOWN, _STATION = (
+    int(step) for step in (Step.DRIVE, Step.LIFT, Step.SET_DOWN, Step.STATION)
+)
+
+
+class Dispatch:
+    """Starts tasks and follows robots.
+
+    A robot is sent to a storage place only if no other keeps it. If one without work stands
+    beneath the pod that is wanted, it is sent elsewhere first; the robot that comes for the pod
+    sets off when the place has been left.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._world = simulation.world
+        self._storage = simulation.world.storage
+        self._tier: list[int] = simulation.layout.tier.tolist()
+        self._held_up: dict[int, Robot] = {}
+
+    # --- decisions of TA ------------------------------------------------------------------------
+
+    def bring_for_picks(self, decision: BringForPicks) -> None:
+        """Bring a pod, or go on with the one carried, to a pick station."""
+        robot = decision.robot
+        task = self._world.start_pick(robot, decision.pod, decision.station)
+        self._bring(robot, task)
+
+    def bring_for_bundles(self, decision: BringForBundles) -> None:
+        """Bring a pod, or go on with the one carried, to a replenishment station."""
+        robot = decision.robot
+        task = self._world.start_replenish(robot, decision.pod, decision.station)
+        self._bring(robot, task)
+
+    def park(self, decision: Park) -> None:
+        """Store the pod a robot carries."""
+        robot, place = decision
+        task = self._world.start_park(robot, place)
+        self._tell(task)
+        self._command(robot, place, [(_DRIVE, place), (_SET_DOWN, robot.pod)])
+
+    def rest(self, decision: Rest) -> None:
+        """Let a robot wait at a place."""
+        robot, place = decision
+        task = self._world.start_rest(robot, place)
+        self._tell(task)
+        if robot.waypoint != place:
+            self._command(robot, place, [(_DRIVE, place)])
+
+    def _bring(self, robot: Robot, task: Task) -> None:
+        self._tell(task)
+        if robot.pod < 0:
+            self._fetch(robot)
+        elif robot.station == task.station:
+            self._simulation.services[task.station].go_on()
+        else:
+            waypoint = self._world.stations[task.station].waypoint
+            self._command(robot, waypoint, [(_STATION, task.station)])
+
+    def _fetch(self, robot: Robot) -> None:
+        """Send a robot to its pod as soon as nobody else keeps the place."""
+        task = robot.task
+        assert task is not None
+        place = self._storage.place_of[task.pod]
+        keeper = self._storage.kept_by[place]
+        if keeper not in (-1, robot.index):
+            self._held_up[place] = robot
+            self._send_away(self._world.robots[keeper])
+            return
+        self._storage.keep(robot, place)
+        program = [(_DRIVE, place), (_LIFT, task.pod), (_STATION, task.station)]
+        self._command(robot, place, program)
+
+    def _send_away(self, keeper: Robot) -> None:
+        """Let a robot without work make room; with nowhere to go it stays until there is."""
+        place = self._simulation.panel[Problem.TA].rest_place(keeper)
+        if place >= 0:
+            self.rest(Rest(keeper, place))
+
+    def _command(self, robot: Robot, goal: int, program: list[tuple[int, int]]) -> None:
+        if robot.station >= 0:
+            self._leave_station(robot)
+        robot.waypoint = goal
+        robot.tier = self._tier[goal]
+        self._simulation.traffic.command(robot.index, program)
+        self.departed(robot.index)
+
+    def _leave_station(self, robot: Robot) -> None:
+        station = self._world.stations[robot.station]
+        self._simulation.observers.visit_ended(
+            self._world.now_s, station.index, robot.pod, robot.index
+        )
+        station.robot = -1
+        robot.station = -1
+
+    def _tell(self, task: Task) -> None:
+        self._simulation.observers.task_started(
+            self._world.now_s, task.robot, task.kind.value, task.station
+        )
+
+    # --- reports of traffic ---------------------------------------------------------------------
+
+    def departed(self, index: int, _place: int = -1) -> None:
+        """Give up the places a robot has left, and send off whoever waited for one of them."""
+        robot = self._world.robots[index]
+        if len(robot.places) < 2 and robot.waypoint in robot.places:
+            return
+        rest = self._simulation.traffic.rest_waypoint(index)
+        if self._storage.departed(robot, rest):
+            self._simulation.phase.place_left()
+            self._send_held_up()
+
+    def _send_held_up(self) -> None:
+        for place, robot in list(self._held_up.items()):
+            keeper = self._storage.kept_by[place]
+            if keeper < 0:
+                del self._held_up[place]
+                self._fetch(robot)
+            elif robot is not self._world.robots[keeper] and self._stays(keeper, place):
+                self._send_away(self._world.robots[keeper])
+
+    def _stays(self, keeper: int, place: int) -> bool:
+        return self._world.robots[keeper].waypoint == place
+
+    def lift_started(self, index: int, pod: int) -> None:
+        """A robot lifts its pod; next it goes to the station of its task."""
+        world = self._world
+        robot = world.robots[index]
+        assert robot.task is not None
+        place = robot.waypoint
+        world.lift(robot, pod)
+        robot.waypoint = world.stations[robot.task.station].waypoint
+        robot.tier = self._tier[robot.waypoint]
+        self._simulation.observers.pod_lifted(world.now_s, pod, index, place)
+        self._simulation.phase.signal(Trigger.POD_LIFTED, pod)
+
+    def at_head(self, index: int, station: int) -> None:
+        """A robot has reached a station: its pod can be served."""
+        world = self._world
+        robot, reached = world.robots[index], world.stations[station]
+        robot.station = station
+        reached.robot = index
+        reached.visits += 1
+        self._simulation.observers.visit_started(world.now_s, station, robot.pod, index)
+        self._simulation.phase.signal(Trigger.POD_AT_STATION, station)
+        self._simulation.services[station].go_on()
+
+    def set_down(self, index: int, pod: int) -> None:
+        """A pod stands at its place and may be claimed by anyone."""
+        robot = self._world.robots[index]
+        self._world.set_down(robot, robot.waypoint)
+        self._simulation.observers.pod_set_down(self._world.now_s, pod, index, robot.waypoint)
+
+    def idle(self, index: int, _waypoint: int) -> None:
+        """A robot has done all it was commanded; one that parked a pod needs a task."""
+        task = self._world.robots[index].task
+        if task is not None and task.kind is TaskKind.PARK:
+            self._simulation.end_task(index)

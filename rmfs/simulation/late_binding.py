@@ -1,0 +1,103 @@
+"""Late binding: work that comes up while a pod is on its way is added to the pod's task."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.control.problems import Problem
+from rmfs.world.tasks import TaskKind
+
+if TYPE_CHECKING:
+    from rmfs.control.travel import Travel
+    from rmfs.simulation.panel import Panel
+    from rmfs.world import World
+    from rmfs.world.orders import Bundle, Order
+    from rmfs.world.stations import PickStation
+    from rmfs.world.tasks import Task
+
+
+class LateBinding:
+    """Looks at what has changed: orders and bundles just assigned, pods just lifted.
+
+    A task is extended only while its pod is carried and at least one of its requests is left; a pod
+    that has none left is looked at when its robot asks for a task. Of several pods the one that
+    will be at the station first gets the work. PPS switches this on and off.
+    """
+
+    def __init__(self, world: World, travel: Travel, panel: Panel) -> None:
+        self._world = world
+        self._travel = travel
+        self._panel = panel
+        self._orders: list[Order] = []
+        self._bundles: list[Bundle] = []
+        self._pods: list[int] = []
+
+    def order_assigned(self, order: Order) -> None:
+        """Remember an order put on a pick station."""
+        self._orders.append(order)
+
+    def bundle_assigned(self, bundle: Bundle) -> None:
+        """Remember a bundle assigned to station and pod."""
+        self._bundles.append(bundle)
+
+    def pod_lifted(self, pod: int) -> None:
+        """Remember a pod that has just been lifted for a task."""
+        self._pods.append(pod)
+
+    def bind(self) -> None:
+        """Extend tasks by what has come up since the last time."""
+        given = self._panel[Problem.PPS].parameters
+        if given.late_bundles:
+            for bundle in self._bundles:
+                self._extend_replenish(bundle.station, bundle.pod)
+        if given.late_picks:
+            for order in self._orders:
+                self._bind_order(order)
+        for pod in self._pods:
+            self._extend(pod, given.late_picks, given.late_bundles)
+        self._bundles.clear()
+        self._orders.clear()
+        self._pods.clear()
+
+    def _bind_order(self, order: Order) -> None:
+        station = self._world.pick_stations[order.station]
+        available = self._world.inventory.available.item
+        for line in order.lines:
+            if not line.open_units:
+                continue
+            tasks = [
+                task
+                for pod, task in station.tasks.items()
+                if task.picks and available(line.sku, pod) and self._is_carried(task)
+            ]
+            if len(tasks) > 1:
+                self._sort_by_arrival(tasks, station)
+            for task in tasks:
+                self._world.extend_pick(task, line.sku)
+
+    def _extend(self, pod: int, picks: bool, bundles: bool) -> None:
+        """Look for work for a pod that has just been lifted."""
+        task = self._world.robots[self._world.storage.claimed_by[pod]].task
+        if task is None or task.pod != pod:
+            return
+        if task.kind is TaskKind.REPLENISH:
+            if bundles:
+                self._extend_replenish(task.station, pod)
+        elif picks and task.kind is TaskKind.PICK and task.picks:
+            requests = self._world.pick_stations[task.station].requests
+            available = self._world.inventory.available.item
+            for sku in [sku for sku in requests.lines if available(sku, pod)]:
+                self._world.extend_pick(task, sku)
+
+    def _extend_replenish(self, station: int, pod: int) -> None:
+        task = self._world.stations[station].tasks.get(pod)
+        if task is not None and task.bundles and self._is_carried(task):
+            self._world.extend_replenish(task)
+
+    def _is_carried(self, task: Task) -> bool:
+        return self._world.robots[task.robot].pod == task.pod
+
+    def _sort_by_arrival(self, tasks: list[Task], station: PickStation) -> None:
+        """Sort tasks by the time their robots still need to the station, then by age."""
+        times = self._travel.to(station.waypoint, loaded=True)
+        tasks.sort(key=lambda task: times.item(self._travel.robot_waypoint(task.robot)))

@@ -1,0 +1,75 @@
+"""The controllers of a run: who is installed, who is asked when, and who is told what."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.control.problems import Problem, Trigger
+from rmfs.random import Stream, generator
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rmfs.control.base import Controller
+    from rmfs.control.settings import Choice, ControllerSettings
+    from rmfs.control.view import View
+
+_ORDER = list(Problem)
+
+
+class Panel:
+    """The controllers installed at present, one per problem.
+
+    Whoever needs a controller looks it up here each time, so that any of them can be exchanged
+    while the simulation runs.
+
+    Parameters
+    ----------
+    settings
+        The controllers of the beginning.
+    seed
+        The run's seed; each controller has a random stream of its own below it.
+
+    Attributes
+    ----------
+    calls
+        Per trigger, the problems whose controllers are to be asked after it.
+    listeners
+        Per trigger, methods that are told of it at once.
+    """
+
+    def __init__(self, settings: ControllerSettings, view: View, seed: int) -> None:
+        self._view = view
+        self._seed = seed
+        self._installed: dict[Problem, Controller[Any]] = {}
+        self._generations = dict.fromkeys(Problem, 0)
+        self.calls: list[frozenset[Problem]] = []
+        self.listeners: list[list[Callable[[Trigger, Any], None]]] = []
+        for problem in Problem:
+            self._create(settings.choices[problem])
+        self._connect()
+
+    def __getitem__(self, problem: Problem) -> Any:
+        """Look up the controller of a problem."""
+        return self._installed[problem]
+
+    def install(self, choice: Choice) -> None:
+        """Exchange the controller of a problem; the caller raises `Trigger.START` for it."""
+        self._create(choice)
+        self._connect()
+
+    def _create(self, choice: Choice) -> None:
+        problem = choice.problem
+        number = self._generations[problem]
+        self._generations[problem] += 1
+        rng = generator(self._seed, Stream.CONTROLLERS, _ORDER.index(problem), number)
+        self._installed[problem] = choice.controller(choice.parameters, self._view, rng)
+
+    def _connect(self) -> None:
+        """Work out who is asked after, and told of, each trigger."""
+        everyone = self._installed.items()
+        self.calls = [
+            frozenset(p for p, c in everyone if trigger in c.triggers | c.subscriptions)
+            for trigger in Trigger
+        ]
+        self.listeners = [[c.hear for _, c in everyone if t in c.hears] for t in Trigger]

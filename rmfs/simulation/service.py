@@ -1,0 +1,131 @@
+"""What happens at the stations: units and bundles change place, one at a time.
+
+At a pick station a unit keeps the robot for `unit_pick_s` and the station for `unit_transfer_s`. On
+the same pod units follow each other as fast as the slower of the two allows; after its last unit
+the robot leaves while the station is still busy, so that the change of pods is hidden as long as it
+is shorter than the rest of the transfer. At a replenishment station a bundle keeps both.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.control.problems import Trigger
+from rmfs.world.tasks import TaskKind
+
+if TYPE_CHECKING:
+    from rmfs.layout.model import PickStation as PickStationLayout
+    from rmfs.layout.model import ReplenishmentStation as ReplenishmentStationLayout
+    from rmfs.simulation.simulation import Simulation
+    from rmfs.world.orders import Order
+    from rmfs.world.stations import PickStation, ReplenishmentStation
+    from rmfs.world.tasks import Task
+
+
+class PickService:
+    """The picker of one station.
+
+    A unit leaves its pod, and its request is fulfilled, when its pick starts. An order whose last
+    unit is picked leaves its slot when the station is done with that unit. (RAWSim-O loses up to
+    one tick of 0.4 s per completed order there.)
+    """
+
+    def __init__(
+        self, simulation: Simulation, station: PickStation, layout: PickStationLayout
+    ) -> None:
+        self._simulation = simulation
+        self._station = station
+        self._transfer_us = round(layout.unit_transfer_s * 1e6)
+        self._pick_us = round(layout.unit_pick_s * 1e6)
+        self._busy_until_us = 0
+        self._robot_until_us = 0
+        self._finished: list[Order] = []
+
+    def go_on(self) -> None:
+        """Do what can be done now for the robot at the head."""
+        simulation, station = self._simulation, self._station
+        now_us = simulation.now_us
+        if station.robot < 0 or now_us < self._robot_until_us:
+            return
+        task = simulation.world.robots[station.robot].task
+        if task is None or task.kind is not TaskKind.PICK:
+            return
+        if not task.picks:
+            simulation.end_task(station.robot)
+        elif now_us >= self._busy_until_us:
+            self._pick(task)
+
+    def _pick(self, task: Task) -> None:
+        """Start the next pick of a task."""
+        simulation, observers = self._simulation, self._simulation.observers
+        world, index = simulation.world, self._station.index
+        pick = world.pick_unit(task)
+        line, order = pick.line, pick.line.order
+        self._busy_until_us = simulation.now_us + self._transfer_us
+        self._robot_until_us = simulation.now_us + self._pick_us
+        simulation.agenda.at(self._busy_until_us, self._unit_transferred)
+        if self._pick_us != self._transfer_us:
+            simulation.agenda.at(self._robot_until_us, self.go_on)
+        now_s = world.now_s
+        observers.station_busy(index, now_s, self._busy_until_us / 1e6)
+        observers.unit_picked(
+            now_s, order, line.sku, task.pod, task.robot, index, pick.late_bound
+        )
+        if line.picked_units == line.units:
+            observers.line_picked(now_s, order, line.sku, line.units)
+            if not order.unpicked_units:
+                self._finished.append(order)
+        simulation.phase.signal(Trigger.UNIT_PICKED, (task.pod, line.sku))
+
+    def _unit_transferred(self) -> None:
+        """Hand complete orders on; the station is free for the next unit."""
+        simulation = self._simulation
+        if self._finished:
+            for order in self._finished:
+                simulation.world.complete_order(order)
+                simulation.observers.order_completed(order)
+                simulation.phase.signal(Trigger.ORDER_COMPLETED, order)
+            self._finished.clear()
+        self.go_on()
+
+
+class ReplenishmentService:
+    """The worker of one replenishment station.
+
+    A bundle is in its pod, and leaves the station's load, when its transfer starts.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        station: ReplenishmentStation,
+        layout: ReplenishmentStationLayout,
+    ) -> None:
+        self._simulation = simulation
+        self._station = station
+        self._transfer_us = round(layout.bundle_transfer_s * 1e6)
+        self._busy_until_us = 0
+
+    def go_on(self) -> None:
+        """Do what can be done now for the robot at the head."""
+        simulation, station = self._simulation, self._station
+        if station.robot < 0 or simulation.now_us < self._busy_until_us:
+            return
+        task = simulation.world.robots[station.robot].task
+        if task is None or task.kind is not TaskKind.REPLENISH:
+            return
+        if task.bundles:
+            self._store(task)
+        else:
+            simulation.end_task(station.robot)
+
+    def _store(self, task: Task) -> None:
+        """Start to put the next bundle of a task into its pod."""
+        simulation = self._simulation
+        bundle = simulation.world.store_bundle(task)
+        self._busy_until_us = simulation.now_us + self._transfer_us
+        simulation.agenda.at(self._busy_until_us, self.go_on)
+        now_s = simulation.world.now_s
+        simulation.observers.station_busy(self._station.index, now_s, self._busy_until_us / 1e6)
+        simulation.observers.bundle_stored(bundle, task.robot)
+        simulation.phase.signal(Trigger.BUNDLE_STORED, bundle)

@@ -1,0 +1,228 @@
+"""The simulation: world, traffic, controllers and agenda of one run, and its loop."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import TYPE_CHECKING
+
+from rmfs.control.problems import Trigger
+from rmfs.control.travel import Travel
+from rmfs.control.view import View
+from rmfs.scenario import initial_stock, sku_set
+from rmfs.simulation.agenda import Agenda
+from rmfs.simulation.dispatch import Dispatch
+from rmfs.simulation.late_binding import LateBinding
+from rmfs.simulation.observers import Observers
+from rmfs.simulation.pacing import Instant
+from rmfs.simulation.panel import Panel
+from rmfs.simulation.phase import DecisionPhase
+from rmfs.simulation.service import PickService, ReplenishmentService
+from rmfs.simulation.supply import Supply
+from rmfs.traffic import EventKind, Traffic
+from rmfs.world import World
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from rmfs.control.settings import ControllerSettings
+    from rmfs.layout.model import Layout
+    from rmfs.measure.observer import Observer
+    from rmfs.scenario import Scenario
+    from rmfs.simulation.pacing import Pacing
+
+SAMPLE_S = 60.0
+"""Time between two samples."""
+
+STALL_S = 3600.0
+"""So long nothing may move while robots wait for a way before a run is given up."""
+
+_LAST = 9  # priority of what only looks: after all that happens at the same time
+
+
+class Stalled(RuntimeError):
+    """Nothing can move any more; the message lists every robot."""
+
+
+class Simulation:
+    """One run, from its first event to its last.
+
+    Events happen at their exact times; all that happens at one instant is handled before the
+    controllers are asked.
+
+    Parameters
+    ----------
+    layout, scenario, controllers
+        What is simulated.
+    seed
+        Seed of all random streams, 0 or greater.
+    observers
+        Told of everything that happens.
+    pacing
+        What decisions cost in simulated time.
+    traffic
+        What moves the robots; by default the compiled core without trace.
+
+    Attributes
+    ----------
+    now_us
+        Present time in microseconds; `world.now_s` is the same in seconds.
+    """
+
+    def __init__(
+        self,
+        layout: Layout,
+        scenario: Scenario,
+        controllers: ControllerSettings,
+        *,
+        seed: int = 0,
+        observers: Sequence[Observer] = (),
+        pacing: Pacing | None = None,
+        traffic: Traffic | None = None,
+    ) -> None:
+        self.layout = layout
+        self.scenario = scenario
+        self.controllers = controllers
+        self.seed = seed
+        self.warmup_s = scenario.warmup_s
+        self.end_s = scenario.warmup_s + scenario.duration_s
+        self.now_us = 0
+        self.agenda = Agenda()
+        self.observers = Observers(observers)
+        self.traffic = traffic if traffic is not None else Traffic(layout)
+        self.world = _stocked_world(layout, scenario, seed)
+        travel = Travel(layout, self.traffic)
+        self.view = View(self.world, travel)
+        self.panel = Panel(controllers, self.view, seed)
+        self.dispatch = Dispatch(self)
+        self.phase = DecisionPhase(self, controllers)
+        self.late_binding = LateBinding(self.world, travel, self.panel)
+        self.supply = Supply(self, scenario, seed)
+        self.services: list[PickService | ReplenishmentService] = [
+            *(
+                PickService(self, station, given)
+                for station, given in zip(
+                    self.world.pick_stations, layout.pick_stations, strict=True
+                )
+            ),
+            *(
+                ReplenishmentService(self, station, given)
+                for station, given in zip(
+                    self.world.replenishment_stations, layout.replenishment_stations, strict=True
+                )
+            ),
+        ]
+        self._pacing = pacing if pacing is not None else Instant()
+        self._end_us = self.us_at(self.end_s)
+        self._moved_us = 0
+        self._handlers = self._traffic_handlers()
+
+    def run(self, progress: Callable[[float, float], None] | None = None) -> None:
+        """Simulate from time zero to the end.
+
+        Parameters
+        ----------
+        progress
+            Called with the simulated time so far and in total, about a hundred times.
+
+        Raises
+        ------
+        Stalled
+            If nothing can move any more (only possible in a layout that is not well-formed).
+        """
+        self._begin(progress)
+        agenda, phase, end_us = self.agenda, self.phase, self._end_us
+        advance = self.traffic.advance
+        while True:
+            until_us = min(agenda.next_us, end_us)
+            events = advance(min(until_us, self._pacing.limit_us(self.now_us)))
+            if events:
+                self._set_now(events[0][0])
+                self._moved_us = self.now_us
+                for _, kind, robot, value in events:
+                    handler = self._handlers[kind]
+                    if handler is not None:
+                        handler(robot, value)
+            else:
+                self._set_now(until_us)
+            agenda.run_due(self.now_us)
+            phase.settle()
+            if self.now_us >= end_us and not events and agenda.next_us > end_us:
+                break
+        self.observers.run_ended(self.end_s)
+
+    def end_task(self, robot: int) -> None:
+        """End a robot's task: it needs a new one."""
+        self.world.end_task(self.world.robots[robot])
+        self.phase.signal(Trigger.ROBOT_FREE, robot)
+
+    @staticmethod
+    def us_at(time_s: float) -> int:
+        """Return the first microsecond that is not before a time."""
+        time_us = ceil(time_s * 1e6)
+        return time_us if time_us / 1e6 >= time_s else time_us + 1
+
+    def _set_now(self, now_us: int) -> None:
+        self.now_us = now_us
+        self.world.now_s = now_us / 1e6
+
+    def _traffic_handlers(self) -> list[Callable[[int, int], None] | None]:
+        """Handler per kind of event; the others matter only to traffic itself."""
+        handlers: list[Callable[[int, int], None] | None] = [None] * len(EventKind)
+        handlers[EventKind.DEPARTED] = self.dispatch.departed
+        handlers[EventKind.ARRIVED] = self.dispatch.departed
+        handlers[EventKind.LIFT_STARTED] = self.dispatch.lift_started
+        handlers[EventKind.AT_HEAD] = self.dispatch.at_head
+        handlers[EventKind.SET_DOWN] = self.dispatch.set_down
+        handlers[EventKind.IDLE] = self.dispatch.idle
+        return handlers
+
+    # --- what happens at fixed times --------------------------------------------------------
+
+    def _begin(self, progress: Callable[[float, float], None] | None) -> None:
+        self.observers.run_started(self)
+        self.supply.top_up()
+        self.phase.signal(Trigger.START)
+        if self.warmup_s == 0:
+            self._end_warmup()
+        else:
+            self.agenda.at(self.us_at(self.warmup_s), self._end_warmup, _LAST)
+        if progress is not None:
+            self._report(progress, 0)
+        self.phase.settle()
+
+    def _end_warmup(self) -> None:
+        self.observers.warmup_ended(self.world.now_s)
+        self.traffic.reset_statistics()
+        for statistics in self.phase.statistics.values():
+            statistics.reset()
+        self._sample_again(1)
+
+    def _sample_again(self, number: int) -> None:
+        """Take the next sample, counted from the end of the warm-up, if it is within the run."""
+        time_s = self.warmup_s + number * SAMPLE_S
+        if time_s <= self.end_s:
+            self.agenda.at(self.us_at(time_s), lambda: self._sample(number), _LAST)
+
+    def _sample(self, number: int) -> None:
+        if self.now_us - self._moved_us > STALL_S * 1e6 and self.traffic.blocked():
+            raise Stalled(
+                f"nothing has moved since {self._moved_us / 1e6:.0f} s\n"
+                f"{self.traffic.state_report()}"
+            )
+        self.observers.sampled(self.world.now_s)
+        self._sample_again(number + 1)
+
+    def _report(self, progress: Callable[[float, float], None], percent: int) -> None:
+        progress(self.world.now_s, self.end_s)
+        if percent < 100:
+            time_us = self._end_us * (percent + 1) // 100
+            self.agenda.at(time_us, lambda: self._report(progress, percent + 1), _LAST)
+
+
+def _stocked_world(layout: Layout, scenario: Scenario, seed: int) -> World:
+    """Build the world at time zero."""
+    skus = sku_set(scenario.skus)
+    world = World(layout, skus)
+    stock = initial_stock(skus, layout.pod_capacity, scenario.stock.initial_share, seed)
+    world.stock(stock.pod.tolist(), stock.sku.tolist(), stock.units.tolist())
+    return world

@@ -1,0 +1,161 @@
+"""`rmfs run`: options, outputs, errors of one line, exit codes, and nothing left behind."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from rmfs.cli import main
+from rmfs.errors import InputError, LayoutError
+from rmfs.measure import load_run
+
+
+def one_line(capsys) -> str:
+    """The only line on the error stream, whatever steps were told before it."""
+    lines = capsys.readouterr().err.splitlines()
+    steps = ("simulating", "writing", "checking")
+    complaints = [line for line in lines if not line.split(": ", 1)[1].startswith(steps)]
+    assert len(complaints) == 1, lines
+    assert complaints[0].startswith("rmfs: ")
+    return complaints[0]
+
+
+def files(folder: Path = Path()) -> list[str]:
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*"))
+
+
+def test_a_run_with_defaults(calls, capsys):
+    assert main(["run"]) == 0
+    target = Path("results/default-default-default-seed0")
+    assert load_run(target).footprint["orders_completed"] == 1
+    (call,) = calls
+    assert call["layout"] == call["scenario"] == call["controllers"] == "default"
+    assert (call["seed"], call["pacing"], call["overrides"]) == (0, "instant", [])
+    assert call["trace"] is False
+    out = capsys.readouterr()
+    assert "units per hour" in out.out and "18.0" in out.out
+    assert str(target) in out.out
+    assert [line.split()[1] for line in out.err.splitlines()] == ["simulating", "writing"]
+
+
+def test_all_options_arrive(calls):
+    arguments = "run --layout basic --scenario basic --controllers random --seed 7 --out here/run"
+    more = ["--set", "layout.robots=16", "--set", "controllers.psa.name=random", "--trace"]
+    assert main([*arguments.split(), *more, "--allow-not-well-formed"]) == 0
+    (call,) = calls
+    assert call["overrides"] == [
+        (["layout", "robots"], 16),
+        (["controllers", "psa", "name"], "random"),
+    ]
+    assert (call["layout"], call["controllers"], call["seed"]) == ("basic", "random", 7)
+    assert call["allow_not_well_formed"] is True
+    assert load_run(Path("here/run")).trace["robot"].nunique() == 2
+
+
+def test_check_fills_collisions(calls, capsys):
+    assert main(["run", "--out", "run", "--check"]) == 0
+    assert load_run(Path("run")).footprint["collisions"] == 0
+    assert not Path("run/trace.parquet").exists()
+    assert calls[0]["trace"] is True
+
+
+def test_an_unsafe_trace_ends_in_exit_code_1(calls, capsys, monkeypatch):
+    import fake_run
+    from scripted_trace import Script
+
+    def colliding(self):
+        script = Script(fake_run.layout())
+        script.robot(0).hold(1)
+        script.robot(1).run(0)
+        return script.columns(500.0)
+
+    monkeypatch.setattr(fake_run.FakeTraffic, "trace", colliding)
+    assert main(["run", "--out", "run", "--check"]) == 1
+    assert load_run(Path("run")).footprint["collisions"] == 1
+    assert "robots overlap: 1" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (["run", "--seed", "abc"], "--seed"),
+        (["run", "--seed", "-1"], "--seed"),
+        (["run", "--sead", "1"], "--sead"),
+        (["run", "extra"], "extra"),
+        (["run", "--set", "layout.robots"], "expected KEY=VALUE"),
+        (["rum"], "rum"),
+        (["run", "--out", "taken.txt"], "taken.txt: is not a folder"),
+        (["run", "--out", "taken.txt/below"], "cannot be written"),
+        (["run", "--out", "precious"], "not a run folder"),
+    ],
+)
+def test_wrong_usage_is_one_line_and_code_2(calls, capsys, arguments, text):
+    Path("taken.txt").write_text("precious")
+    Path("precious").mkdir()
+    Path("precious/thesis.txt").write_text("precious")
+    before = files()
+    assert main(arguments) == 2
+    assert text in one_line(capsys)
+    assert not calls
+    assert files() == before
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (InputError("layout.toml: unknown key robts;\ndid you mean robots?"), 2),
+        (LayoutError("layout.toml", ["station 3 cannot be reached", "too many robots"]), 2),
+        (KeyboardInterrupt(), 130),
+    ],
+)
+def test_errors_of_a_run_leave_nothing(calls, capsys, monkeypatch, error, code):
+    def simulate(**arguments):
+        raise error
+
+    monkeypatch.setattr(sys.modules["rmfs.simulation.run"], "simulate", simulate)
+    assert main(["run"]) == code
+    one_line(capsys)
+    assert files() == []
+
+
+def test_an_interruption_while_writing_leaves_nothing(calls, capsys, monkeypatch):
+    import pandas as pd
+
+    def interrupted(*arguments, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(pd.DataFrame, "to_csv", interrupted)
+    assert main(["run", "--out", "a/b"]) == 130
+    assert "interrupted" in one_line(capsys)
+    assert files() == []
+
+
+def test_a_defect_keeps_its_traceback(calls, monkeypatch):
+    def simulate(**arguments):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(sys.modules["rmfs.simulation.run"], "simulate", simulate)
+    with pytest.raises(ZeroDivisionError):
+        main(["run"])
+    assert files() == []
+
+
+def test_help_names_all_commands_without_loading_them(capsys):
+    loaded = set(sys.modules)
+    assert main(["--help"]) == 0
+    text = capsys.readouterr().out
+    for name in ("run", "layout", "scenario", "controllers"):
+        assert name in text
+    assert not {name for name in set(sys.modules) - loaded if name.endswith(".commands")}
+
+
+def test_without_a_command_help_is_shown(capsys):
+    assert main([]) == 0
+    assert "Usage: rmfs" in capsys.readouterr().out
+
+
+def test_version(capsys):
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out.startswith("rmfs ")

@@ -1,0 +1,111 @@
+"""Properties of all generated layouts, on small random parameters."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from rmfs.errors import InputError
+from rmfs.layout import LayoutParameters, check, generate
+from rmfs.layout.generator.compass import SIDES
+from rmfs.layout.generator.extent import aisles_at
+from rmfs.layout.generator.sites import sites
+
+sides = st.fixed_dictionaries(
+    {side: st.integers(0, 1) for side in ("west", "east", "south", "north")}
+)
+
+
+@st.composite
+def parameters(draw):
+    two_directional = draw(st.booleans())
+    aisles = st.integers(2, 6) if two_directional else st.sampled_from([2, 4, 6])
+    tiers = draw(st.integers(1, 3))
+    try:
+        return LayoutParameters(
+            tiers=tiers,
+            robots=3,
+            two_directional_aisles=two_directional,
+            single_lane=draw(st.booleans()),
+            counter_clockwise_ring=draw(st.booleans()),
+            hall_pattern=draw(st.sampled_from(["tim", "highway"])),
+            horizontal_aisles=draw(aisles),
+            vertical_aisles=draw(aisles),
+            block_length=draw(st.sampled_from([2, 4])),
+            hall_width=draw(st.integers(2, 6)),
+            buffer_width=draw(st.integers(2, 4)),
+            entry_exit_distance=draw(st.sampled_from([1, 3, 5])),
+            pick_stations=draw(sides),
+            replenishment_stations=draw(sides),
+            elevators=draw(sides) if tiers > 1 else {},
+        )
+    except (InputError, ValueError):
+        assume(False)
+
+
+def closed_corner(p):
+    """Tell whether a queue begins at an outer corner of a two-directional "tim" hall."""
+    if not p.two_directional_aisles or p.hall_pattern == "highway":
+        return False
+    ends = [
+        (site.entrance, _length(p, side)) for side in SIDES for site in sites(p, side)
+    ]
+    return any(entrance in (0, length - 1) for entrance, length in ends)
+
+
+def _length(p, side):
+    from rmfs.layout.generator.extent import extent
+
+    size = extent(p)
+    return size.height if side.name in ("EAST", "WEST") else size.width
+
+
+@settings(max_examples=120, deadline=None)
+@given(parameters())
+def test_generated_layouts_pass_the_check(p):
+    violations = check(generate(p))
+    if closed_corner(p):
+        # as in RAWSim-O: such a queue can be entered by its later segments only
+        assert all("no aisle leads to the entrance" in v.message for v in violations)
+        assert violations
+    else:
+        assert violations == []
+
+
+@settings(max_examples=60, deadline=None)
+@given(parameters())
+def test_generated_layouts_are_sound_arrays(p):
+    layout = generate(p)
+    assert layout.edge_start[0] == 0
+    assert layout.edge_start[-1] == len(layout.edge_target)
+    for v in range(layout.waypoints):
+        heads = layout.edge_target[layout.edge_start[v] : layout.edge_start[v + 1]]
+        assert (np.diff(heads) > 0).all()
+        assert (layout.tier[heads] == layout.tier[v]).all()
+    assert not (layout.is_storage & layout.is_queue).any()
+    length = p.entry_exit_distance * p.buffer_width + 1
+    for station in layout.stations:
+        assert len(station.queue) == length
+        assert station.queue[0] == station.waypoint
+        assert layout.is_queue[list(station.queue)].all()
+    for stations, per_tier in (
+        (layout.pick_stations, p.pick_stations),
+        (layout.replenishment_stations, p.replenishment_stations),
+    ):
+        assert len(stations) == per_tier.total * p.tiers
+        assert sorted(s.activation for s in stations) == list(range(1, len(stations) + 1))
+    assert len(layout.elevators) == p.elevators.total
+
+
+@settings(max_examples=60, deadline=None)
+@given(parameters())
+def test_stations_take_the_middle_places_of_a_side(p):
+    for side in SIDES:
+        found = sites(p, side)
+        positions = [site.exit for site in found]
+        assert positions == sorted(set(positions))
+        assert len(found) <= aisles_at(p, side) // 2
+        kinds = [site.kind for site in found]
+        order = {"pick": 0, "replenishment": 1, "elevator": 2}
+        assert kinds == sorted(kinds, key=order.__getitem__)

@@ -1,0 +1,243 @@
+"""A tiny run told by hand: the callbacks of a simulation without one.
+
+Two pick stations (10 s a unit), one replenishment station, two robots, three pods, two SKUs; 100 s
+of warm-up and 400 s measured. Every figure the tables should show can be worked out on paper.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import nan
+from types import SimpleNamespace
+
+import numpy as np
+import pydantic
+from scripted_trace import Script, grid
+
+from rmfs.layout.model import PickStation, ReplenishmentStation
+from rmfs.measure.recorder import Recorder
+
+WARMUP_S, END_S = 100.0, 500.0
+
+
+class FakeTraffic:
+    """Motion that grows steadily: 1 m/s per robot, a tenth of the time queueing."""
+
+    def __init__(self) -> None:
+        self.since_s = 0.0
+        self.now_s = 0.0
+
+    def motion(self) -> dict[str, np.ndarray]:
+        passed = self.now_s - self.since_s
+        shares = {
+            "moving": 0.5,
+            "turning": 0.1,
+            "waiting": 0.1,
+            "served": 0.1,
+            "transfer": 0.1,
+            "riding": 0.0,
+            "idle": 0.1,
+            "queueing": 0.2,
+        }
+        return {
+            "distance_m": np.full(2, passed),
+            "loaded_distance_m": np.full(2, passed / 2),
+            **{f"{name}_s": np.full(2, passed * share) for name, share in shares.items()},
+        }
+
+    def heat(self) -> dict[str, np.ndarray]:
+        return {
+            "visits": np.arange(12),
+            "loaded_visits": np.arange(12) // 2,
+            "waiting_s": np.linspace(0, 1, 12),
+        }
+
+    def trips(self) -> dict[str, np.ndarray]:
+        return {
+            "robot": np.array([0, 1, 0]),
+            "kind": np.array([0, 1, 2]),
+            "t0_us": np.array([120, 130, 200]) * 10**6,
+            "t1_us": np.array([130, 150, 230]) * 10**6,
+            "from_wp": np.array([0, 1, 2]),
+            "to_wp": np.array([3, 4, 5]),
+            "loaded": np.array([False, True, True]),
+            "distance_m": np.array([3.0, 4.0, 5.0]),
+            "unhindered_s": np.array([10.0, 15.0, 20.0]),
+        }
+
+    def counters(self) -> dict[str, float]:
+        return {
+            "plans": 7,
+            "plan_failures": 2,
+            "replans": 1,
+            "expansions": 99,
+            "cost_tables": 3,
+            "planning_s": 0.25,
+        }
+
+    def trace(self) -> dict[str, np.ndarray]:
+        script = Script(layout())
+        script.robot(0).run(3)
+        script.robot(1).hold(1.0)
+        return script.columns(END_S)
+
+
+def layout():
+    base = grid(4, 3, [0, 8], pods=(1, 2, 3))
+    return replace(
+        base,
+        pick_stations=tuple(
+            PickStation(waypoint, (waypoint,), 0.4, 6, 10.0, 3.0, 1) for waypoint in (4, 5)
+        ),
+        replenishment_stations=(ReplenishmentStation(6, (6,), 0.4, 1000.0, 10.0, 1),),
+    )
+
+
+class Settings(pydantic.BaseModel):
+    """Stands for a scenario or a set of controllers."""
+
+    name: str = "fake"
+
+
+def order(index, created, lines, *, due=nan, station=-1, assigned=nan, completed=nan):
+    return SimpleNamespace(
+        index=index,
+        created_s=created,
+        due_s=due,
+        lines=tuple(SimpleNamespace(sku=sku, units=units) for sku, units in lines),
+        station=station,
+        assigned_s=assigned,
+        completed_s=completed,
+    )
+
+
+def bundle(index, created, *, station=-1, pod=-1, assigned=nan, stored=nan):
+    return SimpleNamespace(
+        index=index,
+        sku=1,
+        units=4,
+        space=8.0,
+        created_s=created,
+        pod=pod,
+        station=station,
+        assigned_s=assigned,
+        stored_s=stored,
+    )
+
+
+def world():
+    inventory = SimpleNamespace(
+        unit_space=np.array([1.0, 2.0]),
+        capacity=np.full(3, 100.0),
+        used=np.array([30.0, 20.0, 10.0]),
+        contained=np.array([[10, 0, 10], [10, 10, 0]]),
+        total_capacity=300.0,
+        stored_space=60.0,
+    )
+    return SimpleNamespace(
+        inventory=inventory,
+        skus=Skus(),
+        storage=SimpleNamespace(place_of=np.array([1, -1, 3])),
+        order_redraws=5,
+    )
+
+
+class Skus:
+    """Two SKUs; the second is twice as large."""
+
+    popularity = np.array([1.0, 3.0])
+    space_per_unit = np.array([1.0, 2.0])
+
+    def __len__(self) -> int:
+        return 2
+
+
+def recorded() -> Recorder:
+    """Tell a recorder the whole story."""
+    recorder, traffic, place = Recorder(), FakeTraffic(), world()
+    recorder.run_started(SimpleNamespace(layout=layout(), world=place, traffic=traffic))
+    # warm-up: order 0 arrives, is assigned and done; order 1 arrives; a unit is picked
+    zero, one = order(0, 0.0, [(0, 1)]), order(1, 0.0, [(0, 2), (1, 1)], due=300.0)
+    recorder.order_created(zero)
+    recorder.order_created(one)
+    recorder.task_started(0.0, 0, "pick", 0)
+    recorder.task_started(0.0, 1, "rest", -1)
+    zero.station, zero.assigned_s = 0, 10.0
+    recorder.order_assigned(zero)
+    recorder.pod_lifted(20.0, 0, 0, 1)
+    recorder.visit_started(50.0, 0, 0, 0)
+    recorder.station_busy(0, 50.0, 60.0)
+    recorder.unit_picked(53.0, zero, 0, 0, 0, 0, False)
+    recorder.line_picked(53.0, zero, 0, 1)
+    zero.completed_s = 60.0
+    recorder.order_completed(zero)
+    recorder.decision("poa", 10.0, 0.5, 1)
+    one.station, one.assigned_s = 0, 60.0
+    recorder.order_assigned(one)
+    recorder.station_busy(0, 95.0, 105.0)
+    recorder.unit_picked(98.0, one, 0, 0, 0, 0, False)
+    # the measured time begins while pod 0 still is at station 0
+    place.order_redraws = 6
+    traffic.since_s = traffic.now_s = WARMUP_S
+    recorder.warmup_ended(WARMUP_S)
+    recorder.station_busy(0, 105.0, 115.0)
+    recorder.unit_picked(108.0, one, 0, 0, 0, 0, True)
+    recorder.line_picked(108.0, one, 0, 2)
+    recorder.visit_ended(110.0, 0, 0, 0)
+    recorder.task_started(110.0, 0, "park", -1)
+    two = order(2, 150.0, [(1, 3)], due=1000.0)
+    recorder.order_created(two)
+    recorder.decision("poa", 150.0, 0.001, 2)
+    _sample(recorder, traffic, 160.0)
+    recorder.pod_lifted(170.0, 1, 1, 2)
+    recorder.task_started(170.0, 1, "pick", 1)
+    recorder.visit_started(200.0, 1, 1, 1)
+    recorder.station_busy(1, 200.0, 210.0)
+    recorder.unit_picked(203.0, one, 1, 1, 1, 1, True)
+    recorder.line_picked(203.0, one, 1, 1)
+    one.completed_s = 210.0
+    recorder.order_completed(one)
+    recorder.task_started(210.0, 0, "rest", -1)
+    first, second = bundle(0, 120.0), bundle(1, 130.0)
+    recorder.bundle_created(first)
+    recorder.bundle_created(second)
+    _sample(recorder, traffic, 220.0)
+    recorder.visit_ended(230.0, 1, 1, 1)
+    recorder.task_started(230.0, 1, "replenish", 2)
+    first.station, first.pod, first.assigned_s = 2, 1, 240.0
+    recorder.visit_started(250.0, 2, 1, 1)
+    recorder.station_busy(2, 250.0, 260.0)
+    first.stored_s = 250.0
+    recorder.bundle_stored(first, 1)
+    recorder.station_activated(300.0, 1, False)
+    for minute in range(280, 500, 60):
+        _sample(recorder, traffic, float(minute))
+    # the run ends in a visit without any work, and 40 s after the last full minute
+    recorder.station_busy(2, 495.0, 505.0)
+    traffic.now_s = END_S
+    recorder.run_ended(END_S)
+    return recorder
+
+
+def _sample(recorder, traffic, time_s):
+    traffic.now_s = time_s
+    recorder.sampled(time_s)
+
+
+def run():
+    """What `simulate` returns, as far as the measures read it."""
+    recorder = recorded()
+    return SimpleNamespace(
+        layout=recorder.layout,
+        scenario=Settings(),
+        controllers=Settings(),
+        names=("fake-layout", "fake-scenario", "fake-controllers"),
+        seed=3,
+        pacing="instant",
+        warmup_s=WARMUP_S,
+        duration_s=END_S - WARMUP_S,
+        end_s=END_S,
+        wall_s=0.5,
+        recorder=recorder,
+        trace=FakeTraffic().trace(),
+    )

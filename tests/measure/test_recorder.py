@@ -1,0 +1,59 @@
+"""The recorder's cost, and what it keeps."""
+
+from __future__ import annotations
+
+import time
+from types import SimpleNamespace
+
+from fake_run import FakeTraffic, bundle, layout, order, recorded, world
+
+from rmfs.measure import Recorder
+
+
+def a_busy_run(callbacks: int) -> float:
+    """Tell a fresh recorder so many events in the mix of a run; returns the wall time in s."""
+    recorder = Recorder()
+    recorder.run_started(SimpleNamespace(layout=layout(), world=world(), traffic=FakeTraffic()))
+    rounds = callbacks // 15
+    orders = [order(k, 1.0, [(0, 2), (1, 1)], station=0) for k in range(rounds)]
+    bundles = [bundle(k, 1.0, station=2, pod=1) for k in range(rounds)]
+    begin = time.perf_counter()
+    for k in range(rounds):
+        one, moment = orders[k], float(k)
+        recorder.order_created(one)
+        recorder.order_assigned(one)
+        recorder.task_started(moment, 0, "pick", 0)
+        recorder.pod_lifted(moment, 0, 0, 1)
+        recorder.visit_started(moment, 0, 0, 0)
+        recorder.station_busy(0, moment, moment + 1)
+        recorder.unit_picked(moment, one, 0, 0, 0, 0, False)
+        recorder.line_picked(moment, one, 0, 2)
+        recorder.order_completed(one)
+        recorder.visit_ended(moment, 0, 0, 0)
+        recorder.bundle_created(bundles[k])
+        recorder.bundle_assigned(bundles[k])
+        recorder.bundle_stored(bundles[k], 0)
+        recorder.decision("poa", moment, 0.0, 1)
+        recorder.pod_set_down(moment, 0, 0, 1)
+    return time.perf_counter() - begin
+
+
+def test_ten_thousand_callbacks_cost_less_than_20_ms():
+    assert min(a_busy_run(10_000) for _ in range(7)) < 0.020
+
+
+def test_finished_work_is_let_go():
+    recorder = recorded()
+    assert set(recorder.open_orders) == {2}
+    assert set(recorder.open_bundles) == {1}
+    assert len(recorder.finished_orders) == 2
+
+
+def test_a_visit_at_the_end_stays_open():
+    recorder = Recorder()
+    recorder.run_started(SimpleNamespace(layout=layout(), world=world(), traffic=FakeTraffic()))
+    recorder.visit_started(3.0, 0, 1, 1)
+    recorder.run_ended(10.0)
+    ((station, pod, robot, begin, end),) = recorder.visits
+    assert (station, pod, robot, begin) == (0, 1, 1, 3.0)
+    assert end != end

@@ -1,0 +1,225 @@
+"""The tables of the hand-told run against figures worked out on paper."""
+
+from __future__ import annotations
+
+import pandas as pd
+import pytest
+from fake_run import run
+
+from rmfs.measure import decisions, footprint, series, tables
+from rmfs.measure.dictionary import TABLES, markdown, names, reproducible
+from rmfs.measure.tables.tidy import tidy
+
+
+@pytest.fixture(scope="module")
+def told():
+    return run()
+
+
+@pytest.fixture(scope="module")
+def made(told):
+    return tables.all_tables(told)
+
+
+EXPECTED = {
+    "layout": "fake-layout",
+    "seed": 3,
+    "warmup_s": 100.0,
+    "duration_s": 400.0,
+    "robots": 2,
+    "pods": 3,
+    "pick_stations": 2,
+    "replenishment_stations": 1,
+    "skus": 2,
+    "orders_completed": 1,  # order 0 was done in the warm-up, order 2 never
+    "lines_picked": 2,
+    "units_picked": 2,
+    "bundles_stored": 1,
+    "orders_per_h": 9.0,
+    "units_per_h": 18.0,
+    "lines_per_h": 18.0,
+    "bundles_per_h": 9.0,
+    "units_per_h_bound": 720.0,  # two stations, 10 s a unit
+    "units_score": 18.0 / 720.0,
+    "pick_visits": 2,
+    "replenishment_visits": 1,
+    "units_per_visit": 1.0,
+    "lines_per_visit": 1.0,
+    "orders_per_visit": 0.5,
+    "bundles_per_visit": 1.0,
+    "late_bound_units_per_visit": 1.0,
+    "distance_m": 800.0,
+    "distance_per_robot_m": 400.0,
+    "distance_per_unit_m": 400.0,
+    "loaded_distance_m": 400.0,
+    "trips": 3,
+    "trip_time_mean_s": 20.0,
+    "trip_delay_mean_s": 5.0,
+    # station 0 was busy 100-115, station 1 200-210, of 400 s each
+    "pick_station_idle_share": 1 - 25.0 / 800.0,
+    # 250-260 and 495-500
+    "replenishment_station_idle_share": 1 - 15.0 / 400.0,
+    # robot 0: pick until 110, park until 210; robot 1: from 170 to the end
+    "robot_busy_share": (110.0 + 330.0) / 800.0,
+    "robot_moving_share": 0.5,
+    "robot_queueing_share": 0.2,
+    "robot_idle_share": 0.1,
+    "order_turnover_mean_s": 210.0,
+    "order_turnover_median_s": 210.0,
+    "order_throughput_time_median_s": 150.0,
+    "late_share": 0.0,
+    # order 2 waits from 150 to the end
+    "backlog_orders_mean": 350.0 / 400.0,
+    "backlog_orders_end": 1,
+    # order 1 is open until 210
+    "open_orders_mean": 110.0 / 400.0,
+    "orders_created": 1,
+    "order_redraws": 0,
+    "bundles_created": 2,
+    "units_stored": 4,
+    "bundle_turnover_mean_s": 130.0,
+    "pods_lifted": 1,
+    # 60 at first, 2 taken in the warm-up; then 1 at 108, 2 at 203, and 8 put at 250
+    "inventory_share_mean": (58 * 8 + 57 * 95 + 55 * 47 + 63 * 250) / 400.0 / 300.0,
+    "plans": 7,
+    "plan_failures": 2,
+    "replans": 1,
+    "expansions": 99,
+    "planning_wall_s": 0.25,
+    "decisions": 2,
+    "decision_wall_s": 0.001,
+    "optimiser_calls": 0,
+    "paced_s": 0.0,
+    "wall_s": 0.5,
+    "sim_per_wall": 1000.0,
+}
+
+
+@pytest.mark.parametrize("column", EXPECTED)
+def test_footprint(made, column):
+    value = made["footprint"][column].iloc[0]
+    expected = EXPECTED[column]
+    assert value == (expected if isinstance(expected, str) else pytest.approx(expected))
+
+
+def test_footprint_is_empty_where_nothing_was_measured(made):
+    row = made["footprint"].iloc[0]
+    assert pd.isna(row["collisions"])
+    assert pd.isna(row["optimiser_gap_mean"])
+
+
+def test_footprint_tells_collisions_when_the_checker_ran(told):
+    from rmfs.measure.checker import CheckReport
+
+    assert footprint(told, CheckReport())["collisions"] == 0
+
+
+def test_every_column_is_described_and_in_order(made):
+    for name, frame in made.items():
+        assert list(frame.columns) == names(name)
+        described = {column.name: column.dtype for column in TABLES[name]}
+        assert {column: str(frame[column].dtype) for column in frame} == described
+
+
+PROMISED = """
+layout scenario controllers seed warmup_s duration_s tiers robots pods pick_stations
+replenishment_stations skus orders_completed lines_picked units_picked bundles_stored orders_per_h
+lines_per_h units_per_h bundles_per_h units_per_h_bound units_score pick_visits units_per_visit
+lines_per_visit orders_per_visit bundles_per_visit distance_m distance_per_robot_m
+distance_per_unit_m trips trip_time_mean_s pick_station_idle_share
+replenishment_station_idle_share robot_busy_share robot_moving_share robot_queueing_share
+order_turnover_mean_s order_turnover_median_s order_throughput_time_median_s late_share
+backlog_orders_mean inventory_share_mean plans plan_failures replans collisions decisions
+decision_wall_s optimiser_calls optimiser_gap_mean paced_s wall_s sim_per_wall peak_rss_mb
+"""
+
+
+def test_footprint_begins_with_the_promised_columns():
+    promised = PROMISED.split()
+    assert names("footprint")[: len(promised)] == promised
+
+
+def test_measured_columns_do_not_repeat():
+    told = set(names("footprint")) - set(reproducible("footprint"))
+    assert told == {"wall_s", "sim_per_wall", "peak_rss_mb", "decision_wall_s", "planning_wall_s"}
+
+
+def test_dictionary_says_something_of_every_column():
+    for columns in TABLES.values():
+        assert len({column.name for column in columns}) == len(columns)
+        assert all(column.meaning for column in columns)
+    page = markdown()
+    assert all(f"| `{column.name}` |" in page for columns in TABLES.values() for column in columns)
+
+
+def test_undescribed_columns_are_refused():
+    with pytest.raises(ValueError, match="colour"):
+        tidy("heat", {name: [] for name in [*names("heat"), "colour"]})
+    with pytest.raises(ValueError, match="visits"):
+        tidy("heat", {name: [] for name in names("heat") if name != "visits"})
+
+
+def test_series(told):
+    frame = series(told)
+    assert frame["time_s"].tolist() == [160, 220, 280, 340, 400, 460, 500]
+    assert frame["interval_s"].tolist() == [60] * 6 + [40]
+    assert frame["units_picked"].tolist() == [1, 1, 0, 0, 0, 0, 0]
+    assert frame["orders_completed"].tolist() == [0, 1, 0, 0, 0, 0, 0]
+    assert frame["bundles_stored"].tolist() == [0, 0, 1, 0, 0, 0, 0]
+    assert frame["backlog_orders"].tolist() == [1] * 7
+    assert frame["open_orders"].tolist() == [1, 0, 0, 0, 0, 0, 0]
+    assert frame["backlog_bundles"].tolist() == [2, 2, 1, 1, 1, 1, 1]
+    assert frame["distance_m"].tolist() == [120] * 6 + [80]
+    assert frame["robots_moving"].tolist() == pytest.approx([1.0] * 7)
+    assert frame["robots_task_pick"].tolist() == [0, 1, 0, 0, 0, 0, 0]
+    assert frame["robots_task_rest"].tolist() == [1, 1, 1, 1, 1, 1, 1]
+    assert frame["robots_task_replenish"].tolist() == [0, 0, 1, 1, 1, 1, 1]
+    assert frame["pick_station_busy_share"].tolist()[:2] == pytest.approx([15 / 120, 10 / 120])
+    assert frame["inventory_share"].iloc[-1] == pytest.approx(63 / 300)
+
+
+def test_stations(made):
+    frame = made["stations"]
+    assert frame["kind"].tolist() == ["pick", "pick", "replenishment"]
+    assert frame["units_picked"].tolist() == [1, 1, 0]
+    assert frame["late_bound_units"].tolist() == [1, 1, 0]
+    assert frame["orders_completed"].tolist() == [1, 0, 0]
+    assert frame["bundles_stored"].tolist() == [0, 0, 1]
+    assert frame["visits"].tolist() == [1, 1, 1]
+    assert frame["visit_time_mean_s"].tolist()[:2] == [60.0, 30.0]
+    assert frame["busy_s"].tolist() == pytest.approx([15.0, 10.0, 15.0])
+    assert frame["active_share"].tolist() == [1.0, 0.5, 1.0]
+    assert frame["units_per_h_bound"].tolist()[:2] == [360.0, 360.0]
+
+
+def test_orders(made):
+    frame = made["orders"]
+    assert frame["order"].tolist() == [1, 2]  # order 0 was done before the measured time
+    assert frame["units"].tolist() == [3, 3]
+    assert frame["turnover_s"].iloc[0] == 210.0
+    assert frame["lateness_s"].iloc[0] == -90.0
+    assert frame["completed_s"].isna().tolist() == [False, True]
+
+
+def test_robots(made):
+    frame = made["robots"]
+    assert frame["task_pick_s"].tolist() == [10.0, 60.0]
+    assert frame["task_park_s"].tolist() == [100.0, 0.0]
+    assert frame["task_rest_s"].tolist() == [290.0, 70.0]
+    assert frame["tasks_pick"].tolist() == [0, 1]
+    assert frame["units_picked"].tolist() == [1, 1]
+    assert frame["pods_lifted"].tolist() == [0, 1]
+
+
+def test_pods_and_skus(made):
+    assert made["pods"]["lifts"].tolist() == [0, 1, 0]
+    assert made["pods"]["units_picked"].tolist() == [1, 1, 0]
+    assert made["pods"]["pick_visits"].tolist() == [1, 1, 0]
+    assert made["skus"]["units_picked"].tolist() == [1, 1]
+    assert made["skus"]["pods_end"].tolist() == [2, 2]
+
+
+def test_trips_heat_and_decisions(told, made):
+    assert made["trips"]["kind"].tolist() == ["to_pod", "to_station", "to_storage"]
+    assert made["heat"]["visits"].sum() == 66
+    assert decisions(told)["time_s"].tolist() == [150.0]
