@@ -21,7 +21,7 @@ from rmfs.measure.checker import check
 from rmfs.simulation.run import simulate
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    from rich.console import Group
 
 SEEDS = (1, 2, 3)
 TARGET = Path("results") / "demo"
@@ -61,9 +61,10 @@ def run(seed: int) -> pd.DataFrame:
     return tables.footprint(done, report)
 
 
-def table(footprints: pd.DataFrame) -> Table:
+def table(footprints: pd.DataFrame) -> Group:
     """Return mean and confidence interval of each figure over the seeds."""
     from rich import box
+    from rich.console import Group
     from rich.table import Table
 
     first = footprints.iloc[0]
@@ -72,15 +73,13 @@ def table(footprints: pd.DataFrame) -> Table:
         f"{first['replenishment_stations']} replenishment stations, "
         f"{first['duration_s'] / 3600:g} h, {len(footprints)} seeds"
     )
-    shown = Table(
-        "", "mean", "95 % interval", title=title, title_justify="left", box=box.SIMPLE_HEAD
-    )
+    shown = Table("", "mean", "95 % interval", box=box.SIMPLE_HEAD)
     for column in shown.columns[1:]:
         column.justify = "right"
     for name, (label, form) in FIGURES.items():
         mean, half = interval(footprints[name])
         shown.add_row(label, form.format(mean), f"± {form.format(half)}")
-    return shown
+    return Group(title, shown)
 
 
 def picture(path: Path) -> None:
@@ -122,7 +121,7 @@ def main() -> int:
     except KeyboardInterrupt:
         print("demo: interrupted", file=sys.stderr)
         return 130
-    Console().print(table(footprints))
+    Console(highlight=False).print(table(footprints))
     say(f"Run folders and heat map are in {TARGET}; {time.perf_counter() - began:.1f} s in all.")
     return 0
 

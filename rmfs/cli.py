@@ -26,12 +26,13 @@ if TYPE_CHECKING:
 
 SUB_COMMANDS = {
     "layout": ("rmfs.layout.commands", "Make, draw, check and import layouts."),
-    "scenario": ("rmfs.scenario.commands", "List, show, check and import scenarios."),
+    "scenario": ("rmfs.scenario.commands", "List, show and check scenarios."),
     "controllers": ("rmfs.control.commands", "List, show and check sets of controllers."),
 }
 """Module and help of each group of commands; its module is imported when it is called."""
 
 UNSAFE = 1
+STALLED = 1
 WRONG_INPUT = 2
 INTERRUPTED = 130
 
@@ -52,9 +53,16 @@ class LazyGroup(TyperGroup):
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Load the command that is called."""
         if args and args[0] in SUB_COMMANDS:
-            module = importlib.import_module(SUB_COMMANDS[args[0]][0])
-            self.add_command(typer.main.get_command(module.app), args[0])
+            self.add_command(_loaded(args[0]), args[0])
         return super().resolve_command(ctx, args)
+
+
+def _loaded(name: str) -> Any:
+    """Import a group of commands; it is put below another so that it gets no options of its own."""
+    module = importlib.import_module(SUB_COMMANDS[name][0])
+    above = typer.Typer(add_completion=False)
+    above.add_typer(module.app, name=name)
+    return typer.main.get_group(above).commands[name]
 
 
 app = typer.Typer(
@@ -158,22 +166,39 @@ def run(
     inputs = {"layout": layout, "scenario": scenario, "controllers": controllers}
     target = out or Path("results") / default_name(inputs, seed)
     with reserved(target) as folder:
-        from rmfs.simulation.run import simulate
-
-        with progress(f"simulating {', '.join(inputs.values())}, seed {seed}") as advance:
-            done = simulate(
-                **inputs,
-                seed=seed,
-                overrides=overrides,
-                pacing=pacing,
-                trace=trace or check,
-                progress=advance,
-                allow_not_well_formed=allow_not_well_formed,
-            )
+        done = simulated(
+            inputs,
+            seed=seed,
+            overrides=overrides,
+            pacing=pacing,
+            trace=trace or check,
+            allow_not_well_formed=allow_not_well_formed,
+        )
         report = proven(done) if check else None
         step("writing the tables")
         fill(folder, done, report=report, trace=trace, inputs=inputs)
     conclude(target, report)
+
+
+def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
+    """Simulate and show progress; a run in which nothing can move any more ends with a report.
+
+    Parameters
+    ----------
+    inputs
+        Layout, scenario and controllers as the user named them.
+    options
+        Further parameters of `rmfs.simulate`.
+    """
+    from rmfs.simulation.run import simulate
+    from rmfs.simulation.simulation import StalledError
+
+    with progress(f"simulating {', '.join(inputs.values())}, seed {seed}") as advance:
+        try:
+            return simulate(*inputs.values(), seed=seed, progress=advance, **options)
+        except StalledError as error:
+            print(f"rmfs: {error}", file=sys.stderr)
+            raise typer.Exit(STALLED) from None
 
 
 def default_name(inputs: dict[str, str], seed: int) -> str:
@@ -211,10 +236,12 @@ def step(text: str) -> None:
 
 @contextmanager
 def progress(text: str) -> Iterator[Callable[[float, float], None]]:
-    """Yield a function that is told (done, total): a bar on a terminal, one line elsewhere."""
-    step(text)
+    """Yield a function that is told (done, total): a bar on a terminal, one line elsewhere.
+
+    The line is printed at the first call: what is wrong with the input is noticed before.
+    """
     if not sys.stderr.isatty():
-        yield lambda done, total: None
+        yield lambda done, total: None if done else step(text)
         return
     from rich.console import Console
     from rich.progress import (

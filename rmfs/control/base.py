@@ -5,6 +5,8 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
+import pydantic
+
 from rmfs.config import Model
 
 if TYPE_CHECKING:
@@ -14,11 +16,17 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
 
 
-class NoParameters(Model):
+class Parameters(Model):
+    """Base of the parameters of controllers; the text below a field explains it to users."""
+
+    model_config = pydantic.ConfigDict(use_attribute_docstrings=True)
+
+
+class NoParameters(Parameters):
     """A rule that has nothing to set."""
 
 
-P = TypeVar("P", bound=Model)
+P = TypeVar("P", bound=Parameters)
 
 
 class Controller(Generic[P]):
@@ -32,7 +40,7 @@ class Controller(Generic[P]):
     ----------
     problem
         The decision problem it solves.
-    Parameters
+    parameters_model
         The model of its parameters: file format, `--set` and documentation come from it.
     triggers
         Events after which every controller of the problem is asked (paper, table 1).
@@ -43,7 +51,7 @@ class Controller(Generic[P]):
     """
 
     problem: ClassVar[Problem]
-    Parameters: ClassVar[type[Model]] = NoParameters
+    parameters_model: ClassVar[type[Parameters]] = NoParameters
     triggers: ClassVar[frozenset[Trigger]] = frozenset()
     subscriptions: ClassVar[frozenset[Trigger]] = frozenset()
     hears: ClassVar[frozenset[Trigger]] = frozenset()

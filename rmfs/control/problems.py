@@ -19,12 +19,12 @@ class Problem(StrEnum):
     PP = "pp"
 
     @property
-    def title(self) -> str:
+    def meaning(self) -> str:
         """What the abbreviation stands for."""
-        return _TITLES[self]
+        return _MEANINGS[self]
 
 
-_TITLES = {
+_MEANINGS = {
     Problem.POA: "pick order assignment: order -> pick station",
     Problem.ROA: "replenishment order assignment: bundle -> replenishment station",
     Problem.RPS: "replenishment pod selection: bundle -> pod",

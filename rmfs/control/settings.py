@@ -18,7 +18,7 @@ from rmfs.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rmfs.control.base import Controller
+    from rmfs.control.base import Controller, Parameters
 
 FORMAT = "rmfs-controllers/1"
 
@@ -48,7 +48,7 @@ class Choice:
 
     problem: Problem
     name: str
-    parameters: Model
+    parameters: Parameters
 
     @property
     def controller(self) -> type[Controller[Any]]:
@@ -153,16 +153,15 @@ def _choice(problem: Problem, table: Table, source: str) -> Choice:
     if not isinstance(name, str):
         raise InputError(f"{source}: {problem}.name: must be a string (given: {name!r})")
     try:
-        model = registry.find(problem, name).Parameters
+        model = registry.find(problem, name).parameters_model
     except InputError as error:
         raise InputError(f"{source}: {problem}.name: {error}") from None
-    _refuse_unknown(problem, parameters, model, source)
+    _refuse_unknown(problem, parameters, [*model.model_fields, "name"], source)
     validated = config.validate(model, parameters, f"{source}: {problem}")
     return Choice(problem, name, validated)
 
 
-def _refuse_unknown(problem: Problem, parameters: Table, model: type[Model], source: str) -> None:
-    valid = [*model.model_fields, "name"]
+def _refuse_unknown(problem: Problem, parameters: Table, valid: list[str], source: str) -> None:
     for key in parameters:
         if key not in valid:
             near = difflib.get_close_matches(key, valid, n=1)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -76,7 +76,7 @@ class Travel:
             times = self._from[waypoint, loaded] = self._times.travel_times_from(waypoint, loaded)
         return times
 
-    def estimate_s(self, waypoint: int, others: NDArray[np.integer]) -> NDArray[np.float64]:
+    def estimate_s(self, waypoint: int, others: NDArray[np.int32]) -> NDArray[np.float64]:
         """Estimate times to other waypoints: Manhattan distance at top speed and one turn.
 
         Parameters
@@ -89,7 +89,7 @@ class Travel:
         NDArray
             Seconds, shape (n,).
         """
-        distance = np.abs(self._x[others] - self._x[waypoint])
+        distance: NDArray[np.float64] = np.abs(self._x[others] - self._x[waypoint])
         distance += np.abs(self._y[others] - self._y[waypoint])
         if self.tiers > 1:
             distance += self._other_tier_m * (self.tier[others] != self.tier[waypoint])
@@ -97,10 +97,12 @@ class Travel:
         distance += self._quarter_turn_s
         return distance
 
-    def metres(self, waypoint: int, others: NDArray[np.integer]) -> NDArray[np.float64]:
+    def metres(self, waypoint: int, others: NDArray[np.signedinteger[Any]]) -> NDArray[np.float64]:
         """Euclidean distances to other waypoints, more on other tiers, shape (n,), m."""
         x, y = self._x[others] - self._x[waypoint], self._y[others] - self._y[waypoint]
-        distance = np.sqrt(x * x + y * y)  # hypot differs between maths libraries
+        distance: NDArray[np.float64] = np.sqrt(
+            x * x + y * y
+        )  # hypot differs between maths libraries
         if self.tiers > 1:
             distance += self._other_tier_m * (self.tier[others] != self.tier[waypoint])
         return distance

@@ -7,23 +7,19 @@ still be other ones. The keys are those of layout parameters, and mean the same.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pydantic
-from pydantic import Field
 
-from rmfs.config import Model, apply_overrides, validate
+from rmfs.config import apply_overrides, validate
 from rmfs.errors import InputError
 from rmfs.layout.generator.placement import draw_robots
+from rmfs.layout.values import Count, Positive, Strict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rmfs.layout.model import Layout
-
-Positive = Annotated[float, Field(gt=0)]
-Count = Annotated[int, Field(ge=1)]
 
 _STATION_KEYS = ("order_slots", "unit_transfer_s", "unit_pick_s")
 _ROBOT_KEYS = (
@@ -35,10 +31,8 @@ SEED = 0
 """Robots of an explicit layout are drawn with a fixed seed, as in RAWSim-O."""
 
 
-class ExplicitOverrides(Model):
+class ExplicitOverrides(Strict):
     """What can be overridden on an explicit layout; absent keys leave it as it is."""
-
-    model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)
 
     robots: Count | None = None
     order_slots: Count | None = None

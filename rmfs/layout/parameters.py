@@ -13,36 +13,27 @@ import pydantic
 from pydantic import Field
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from rmfs.config import Model
 from rmfs.layout.generator.conditions import RULES
+from rmfs.layout.values import Amount, Count, Positive, Strict
 
-Positive = Annotated[float, Field(gt=0)]
 Radius = Annotated[float, Field(gt=0, lt=0.5)]
-Count = Annotated[int, Field(ge=1)]
-Number = Annotated[int, Field(ge=0)]
 
 
-class _Strict(Model):
-    """Numbers must be written as numbers: "16" or true is not taken for 16 or 1."""
-
-    model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)
-
-
-class PerSide(_Strict):
+class PerSide(Strict):
     """How many of something stand on each side of a tier."""
 
-    west: Number = 0
-    east: Number = 0
-    south: Number = 0
-    north: Number = 0
+    west: Amount = 0
+    east: Amount = 0
+    south: Amount = 0
+    north: Amount = 0
 
     @property
     def total(self) -> int:
-        """Number on all four sides of one tier."""
+        """Index on all four sides of one tier."""
         return self.west + self.east + self.south + self.north
 
 
-class LayoutParameters(_Strict):
+class LayoutParameters(Strict):
     """Parameters of a generated layout.
 
     All problems are reported at once: every wrong value, and every violated condition between
@@ -51,7 +42,7 @@ class LayoutParameters(_Strict):
 
     format: Literal["rmfs-layout/1"] = Field("rmfs-layout/1", description="version of this format")
     name: str = Field("unnamed", min_length=1, description="name shown in results")
-    seed: Number = Field(0, description="random seed for the places of pods and robots")
+    seed: Amount = Field(0, description="random seed for the places of pods and robots")
 
     tiers: Count = Field(1, description="floors; more than one needs elevators")
     tier_height_m: Positive = Field(4.0, description="m from floor to floor, for drawing only")

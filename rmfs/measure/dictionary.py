@@ -213,7 +213,8 @@ FOOTPRINT = (
         "trip_delay_mean_s",
         REAL,
         "s",
-        "Mean of trip time less a lower bound of the time the trip takes without other robots",
+        "Mean of trip time less a lower bound of the time the trip takes without other robots; "
+        "trips to stations are left out, as they end at the queue zone",
     ),
     *_shares_of_robots(),
     Column("expansions", INTEGER, "labels", "Labels expanded by the path planner"),
@@ -310,7 +311,12 @@ TRIPS = (
     Column("end_s", REAL, "s", "Arrival (for a station: at its queue zone)"),
     Column("loaded", FLAG, "", "Whether the robot carried a pod"),
     Column("distance_m", REAL, "m", "Distance driven"),
-    Column("unhindered_s", REAL, "s", "Lower bound of the time without other robots"),
+    Column(
+        "unhindered_s",
+        REAL,
+        "s",
+        "Lower bound of the time without other robots (for a station: to the place in its queue)",
+    ),
 )
 
 ROBOTS = (

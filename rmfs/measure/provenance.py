@@ -15,10 +15,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rmfs import instances
+from rmfs.config import apply_overrides, read_toml, validate
 from rmfs.errors import InputError
+from rmfs.layout.parameters import LayoutParameters
+from rmfs.layout.rawsimo.xlayo import read_xlayo_table
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from rmfs.layout.model import Layout
     from rmfs.measure.checker import CheckReport
@@ -52,6 +55,7 @@ def describe(
             **source("layout", given["layout"]),
             "digest": digest(run.layout),
             "size": _size(run.layout),
+            "parameters": layout_parameters(given["layout"], run.overrides),
         },
         "scenario": {
             **source("scenario", given["scenario"]),
@@ -59,8 +63,9 @@ def describe(
         },
         "controllers": {
             **source("controllers", given["controllers"]),
-            "parameters": run.controllers.model_dump(mode="json"),
+            "parameters": run.controllers.to_table(),
         },
+        "overrides": {".".join(path): value for path, value in run.overrides},
         "seed": run.seed,
         "pacing": run.pacing,
         "warmup_s": run.warmup_s,
@@ -89,6 +94,28 @@ def source(part: str, given: str) -> dict[str, Any]:
         "file": told.as_posix(),
         "sha256": hashlib.sha256(content).hexdigest(),
     }
+
+
+def layout_parameters(
+    given: str, overrides: Sequence[tuple[list[str], Any]]
+) -> dict[str, Any] | None:
+    """Return the parameters a layout was generated from, after overrides and with all defaults.
+
+    Nothing for an explicit layout: that one is identified by its digest.
+    """
+    try:
+        path = instances.locate("layouts", given)
+    except InputError:
+        return None
+    if path.suffix == ".toml":
+        table = read_toml(path)
+    elif path.suffix == ".xlayo":
+        table, _ = read_xlayo_table(path)
+    else:
+        return None
+    own = [(keys[1:], value) for keys, value in overrides if keys[0] == "layout"]
+    parameters = validate(LayoutParameters, apply_overrides(table, own), str(path))
+    return parameters.model_dump(mode="json")
 
 
 def digest(value: object) -> str:

@@ -3,4 +3,4 @@
 from rmfs.simulation.run import Run as Run
 from rmfs.simulation.run import simulate as simulate
 from rmfs.simulation.simulation import Simulation as Simulation
-from rmfs.simulation.simulation import Stalled as Stalled
+from rmfs.simulation.simulation import StalledError as StalledError

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-Entry = list  # [time_us, priority, serial, callback or None]: lists, since they are cancelled in place
-
 NEVER_US = 1 << 62
 """Later than any event, in microseconds."""
 
@@ -22,36 +20,39 @@ class Agenda:
     """
 
     def __init__(self) -> None:
-        self._heap: list[Entry] = []
+        self._heap: list[tuple[int, int, int, Callable[[], None]]] = []
+        self._cancelled: set[int] = set()
         self._serial = 0
 
     def __len__(self) -> int:
-        return sum(entry[3] is not None for entry in self._heap)
+        return len(self._heap) - len(self._cancelled)
 
     @property
     def next_us(self) -> int:
         """Time of the next entry, `NEVER_US` if there is none."""
-        heap = self._heap
-        while heap and heap[0][3] is None:
-            heappop(heap)
-        return heap[0][0] if heap else NEVER_US
+        self._drop_cancelled()
+        return self._heap[0][0] if self._heap else NEVER_US
 
-    def at(self, time_us: int, callback: Callable[[], None], priority: int = 0) -> Entry:
-        """Enter a callback; the entry returned is good for `cancel`."""
+    def at(self, time_us: int, callback: Callable[[], None], priority: int = 0) -> int:
+        """Enter a callback; returns its serial number, by which it can be cancelled."""
         self._serial += 1
-        entry: Entry = [time_us, priority, self._serial, callback]
-        heappush(self._heap, entry)
-        return entry
+        heappush(self._heap, (time_us, priority, self._serial, callback))
+        return self._serial
 
-    @staticmethod
-    def cancel(entry: Entry) -> None:
-        """Make an entry have no effect; nothing happens if it is over already."""
-        entry[3] = None
+    def cancel(self, serial: int) -> None:
+        """Make an entry that has not been called yet have no effect."""
+        self._cancelled.add(serial)
 
     def run_due(self, now_us: int) -> None:
         """Call everything due, in order, with what the callbacks enter for this time."""
         heap = self._heap
         while heap and heap[0][0] <= now_us:
-            callback = heappop(heap)[3]
-            if callback is not None:
+            _, _, serial, callback = heappop(heap)
+            if serial in self._cancelled:
+                self._cancelled.remove(serial)
+            else:
                 callback()
+
+    def _drop_cancelled(self) -> None:
+        while self._cancelled and self._heap and self._heap[0][2] in self._cancelled:
+            self._cancelled.remove(heappop(self._heap)[2])

@@ -1,4 +1,4 @@
-"""From tasks to traffic: what robots are commanded to do, and what follows from what they report."""
+"""From tasks to traffic: what robots are commanded, and what follows from what they report."""
 
 from __future__ import annotations
 

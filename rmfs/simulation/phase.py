@@ -1,4 +1,4 @@
-"""The decision phase: after all events of one instant, controllers are asked until all is settled."""
+"""The decision phase: after the events of an instant controllers are asked until all is settled."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from rmfs.control import decisions as say
 from rmfs.control.problems import Problem, Trigger
-from rmfs.simulation.agenda import Agenda, Entry
 from rmfs.simulation.statistics import DecisionStatistics
 
 if TYPE_CHECKING:
@@ -60,10 +59,10 @@ class DecisionPhase:
         self._panel = simulation.panel
         self._due = 0
         self._storage_version = simulation.world.storage.version
-        self._alarms: dict[Problem, tuple[float, Entry | None]] = {}
+        self._alarms: dict[Problem, tuple[float, int | None]] = {}
         self._overdue: set[Problem] = set()
         self._nested_ns = 0
-        self.statistics = {
+        self.statistics: dict[Problem, DecisionStatistics] = {
             problem: DecisionStatistics(str(problem), choice.name)
             for problem, choice in settings.choices.items()
             if problem not in (Problem.MM, Problem.PP)
@@ -164,22 +163,20 @@ class DecisionPhase:
 
     def _record(self, problem: Problem, wall_ns: int, count: int) -> None:
         self.statistics[problem].record(wall_ns, count)
-        self._simulation.observers.decision(
-            problem.value, self._world.now_s, wall_ns / 1e9, count
-        )
+        self._simulation.observers.decision(problem.value, self._world.now_s, wall_ns / 1e9, count)
 
     # --- times at which controllers want to be asked ------------------------------------------
 
     def _set_alarm(self, problem: Problem) -> None:
         time_s = self._panel[problem].next_event_s()
+        simulation = self._simulation
         set_for_s, entry = self._alarms.get(problem, (inf, None))
         if time_s == set_for_s:
             return
         if entry is not None:
-            Agenda.cancel(entry)
+            simulation.agenda.cancel(entry)
         entry = None
         if time_s < inf:
-            simulation = self._simulation
             # never at the present instant, or a controller could keep it from ending
             time_us = max(simulation.us_at(time_s), simulation.now_us + 1)
             entry = simulation.agenda.at(time_us, partial(self._alarm, problem))

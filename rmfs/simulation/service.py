@@ -68,9 +68,7 @@ class PickService:
             simulation.agenda.at(self._robot_until_us, self.go_on)
         now_s = world.now_s
         observers.station_busy(index, now_s, self._busy_until_us / 1e6)
-        observers.unit_picked(
-            now_s, order, line.sku, task.pod, task.robot, index, pick.late_bound
-        )
+        observers.unit_picked(now_s, order, line.sku, task.pod, task.robot, index, pick.late_bound)
         if line.picked_units == line.units:
             observers.line_picked(now_s, order, line.sku, line.units)
             if not order.unpicked_units:
@@ -80,13 +78,16 @@ class PickService:
     def _unit_transferred(self) -> None:
         """Hand complete orders on; the station is free for the next unit."""
         simulation = self._simulation
-        if self._finished:
-            for order in self._finished:
-                simulation.world.complete_order(order)
-                simulation.observers.order_completed(order)
-                simulation.phase.signal(Trigger.ORDER_COMPLETED, order)
-            self._finished.clear()
-        self.go_on()
+        if not self._finished:
+            self.go_on()
+            return
+        for order in self._finished:
+            simulation.world.complete_order(order)
+            simulation.observers.order_completed(order)
+            simulation.phase.signal(Trigger.ORDER_COMPLETED, order)
+        self._finished.clear()
+        # an order that takes the free slot may still be added to the present task
+        simulation.after_decisions(self.go_on)
 
 
 class ReplenishmentService:

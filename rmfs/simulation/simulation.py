@@ -39,7 +39,7 @@ STALL_S = 3600.0
 _LAST = 9  # priority of what only looks: after all that happens at the same time
 
 
-class Stalled(RuntimeError):
+class StalledError(RuntimeError):
     """Nothing can move any more; the message lists every robot."""
 
 
@@ -114,6 +114,7 @@ class Simulation:
         self._pacing = pacing if pacing is not None else Instant()
         self._end_us = self.us_at(self.end_s)
         self._moved_us = 0
+        self._afterwards: list[Callable[[], None]] = []
         self._handlers = self._traffic_handlers()
 
     def run(self, progress: Callable[[float, float], None] | None = None) -> None:
@@ -126,7 +127,7 @@ class Simulation:
 
         Raises
         ------
-        Stalled
+        StalledError
             If nothing can move any more (only possible in a layout that is not well-formed).
         """
         self._begin(progress)
@@ -146,9 +147,21 @@ class Simulation:
                 self._set_now(until_us)
             agenda.run_due(self.now_us)
             phase.settle()
+            while self._afterwards:
+                self._do_afterwards()
+                phase.settle()
             if self.now_us >= end_us and not events and agenda.next_us > end_us:
                 break
         self.observers.run_ended(self.end_s)
+
+    def after_decisions(self, callback: Callable[[], None]) -> None:
+        """Call back at this instant, as soon as the controllers have decided."""
+        self._afterwards.append(callback)
+
+    def _do_afterwards(self) -> None:
+        callbacks, self._afterwards = self._afterwards, []
+        for callback in callbacks:
+            callback()
 
     def end_task(self, robot: int) -> None:
         """End a robot's task: it needs a new one."""
@@ -205,7 +218,7 @@ class Simulation:
 
     def _sample(self, number: int) -> None:
         if self.now_us - self._moved_us > STALL_S * 1e6 and self.traffic.blocked():
-            raise Stalled(
+            raise StalledError(
                 f"nothing has moved since {self._moved_us / 1e6:.0f} s\n"
                 f"{self.traffic.state_report()}"
             )

@@ -98,12 +98,11 @@ class OrderBacklog:
             newer.append(order)
         return newer
 
-    def servable(self, stock: NDArray[np.integer]) -> NDArray[np.bool_]:
+    def servable(self, stock: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Rows of orders for which every line finds enough in `stock` (units per SKU), (B,)."""
         short = stock[self.sku] < self.units
         short &= self.units > 0
-        servable: NDArray[np.bool_] = ~short.any(axis=1)
-        return servable
+        return np.logical_not(np.asarray(short.any(axis=1)))
 
     def _make_room(self, rows: int, lines: int) -> None:
         old_rows, old_lines = self._sku.shape

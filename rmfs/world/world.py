@@ -172,7 +172,7 @@ class World:
         return assigned
 
     def choose_station(self, bundle: Bundle, station: int) -> bool:
-        """Reserve a station's space for a bundle (the choice of ROA); whether it now is assigned."""
+        """Reserve a station's space (the choice of ROA); returns whether the bundle is assigned."""
         target = self.replenishment_station(station)
         if bundle.station >= 0:
             raise ValueError(f"bundle {bundle.index} has station {bundle.station} already")

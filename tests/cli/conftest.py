@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 
@@ -13,18 +12,17 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "measure"))
 
 @pytest.fixture
 def calls(monkeypatch, tmp_path):
-    """The keyword arguments of every call of the replaced `simulate`; cwd is a fresh folder."""
+    """The arguments of every call of the replaced `simulate`; cwd is a fresh folder."""
     from fake_run import run
 
     made = []
 
-    def simulate(**arguments):
-        made.append(arguments)
-        arguments["progress"](1.0, 2.0)
+    def simulate(layout, scenario, controllers, **arguments):
+        given = {"layout": layout, "scenario": scenario, "controllers": controllers}
+        made.append({**given, **arguments})
+        arguments["progress"](0.0, 2.0)
         return run()
 
-    module = ModuleType("rmfs.simulation.run")
-    module.simulate = simulate
-    monkeypatch.setitem(sys.modules, "rmfs.simulation.run", module)
+    monkeypatch.setattr("rmfs.simulation.run.simulate", simulate)
     monkeypatch.chdir(tmp_path)
     return made

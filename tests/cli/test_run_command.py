@@ -111,10 +111,10 @@ def test_wrong_usage_is_one_line_and_code_2(calls, capsys, arguments, text):
     ],
 )
 def test_errors_of_a_run_leave_nothing(calls, capsys, monkeypatch, error, code):
-    def simulate(**arguments):
+    def simulate(*given, **arguments):
         raise error
 
-    monkeypatch.setattr(sys.modules["rmfs.simulation.run"], "simulate", simulate)
+    monkeypatch.setattr("rmfs.simulation.run.simulate", simulate)
     assert main(["run"]) == code
     one_line(capsys)
     assert files() == []
@@ -133,10 +133,10 @@ def test_an_interruption_while_writing_leaves_nothing(calls, capsys, monkeypatch
 
 
 def test_a_defect_keeps_its_traceback(calls, monkeypatch):
-    def simulate(**arguments):
+    def simulate(*given, **arguments):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(sys.modules["rmfs.simulation.run"], "simulate", simulate)
+    monkeypatch.setattr("rmfs.simulation.run.simulate", simulate)
     with pytest.raises(ZeroDivisionError):
         main(["run"])
     assert files() == []
@@ -159,3 +159,15 @@ def test_without_a_command_help_is_shown(capsys):
 def test_version(capsys):
     assert main(["--version"]) == 0
     assert capsys.readouterr().out.startswith("rmfs ")
+
+
+def test_a_stalled_run_ends_with_its_report(calls, capsys, monkeypatch):
+    from rmfs.simulation.simulation import StalledError
+
+    def simulate(*given, **arguments):
+        raise StalledError("nothing has moved since 12 s\nrobot 0: waits")
+
+    monkeypatch.setattr("rmfs.simulation.run.simulate", simulate)
+    assert main(["run"]) == 1
+    assert capsys.readouterr().err.splitlines()[-1] == "robot 0: waits"
+    assert files() == []

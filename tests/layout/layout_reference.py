@@ -57,9 +57,7 @@ def read_reference(name: str) -> ReferenceLayout:
     elevators = []
     for elevator in root.find("Elevators"):
         timings = [entry.text.split("/") for entry in elevator.find("Timings")]
-        elevators.append(
-            ({(at[a], at[b]): float(s) for a, b, s in timings}, queues(elevator))
-        )
+        elevators.append(({(at[a], at[b]): float(s) for a, b, s in timings}, queues(elevator)))
     return ReferenceLayout(
         places=set(at.values()),
         edges={

@@ -98,6 +98,9 @@ class Settings(pydantic.BaseModel):
 
     name: str = "fake"
 
+    def to_table(self) -> dict[str, str]:
+        return {"name": self.name}
+
 
 def order(index, created, lines, *, due=nan, station=-1, assigned=nan, completed=nan):
     return SimpleNamespace(
@@ -232,6 +235,7 @@ def run():
         scenario=Settings(),
         controllers=Settings(),
         names=("fake-layout", "fake-scenario", "fake-controllers"),
+        overrides=[(["layout", "robots"], 2)],
         seed=3,
         pacing="instant",
         warmup_s=WARMUP_S,

@@ -11,11 +11,13 @@ Trace = dict[str, np.ndarray]
 
 
 def waits(trace: Trace, at_least_s: float) -> list[int]:
-    """Rows in which a robot stands at least so long before it drives on."""
+    """Rows in which a robot stands at least so long before it drives on, and stands again later."""
     follows = np.append(trace["robot"][1:] == trace["robot"][:-1], False)
     drives = np.isin(np.append(trace["kind"][1:], HOLD), [RUN, TURN])
     long = trace["t1_us"] - trace["t0_us"] >= at_least_s * 1e6
-    return np.flatnonzero((trace["kind"] == HOLD) & long & follows & drives).tolist()
+    last = {int(trace["robot"][k]): int(k) for k in np.flatnonzero(trace["kind"] == HOLD)}
+    again = np.array([last[robot] for robot in trace["robot"].tolist()]) > np.arange(len(long))
+    return np.flatnonzero((trace["kind"] == HOLD) & long & follows & drives & again).tolist()
 
 
 def started_earlier(trace: Trace, row: int, by_s: float) -> Trace:
@@ -24,12 +26,11 @@ def started_earlier(trace: Trace, row: int, by_s: float) -> Trace:
     by = round(by_s * 1e6)
     mutant["t1_us"][row] -= by
     k = row + 1
-    while k + 1 < len(trace["robot"]) and trace["robot"][k + 1] == trace["robot"][row]:
+    while trace["kind"][k] != HOLD:
         mutant["t0_us"][k] -= by
-        if trace["kind"][k] == HOLD:
-            break
         mutant["t1_us"][k] -= by
         k += 1
+    mutant["t0_us"][k] -= by
     return mutant
 
 

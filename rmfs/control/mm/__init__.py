@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from rmfs.config import Model
-from rmfs.control.base import Controller
+from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem
 
-P = TypeVar("P", bound=Model)
+P = TypeVar("P", bound=Parameters)
 
 
 class MethodManagement(Controller[P]):

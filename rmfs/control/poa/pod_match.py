@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from rmfs.config import Model
+from rmfs.control.base import Parameters
 from rmfs.control.decisions import AssignOrder
 from rmfs.control.poa import PickOrderAssignment
 from rmfs.control.poa.fast_lane import FastLane
@@ -23,27 +23,19 @@ if TYPE_CHECKING:
 TieBreaker = Literal["due-time", "first-come", "random"]
 
 
-class PodMatchParameters(Model):
-    """Parameters of POA pod-match.
-
-    Attributes
-    ----------
-    tie_breaker
-        Which of several orders with equally many units: earliest due time, earliest arrival, or
-        any.
-    late_first
-        Whether orders past their due time come before all others.
-    fast_lane
-        Whether one slot of each station is kept for orders that the pod being served there can
-        complete.
-    fast_lane_tie_breaker
-        Which of several such orders.
-    """
+class PodMatchParameters(Parameters):
+    """Parameters of POA pod-match."""
 
     tie_breaker: TieBreaker = "due-time"
+    """Which of several orders with equally many units: earliest due time, earliest arrival, or
+    any."""
     late_first: bool = False
+    """Whether orders past their due time come before all others."""
     fast_lane: bool = True
+    """Whether one slot of each station is kept for orders that the pod being served there can
+    complete."""
     fast_lane_tie_breaker: TieBreaker = "due-time"
+    """Which of several such orders."""
 
 
 class PodMatch(PickOrderAssignment[PodMatchParameters]):
@@ -60,9 +52,11 @@ class PodMatch(PickOrderAssignment[PodMatchParameters]):
     all that ever was; `late_first` prefers late orders, not orders in time.
     """
 
-    Parameters = PodMatchParameters
+    parameters_model = PodMatchParameters
 
-    def __init__(self, parameters: PodMatchParameters, view: View, rng: np.random.Generator) -> None:
+    def __init__(
+        self, parameters: PodMatchParameters, view: View, rng: np.random.Generator
+    ) -> None:
         super().__init__(parameters, view, rng)
         self._lane = FastLane(view, self._order_key) if parameters.fast_lane else None
         self._kept_slots = 1 if parameters.fast_lane else 0
@@ -116,7 +110,8 @@ class PodMatch(PickOrderAssignment[PodMatchParameters]):
             due_s = self.view.orders.due_s[rows]
             rows = rows[due_s == due_s.min()]
         at_row = self.view.orders.at_row
-        return min(rows.tolist(), key=lambda row: at_row[row].index)
+        tied: list[int] = rows.tolist()
+        return min(tied, key=lambda row: at_row[row].index)
 
     def _order_key(self, order: Order) -> tuple[float, int]:
         """Rank orders for the fast lane; the smallest comes first."""

@@ -1,12 +1,11 @@
-"""Pod selection (PPS): which pod is brought to a station, or which station a carried pod goes to."""
+"""Pod selection (PPS): which pod comes to a station, or which station a carried pod goes to."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from typing import TYPE_CHECKING, TypeVar
 
-from rmfs.config import Model
-from rmfs.control.base import Controller
+from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem
 
 if TYPE_CHECKING:
@@ -16,19 +15,13 @@ if TYPE_CHECKING:
     from rmfs.world.stations import PickStation, ReplenishmentStation
 
 
-class LateBinding(Model):
-    """Parameters of every PPS rule.
-
-    Attributes
-    ----------
-    late_picks
-        Whether a pod on its way to a pick station is given requests that come up meanwhile.
-    late_bundles
-        Whether a pod on its way to a replenishment station is given bundles that come up meanwhile.
-    """
+class LateBinding(Parameters):
+    """Parameters of every PPS rule."""
 
     late_picks: bool = True
+    """Whether a pod on its way to a pick station is given requests that come up meanwhile."""
     late_bundles: bool = True
+    """The same for bundles of a pod on its way to a replenishment station."""
 
 
 P = TypeVar("P", bound=LateBinding)

@@ -52,7 +52,9 @@ class Candidates:
         if travel.tiers == 1:
             return 0
         tier = travel.tier[self.waypoints()]
-        return (tier != self.robot.tier).astype(np.int64) + (tier != self.station.tier)
+        away: NDArray[np.int64] = (tier != self.robot.tier).astype(np.int64)
+        away += tier != self.station.tier
+        return away
 
 
 class PickCandidates(Candidates):
@@ -141,9 +143,7 @@ def pick_candidates(view: View, robot: Robot, station: PickStation) -> PickCandi
     return PickCandidates(view, robot, station, pods, skus, have[:, pods])
 
 
-def replenishment_candidates(
-    view: View, robot: Robot, station: ReplenishmentStation
-) -> Candidates:
+def replenishment_candidates(view: View, robot: Robot, station: ReplenishmentStation) -> Candidates:
     """Find the pods at hand for which bundles wait at a replenishment station."""
     if not station.waiting:
         return Candidates(view, robot, station, np.empty(0, np.intp))

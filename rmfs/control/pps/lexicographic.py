@@ -1,4 +1,4 @@
-"""PPS lexicographic: scorers one after the other, each deciding among what the former left equal."""
+"""PPS lexicographic: one scorer after the other, each among what the former left equal."""
 
 from __future__ import annotations
 
@@ -34,22 +34,16 @@ class Scorer(Protocol):
 
 
 class LexicographicParameters(LateBinding):
-    """Parameters of PPS lexicographic.
-
-    Attributes
-    ----------
-    pick_pod
-        Scorers of pods for a pick station, the first counting most.
-    replenishment_pod
-        Scorers of pods for a replenishment station.
-    """
+    """Parameters of PPS lexicographic."""
 
     pick_pod: tuple[PickScorer, ...] = (Completeable(), PickWorkAmount(), Nearest())
+    """Scorers of pods for a pick station, the first counting most."""
     replenishment_pod: tuple[BundleScorer, ...] = (
         BundleWorkAmount(),
         Nearest(metric="distance"),
         RandomScorer(),
     )
+    """Scorers of pods for a replenishment station."""
 
 
 class Lexicographic(PodSelection[LexicographicParameters]):
@@ -59,7 +53,7 @@ class Lexicographic(PodSelection[LexicographicParameters]):
     it finds most work; ties: the nearest, then the one with the lowest number.
     """
 
-    Parameters = LexicographicParameters
+    parameters_model = LexicographicParameters
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
         """Choose by the scorers for pick stations."""

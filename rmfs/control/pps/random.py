@@ -15,21 +15,16 @@ if TYPE_CHECKING:
 
 
 class RandomPodParameters(LateBinding):
-    """Parameters of PPS random.
-
-    Attributes
-    ----------
-    prefer_same_tier
-        Whether pods on the tiers of robot and station come first.
-    """
+    """Parameters of PPS random."""
 
     prefer_same_tier: bool = True
+    """Whether pods on the tiers of robot and station come first."""
 
 
 class RandomPod(PodSelection[RandomPodParameters]):
     """Draws a pod, and draws a station for a pod that has been served."""
 
-    Parameters = RandomPodParameters
+    parameters_model = RandomPodParameters
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
         """Draw one of the pods at hand that can serve a request."""

@@ -1,4 +1,4 @@
-"""Scorers of pods: the higher, the better. Each is a model, so that a file can choose and set it."""
+"""Scorers of pods: the higher, the better. Each is a model, so a file can choose and set it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import pydantic
 
-from rmfs.config import Model
+from rmfs.control.base import Parameters
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,7 +20,7 @@ _OTHER_TIER = 1000.0
 """Units that a pod on another tier is worth less: more than any pod can serve."""
 
 
-class RandomScorer(Model):
+class RandomScorer(Parameters):
     """Any pod; those on the tiers of robot and station first if so wished."""
 
     scorer: Literal["random"] = "random"
@@ -32,18 +32,13 @@ class RandomScorer(Model):
         return scores - candidates.other_tiers() if self.prefer_same_tier else scores
 
 
-class Nearest(Model):
-    """Shortest way from the robot to the pod and on to the station.
-
-    Attributes
-    ----------
-    metric
-        `time`: estimated time from robot to pod plus exact time from pod to station;
-        `distance`: Euclidean distances.
-    """
+class Nearest(Parameters):
+    """Shortest way from the robot to the pod and on to the station."""
 
     scorer: Literal["nearest"] = "nearest"
     metric: Literal["time", "distance"] = "time"
+    """`time`: estimated time from robot to pod plus exact time from pod to station; `distance`:
+    Euclidean distances."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
         """Minus seconds, or minus metres."""
@@ -55,7 +50,7 @@ class Nearest(Model):
         return -(from_robot + travel.metres(candidates.station.waypoint, pods))
 
 
-class Completeable(Model):
+class Completeable(Parameters):
     """Most orders of the station completed."""
 
     scorer: Literal["completeable"] = "completeable"
@@ -65,23 +60,16 @@ class Completeable(Model):
         return candidates.completed()[0]
 
 
-class PickWorkAmount(Model):
-    """Most picks, with a price for the way ("pile-on" in later literature).
-
-    Attributes
-    ----------
-    time_cost
-        Picks that one second of travel is worth.
-    completable_boost
-        Units of orders that the pod can complete count so much more: 1 for twice.
-    prefer_same_tier
-        Whether pods on the tiers of robot and station come first.
-    """
+class PickWorkAmount(Parameters):
+    """Most picks, with a price for the way ("pile-on" in later literature)."""
 
     scorer: Literal["work-amount"] = "work-amount"
     time_cost: Annotated[float, pydantic.Field(ge=0)] = 1 / 3
+    """Picks that one second of travel is worth."""
     completable_boost: Annotated[float, pydantic.Field(ge=0)] = 1.0
+    """Units of orders that the pod can complete count so much more: 1 for twice."""
     prefer_same_tier: bool = True
+    """Whether pods on the tiers of robot and station come first."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
         """Servable requests plus boost, less travel time times its cost."""
@@ -95,17 +83,12 @@ class PickWorkAmount(Model):
         return scores
 
 
-class BundleWorkAmount(Model):
-    """Most bundles.
-
-    Attributes
-    ----------
-    prefer_same_tier
-        Whether pods on the tiers of robot and station come first.
-    """
+class BundleWorkAmount(Parameters):
+    """Most bundles."""
 
     scorer: Literal["work-amount"] = "work-amount"
     prefer_same_tier: bool = True
+    """Whether pods on the tiers of robot and station come first."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
         """Bundles that wait at the station for the pod."""

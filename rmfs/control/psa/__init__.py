@@ -5,14 +5,13 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, TypeVar
 
-from rmfs.config import Model
-from rmfs.control.base import Controller
+from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem
 
 if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
-P = TypeVar("P", bound=Model)
+P = TypeVar("P", bound=Parameters)
 
 
 class PodStorageAssignment(Controller[P]):
@@ -25,4 +24,4 @@ class PodStorageAssignment(Controller[P]):
 
     @abstractmethod
     def place(self, robot: Robot) -> int:
-        """Choose the waypoint of an empty place for the pod a robot carries; -1 if there is none."""
+        """Choose an empty place (waypoint) for the pod a robot carries; -1 if there is none."""

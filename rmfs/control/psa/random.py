@@ -4,29 +4,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.config import Model
+from rmfs.control.base import Parameters
 from rmfs.control.psa import PodStorageAssignment
 
 if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 
-class RandomPlaceParameters(Model):
-    """Parameters of PSA random.
-
-    Attributes
-    ----------
-    prefer_same_tier
-        Whether other tiers are taken only if the robot's has no empty place.
-    """
+class RandomPlaceParameters(Parameters):
+    """Parameters of PSA random."""
 
     prefer_same_tier: bool = True
+    """Whether other tiers are taken only if the robot's has no empty place."""
 
 
 class RandomPlace(PodStorageAssignment[RandomPlaceParameters]):
     """Draws an empty place."""
 
-    Parameters = RandomPlaceParameters
+    parameters_model = RandomPlaceParameters
 
     def place(self, robot: Robot) -> int:
         """Draw an empty place, on the robot's tier if so wished and possible."""

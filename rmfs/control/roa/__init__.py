@@ -5,8 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, TypeVar
 
-from rmfs.config import Model
-from rmfs.control.base import Controller
+from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem, Trigger
 
 if TYPE_CHECKING:
@@ -14,7 +13,7 @@ if TYPE_CHECKING:
 
     from rmfs.control.decisions import SendBundle
 
-P = TypeVar("P", bound=Model)
+P = TypeVar("P", bound=Parameters)
 
 
 class ReplenishmentOrderAssignment(Controller[P]):

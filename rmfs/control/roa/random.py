@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.config import Model
+from rmfs.control.base import Parameters
 from rmfs.control.decisions import SendBundle
 from rmfs.control.roa import ReplenishmentOrderAssignment
 
@@ -18,16 +18,11 @@ if TYPE_CHECKING:
     from rmfs.world.stations import ReplenishmentStation
 
 
-class RandomStationParameters(Model):
-    """Parameters of ROA random.
-
-    Attributes
-    ----------
-    stick_to_station
-        Whether the last station is taken again while it has room.
-    """
+class RandomStationParameters(Parameters):
+    """Parameters of ROA random."""
 
     stick_to_station: bool = True
+    """Whether the last station is taken again while it has room."""
 
 
 class RandomStation(ReplenishmentOrderAssignment[RandomStationParameters]):
@@ -36,7 +31,7 @@ class RandomStation(ReplenishmentOrderAssignment[RandomStationParameters]):
     It does not wait for the choice of the pod. A bundle without room anywhere waits.
     """
 
-    Parameters = RandomStationParameters
+    parameters_model = RandomStationParameters
 
     def __init__(
         self, parameters: RandomStationParameters, view: View, rng: np.random.Generator

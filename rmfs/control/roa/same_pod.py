@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rmfs.config import Model
+from rmfs.control.base import Parameters
 from rmfs.control.decisions import SendBundle
 from rmfs.control.problems import Trigger
 from rmfs.control.roa import ReplenishmentOrderAssignment
@@ -18,16 +18,11 @@ if TYPE_CHECKING:
     from rmfs.world.stations import ReplenishmentStation
 
 
-class SamePodParameters(Model):
-    """Parameters of ROA same-pod.
-
-    Attributes
-    ----------
-    first_come_first_served
-        Whether a batch that fits nowhere holds up the batches after it.
-    """
+class SamePodParameters(Parameters):
+    """Parameters of ROA same-pod."""
 
     first_come_first_served: bool = True
+    """Whether a batch that fits nowhere holds up the batches after it."""
 
 
 class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
@@ -40,7 +35,7 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
     of it as fits goes to the nearest empty station (RAWSim-O would wait for ever).
     """
 
-    Parameters = SamePodParameters
+    parameters_model = SamePodParameters
     subscriptions = frozenset({Trigger.BUNDLE_RELEASED})
 
     def __init__(self, parameters: SamePodParameters, view: View, rng: np.random.Generator) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import pydantic
 
-from rmfs.config import Model
+from rmfs.control.base import Parameters
 from rmfs.control.decisions import PromiseBundle, ReleasePod
 from rmfs.control.problems import Trigger
 from rmfs.control.rps import ReplenishmentPodSelection
@@ -22,31 +22,20 @@ if TYPE_CHECKING:
     from rmfs.world.orders import Bundle
 
 
-class BufferParameters(Model):
-    """Parameters of RPS rules with a buffer.
-
-    Attributes
-    ----------
-    buffer_threshold
-        Share of a pod's capacity, stored and promised, at which its bundles are released.
-    buffer_timeout_s
-        They are released at the latest so long after the last bundle was promised to the pod.
-    """
+class BufferParameters(Parameters):
+    """Parameters of RPS rules with a buffer."""
 
     buffer_threshold: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
+    """Share of a pod's capacity, stored and promised, at which its bundles are released."""
     buffer_timeout_s: Annotated[float, pydantic.Field(ge=0)] = 1200.0
+    """They are released at the latest so long after the last bundle was promised to the pod."""
 
 
 class StickyParameters(BufferParameters):
-    """Parameters of RPS rules that fill one pod after the other.
-
-    Attributes
-    ----------
-    stick_to_pod
-        Whether the last pod is taken again while it has room and until a station serves it.
-    """
+    """Parameters of RPS rules that fill one pod after the other."""
 
     stick_to_pod: bool = True
+    """Whether the last pod is taken again while it has room and until a station serves it."""
 
 
 P = TypeVar("P", bound=BufferParameters)

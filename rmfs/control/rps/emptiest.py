@@ -18,7 +18,7 @@ class Emptiest(Sticky[StickyParameters]):
     All pods are candidates, wherever they are. Ties: the pod with the lowest number.
     """
 
-    Parameters = StickyParameters
+    parameters_model = StickyParameters
 
     def choose_anew(self, bundle: Bundle) -> int:
         """Choose the pod with the lowest load share among those with room."""

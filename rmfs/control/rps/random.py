@@ -16,7 +16,7 @@ _DRAWS = 16
 class RandomPod(Sticky[StickyParameters]):
     """Takes a pod drawn among all that have room for the bundle, wherever they are."""
 
-    Parameters = StickyParameters
+    parameters_model = StickyParameters
 
     def choose_anew(self, bundle: Bundle) -> int:
         """Draw a pod with room."""

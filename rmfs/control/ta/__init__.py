@@ -5,8 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
-from rmfs.config import Model
-from rmfs.control.base import Controller
+from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem, Trigger
 
 if TYPE_CHECKING:
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
     from rmfs.control.decisions import TaskDecision
     from rmfs.world.robots import Robot
 
-P = TypeVar("P", bound=Model)
+P = TypeVar("P", bound=Parameters)
 
 
 class Consult(Protocol):

@@ -80,7 +80,7 @@ def reassign(
     short = [station for station, count in surplus.items() if count < 0]
     cost[np.ix_(movable, short)] = distance[np.ix_(movable, short)]
     while short:
-        robot, station = divmod(int(cost.argmin()), cost.shape[1])
+        robot, station = divmod(int(cost.argmin()), len(cost[0]))
         if cost[robot, station] == np.inf:
             break
         former = result[robot]

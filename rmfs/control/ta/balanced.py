@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import pydantic
 
-from rmfs.config import Model
+from rmfs.control.base import Parameters
 from rmfs.control.decisions import BringForBundles, BringForPicks, Park, Rest, TaskDecision
 from rmfs.control.problems import Trigger
 from rmfs.control.ta import Consult, TaskAllocation
@@ -18,41 +18,33 @@ from rmfs.control.ta.rest import RestPlaces, RestRule
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from numpy.typing import NDArray
+
     from rmfs.control.view import View
     from rmfs.world.robots import Robot
 
 NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 
 
-class BalancedParameters(Model):
-    """Parameters of TA balanced.
-
-    Attributes
-    ----------
-    pick_weight, replenishment_weight
-        How the robots are divided between the two kinds of station.
-    reposition_weight
-        Share of robots that only reposition pods; they rest while no repositioning is done.
-    robots_per_station
-        How many robots may work for one station.
-    period_s
-        Time between re-balancings, which look at the stations that have work; 0 for never.
-    other_stations
-        Whether a pod that has been served may go on to another station.
-    search_radius_m
-        How far away that station may be.
-    rest
-        Where idle robots wait: near the middle of their tier, or at random.
-    """
+class BalancedParameters(Parameters):
+    """Parameters of TA balanced."""
 
     pick_weight: NotNegative = 2.0
+    """Weight of pick stations when the robots are divided between the kinds of station."""
     replenishment_weight: NotNegative = 1.0
+    """Weight of replenishment stations."""
     reposition_weight: NotNegative = 0.0
+    """Weight of repositioning: robots that work for no station."""
     robots_per_station: Annotated[int, pydantic.Field(ge=1)] = 9
+    """How many robots may work for one station."""
     period_s: NotNegative = 30.0
+    """Seconds between re-balancings, which look at the stations that have work; 0 for never."""
     other_stations: bool = False
+    """Whether a pod that has been served may go on to another station."""
     search_radius_m: NotNegative = 8.0
+    """Metres to that station at most."""
     rest: RestRule = "middle"
+    """Where idle robots wait: near the middle of their tier, or at random."""
 
 
 class Balanced(TaskAllocation[BalancedParameters]):
@@ -72,7 +64,7 @@ class Balanced(TaskAllocation[BalancedParameters]):
     robots are asked again when there is new work, not every 5 s.
     """
 
-    Parameters = BalancedParameters
+    parameters_model = BalancedParameters
     subscriptions = frozenset(
         {Trigger.ORDER_ASSIGNED, Trigger.BUNDLE_ASSIGNED, Trigger.POD_AT_HAND}
     )
@@ -222,9 +214,7 @@ class Balanced(TaskAllocation[BalancedParameters]):
         others = [station for station in order if station >= len(self.view.pick_stations)]
         pick_weight = given.pick_weight * len(picks) / max(len(self.view.pick_stations), 1)
         replenishment_weight = (
-            given.replenishment_weight
-            * len(others)
-            / max(len(self.view.replenishment_stations), 1)
+            given.replenishment_weight * len(others) / max(len(self.view.replenishment_stations), 1)
         )
         for_picks, for_bundles = split(self._station_robots(), pick_weight, replenishment_weight)
         goals = dict.fromkeys(order, 0)
@@ -241,10 +231,11 @@ class Balanced(TaskAllocation[BalancedParameters]):
         return ceil(weight / total * len(self.view.robots)) if total > 0 else 0
 
 
-def _far_first(view: View, waypoints: np.ndarray) -> list[int]:  # type: ignore[type-arg]
+def _far_first(view: View, waypoints: NDArray[np.int64]) -> list[int]:
     """Stations, those far from the middle of their tier first, ties by number."""
     layout = view.layout
     tiers = [layout.tiers[tier] for tier in layout.tier[waypoints].tolist()]
     x = layout.x_m[waypoints] - np.array([tier.length_m / 2 for tier in tiers])
     y = layout.y_m[waypoints] - np.array([tier.width_m / 2 for tier in tiers])
-    return np.argsort(-(x * x + y * y), kind="stable").tolist()  # type: ignore[no-any-return]
+    far_first: list[int] = np.argsort(-(x * x + y * y), kind="stable").tolist()
+    return far_first

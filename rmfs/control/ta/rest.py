@@ -66,4 +66,5 @@ def _from_middle(view: View, tier: int) -> NDArray[np.intp]:
     x = layout.x_m[places] - layout.tiers[tier].length_m / 2
     y = layout.y_m[places] - layout.tiers[tier].width_m / 2
     order = np.argsort(x * x + y * y, kind="stable")
-    return order[layout.tier[places[order]] == tier]
+    own: NDArray[np.intp] = order[layout.tier[places[order]] == tier]
+    return own

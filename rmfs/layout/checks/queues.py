@@ -1,8 +1,9 @@
 """Whether queue lists are queues: own places in a row, each leading towards the head (W3).
 
 W3 of the deadlock argument asks that a station admits no more robots than its queue has places.
-Traffic gives out places one by one and lets everybody else wait at an endpoint, so it holds for a
-queue of any length as long as its places are its own and the list is a chain.
+Traffic gives out places one by one and lets everybody else wait where it stands, so the number of
+robots is no matter of the layout, with one exception: where a queue is nothing but the station
+itself, two robots that go on to each other's station would wait for each other for ever.
 """
 
 from __future__ import annotations
@@ -72,11 +73,23 @@ def queue_lists(layout: Layout) -> Iterator[Violation]:
     owner: dict[int, str] = {}
     for queue in all_queues(layout):
         yield from _chain(layout, queue)
+        yield from _length(layout, queue)
         for place in dict.fromkeys(queue.places):
             if place in owner:
                 message = f"shares {waypoint_label(layout, place)} with {owner[place]} (W3)"
                 yield Violation(NOT_WELL_FORMED, queue.label, message)
             owner.setdefault(place, queue.label)
+
+
+def _length(layout: Layout, queue: Queue) -> Iterator[Violation]:
+    """Yield a queue too short for robots that go from station to station."""
+    several = layout.robots > 1 and len(layout.stations) > 1
+    if several and not queue.of_elevator and len(queue.places) == 1:
+        message = (
+            "its queue is too short: with one place, robots that go on to each other's station "
+            "wait for each other (W3)"
+        )
+        yield Violation(NOT_WELL_FORMED, queue.label, message)
 
 
 def _chain(layout: Layout, queue: Queue) -> Iterator[Violation]:

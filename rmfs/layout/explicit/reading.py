@@ -19,13 +19,11 @@ from rmfs.layout.model import (
     RobotKind,
     Tier,
 )
+from rmfs.layout.problems import stop_if_any
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
-
-MOST_PROBLEMS = 10
-"""Problems named in one message; more are counted."""
 
 
 def read_json(path: Path) -> Layout:
@@ -55,11 +53,7 @@ def build(table: Table, source: str) -> Layout:
         If a value is wrong or an index points at nothing.
     """
     explicit = validate(ExplicitLayout, table, source)
-    problems = list(_dangling(explicit))
-    if problems:
-        more = len(problems) - MOST_PROBLEMS
-        tail = [f"and {more} more"] if more > 0 else []
-        raise InputError(f"{source}: {'; '.join(problems[:MOST_PROBLEMS] + tail)}")
+    stop_if_any(list(_dangling(explicit)), source)
     return _layout(explicit)
 
 

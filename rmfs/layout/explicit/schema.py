@@ -7,22 +7,14 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-import pydantic
 from pydantic import Field
 
-from rmfs.config import Model
+from rmfs.layout.values import Count, Index, Positive, Strict
 
 FORMAT = "rmfs-layout-explicit/1"
 
-Positive = Annotated[float, Field(gt=0)]
-Index = Annotated[int, Field(ge=0)]
 
-
-class _Strict(Model):
-    model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)
-
-
-class ExplicitTier(_Strict):
+class ExplicitTier(Strict):
     """A floor: extent in x and y and height above the ground, in m."""
 
     length_m: Positive
@@ -30,7 +22,7 @@ class ExplicitTier(_Strict):
     height_m: float = 0.0
 
 
-class ExplicitWaypoint(_Strict):
+class ExplicitWaypoint(Strict):
     """A waypoint, and the waypoints of its tier that are reached directly from it."""
 
     x_m: float
@@ -41,28 +33,28 @@ class ExplicitWaypoint(_Strict):
     queue: bool = False
 
 
-class ExplicitPickStation(_Strict):
+class ExplicitPickStation(Strict):
     """A pick station; `queue` lists its waiting places from the station to the entrance."""
 
     queue: list[Index] = Field(min_length=1)
     radius_m: Positive
-    order_slots: int = Field(ge=1)
+    order_slots: Count
     unit_transfer_s: Positive
     unit_pick_s: Positive
-    activation: int = Field(ge=1)
+    activation: Count
 
 
-class ExplicitReplenishmentStation(_Strict):
+class ExplicitReplenishmentStation(Strict):
     """A replenishment station; `queue` as for pick stations."""
 
     queue: list[Index] = Field(min_length=1)
     radius_m: Positive
     capacity: Positive
     bundle_transfer_s: Positive
-    activation: int = Field(ge=1)
+    activation: Count
 
 
-class ExplicitRide(_Strict):
+class ExplicitRide(Strict):
     """Seconds from one boarding waypoint of an elevator to another."""
 
     origin: Index
@@ -70,14 +62,14 @@ class ExplicitRide(_Strict):
     travel_s: Positive
 
 
-class ExplicitElevator(_Strict):
+class ExplicitElevator(Strict):
     """An elevator; one queue per tier, each beginning with its boarding waypoint."""
 
     queues: list[Annotated[list[Index], Field(min_length=1)]] = Field(min_length=2)
     rides: list[ExplicitRide]
 
 
-class ExplicitRobotKind(_Strict):
+class ExplicitRobotKind(Strict):
     """Size and motion of robots."""
 
     radius_m: Positive
@@ -88,14 +80,14 @@ class ExplicitRobotKind(_Strict):
     pod_transfer_s: Positive
 
 
-class ExplicitPod(_Strict):
+class ExplicitPod(Strict):
     """A pod and where it stands at the start."""
 
     waypoint: Index
     capacity: Positive
 
 
-class ExplicitRobot(_Strict):
+class ExplicitRobot(Strict):
     """A robot and where it stands at the start."""
 
     waypoint: Index
@@ -103,7 +95,7 @@ class ExplicitRobot(_Strict):
     kind: Index = 0
 
 
-class ExplicitLayout(_Strict):
+class ExplicitLayout(Strict):
     """The content of a `rmfs-layout-explicit/1` file."""
 
     format: Literal["rmfs-layout-explicit/1"]

@@ -5,13 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from rmfs.errors import InputError
+from rmfs.layout.problems import stop_if_any
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
-
-MOST_PROBLEMS = 10
-"""Problems named in one message; more are counted."""
 
 NOBODY = -1
 """RAWSim-O's id for "none"."""
@@ -35,10 +32,7 @@ class Problems:
         InputError
             One line with the first of them and the number of the others.
         """
-        if self.found:
-            more = len(self.found) - MOST_PROBLEMS
-            tail = [f"and {more} more"] if more > 0 else []
-            raise InputError(f"{source}: {'; '.join(self.found[:MOST_PROBLEMS] + tail)}")
+        stop_if_any(self.found, source)
 
 
 class Fields:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rmfs.config import Table, validate
-from rmfs.errors import InputError
 from rmfs.layout.parameters import LayoutParameters
+from rmfs.layout.problems import stop_if_any
 from rmfs.layout.rawsimo.xml import Unknown, read_root
 
 if TYPE_CHECKING:
@@ -109,8 +109,7 @@ def read_xlayo_table(path: Path) -> tuple[Table, list[str]]:
             _put(table, key, value)
     if "Seed" not in seen:
         notes.append("Seed is absent: 0")
-    if problems:
-        raise InputError(f"{path}: {'; '.join(problems)}")
+    stop_if_any(problems, path)
     return table, notes + unknown.notes()
 
 

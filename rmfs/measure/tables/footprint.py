@@ -114,12 +114,13 @@ def _counts(recorder: Recorder, at_stations: pd.DataFrame) -> dict[str, Any]:
 def _motion(recorder: Recorder) -> dict[str, Any]:
     ended = trips(recorder)
     lasted = ended["end_s"] - ended["start_s"]
+    delay = (lasted - ended["unhindered_s"])[ended["kind"] != "to_station"]
     return {
         "distance_m": float(recorder.motion["distance_m"].sum()),
         "loaded_distance_m": float(recorder.motion["loaded_distance_m"].sum()),
         "trips": len(ended),
         "trip_time_mean_s": lasted.mean(),
-        "trip_delay_mean_s": (lasted - ended["unhindered_s"]).mean(),
+        "trip_delay_mean_s": delay.mean(),
         "pods_lifted": sum(time >= recorder.start_s for time, _, _ in recorder.lifts),
     }
 

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::kinematics::Kind;
-use crate::network::{Metric, Network};
+use crate::network::Network;
 use crate::units::Us;
 
 /// Time that stands for "cannot be reached".
@@ -79,7 +79,7 @@ impl Model {
     /// Times from every (waypoint, heading) at rest to `goal`.
     pub fn towards(&self, network: &Network, goal: u32, loaded: bool) -> Vec<u32> {
         let mut search = Backward::new(network);
-        search.begin(network, goal, loaded, None);
+        search.begin(network, self, goal, loaded, None);
         search.advance(network, self, u32::MAX);
         (0..network.nodes * self.headings).map(|index| search.best(index)).collect()
     }
@@ -163,6 +163,20 @@ impl Model {
 
 const ROLLING: usize = 1;
 
+/// Least times to cover an extent along one axis: as runs, or as a part of one that is paid for.
+#[derive(Clone, Copy, Debug, Default)]
+struct Bound {
+    at_rest: u32,
+    rolling: u32,
+}
+
+impl Bound {
+    fn of(model: &Model, metres: f64) -> Self {
+        let safe = |time: u32| (f64::from(time) * SAFETY) as u32;
+        Self { at_rest: safe(model.run(metres)), rolling: safe(model.roll(metres)) }
+    }
+}
+
 /// Resumable backward search from a goal, led towards a start if there is one.
 #[derive(Debug)]
 pub struct Backward {
@@ -170,8 +184,9 @@ pub struct Backward {
     headings: usize,
     goal: u32,
     loaded: bool,
-    start: Option<u32>,
-    /// Times of going straight on from rest: needed as values, but nobody stops to go straight on.
+    columns: Vec<Bound>,
+    rows: Vec<Bound>,
+    /// Times with their stamps of states that nobody comes to, so that they are only values.
     straight: Vec<(u32, u32)>,
     walk: Vec<(u32, f64)>,
 }
@@ -182,12 +197,29 @@ impl Backward {
         let headings = network.heading_count();
         let queue = Buckets::new(network.nodes * headings * 2);
         let straight = vec![(0, UNREACHABLE); network.nodes * headings];
-        Self { queue, headings, goal: 0, loaded: false, start: None, straight, walk: Vec::new() }
+        Self {
+            queue,
+            headings,
+            goal: 0,
+            loaded: false,
+            columns: Vec::new(),
+            rows: Vec::new(),
+            straight,
+            walk: Vec::new(),
+        }
     }
 
     /// Starts anew: times to `goal`, first where they matter on the way from `start`.
-    pub fn begin(&mut self, network: &Network, goal: u32, loaded: bool, start: Option<u32>) {
-        (self.goal, self.loaded, self.start) = (goal, loaded, start);
+    pub fn begin(
+        &mut self,
+        network: &Network,
+        model: &Model,
+        goal: u32,
+        loaded: bool,
+        start: Option<u32>,
+    ) {
+        (self.goal, self.loaded) = (goal, loaded);
+        self.prepare_bounds(network, model, start);
         self.queue.clear();
         for heading in 0..self.headings as u8 {
             self.queue.improve(network.index(goal, heading) * 2, 0, 0);
@@ -201,29 +233,44 @@ impl Backward {
         if stamp == self.queue.stamp { straight.min(turning) } else { turning }
     }
 
-    /// A lower bound of the time from the start to rest at a waypoint, or (`rolling`) to passing it
-    /// in a run whose speeding up and braking is counted on the way from there to the goal.
-    fn bound(&self, network: &Network, model: &Model, node: u32, rolling: Option<u8>) -> u32 {
-        let Some(start) = self.start else { return 0 };
-        let (dx, dy) = network.offset(start, node);
-        let along = |metres: f64| (metres * model.pace) as u32;
-        let time = match (network.metric, rolling) {
-            (Metric::Manhattan, None) => model.run(dx) + model.run(dy),
-            (Metric::Manhattan, Some(heading)) if network.along_x(heading) => {
-                along(dx) + model.run(dy)
-            }
-            (Metric::Manhattan, Some(_)) => model.run(dx) + along(dy),
-            (Metric::Euclid, _) => along(dx.hypot(dy)),
-            (Metric::Nothing, _) => 0,
+    /// A lower bound of the time from the start to rest at a waypoint.
+    fn bound_at_rest(&self, network: &Network, node: u32) -> u32 {
+        let (column, row) = (network.column[node as usize], network.row[node as usize]);
+        self.columns[column as usize].at_rest + self.rows[row as usize].at_rest
+    }
+
+    /// A lower bound of the time from the start to passing a waypoint in a run whose speeding up and
+    /// braking is counted on the way from there to the goal.
+    fn bound_rolling(&self, network: &Network, node: u32, heading: u8) -> u32 {
+        let column = &self.columns[network.column[node as usize] as usize];
+        let row = &self.rows[network.row[node as usize] as usize];
+        if network.along_x(heading) {
+            column.rolling + row.at_rest
+        } else {
+            column.at_rest + row.rolling
+        }
+    }
+
+    /// Prepares the bounds: a way covers its extent in x and in y, in a run each at least.
+    fn prepare_bounds(&mut self, network: &Network, model: &Model, start: Option<u32>) {
+        let led = start.filter(|_| network.axis_parallel);
+        let bounds = |places: &[f64], at: Option<f64>, into: &mut Vec<Bound>| {
+            into.clear();
+            into.extend(places.iter().map(|place| match at {
+                Some(at) => Bound::of(model, (place - at).abs()),
+                None => Bound::default(),
+            }));
         };
-        (f64::from(time) * SAFETY) as u32
+        let position = led.map(|node| network.position(node));
+        bounds(&network.columns, position.map(|p| p.0), &mut self.columns);
+        bounds(&network.rows, position.map(|p| p.1), &mut self.rows);
     }
 
     /// Lower bound of the time from rest at (waypoint, heading) to the goal; exact where the search
     /// has been.
-    pub fn to_go(&self, network: &Network, model: &Model, node: u32, heading: u8) -> u32 {
+    pub fn to_go(&self, network: &Network, node: u32, heading: u8) -> u32 {
         let known = self.best(network.index(node, heading));
-        let bound = self.bound(network, model, node, None);
+        let bound = self.bound_at_rest(network, node);
         let settled = self.queue.settled();
         if known != UNREACHABLE && known.saturating_add(bound) < settled {
             return known;
@@ -235,12 +282,11 @@ impl Backward {
     }
 
     /// Whether [`Backward::to_go`] cannot get any better for this state.
-    pub fn knows(&self, network: &Network, model: &Model, node: u32, heading: u8) -> bool {
+    pub fn knows(&self, network: &Network, node: u32, heading: u8) -> bool {
         let known = self.best(network.index(node, heading));
         self.queue.exhausted()
             || (known != UNREACHABLE
-                && known.saturating_add(self.bound(network, model, node, None))
-                    < self.queue.settled())
+                && known.saturating_add(self.bound_at_rest(network, node)) < self.queue.settled())
     }
 
     /// Total time (from start to goal over a state) up to which every state is known.
@@ -264,15 +310,15 @@ impl Backward {
     /// A run that has reached top speed started at this waypoint or before it.
     fn roll_back(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
         self.start_here(network, model, node, heading, cost);
-        for &from in network.behind(node, heading) {
-            if self.passable(network, from, node)
-                && !(self.loaded && network.storage[from as usize])
-            {
-                let (_, length) = network.ahead(from, heading).expect("it leads here");
-                self.offer(network, model, from, heading, ROLLING, cost + model.roll(length));
-            } else if self.passable(network, from, node) {
-                let (_, length) = network.ahead(from, heading).expect("it leads here");
-                self.start_here(network, model, from, heading, cost + model.roll(length));
+        for &(from, length) in network.behind(node, heading) {
+            if !self.passable(network, from, node) {
+                continue;
+            }
+            let cost = cost + model.roll(length);
+            if self.loaded && network.storage[from as usize] {
+                self.start_here(network, model, from, heading, cost);
+            } else {
+                self.offer(network, from, heading, ROLLING, cost);
             }
         }
     }
@@ -285,16 +331,15 @@ impl Backward {
         let mut walk = std::mem::take(&mut self.walk);
         walk.push((node, 0.0));
         while let Some((here, total)) = walk.pop() {
-            for &from in network.behind(here, heading) {
+            for &(from, length) in network.behind(here, heading) {
                 if !self.passable(network, from, here) {
                     continue;
                 }
-                let (_, length) = network.ahead(from, heading).expect("it leads here");
                 let total = total + length;
                 let started = cost + model.run(total);
                 let only_start = self.loaded && network.storage[from as usize];
                 if total >= model.full_speed && !only_start {
-                    self.offer(network, model, from, heading, ROLLING, started);
+                    self.offer(network, from, heading, ROLLING, started);
                 } else {
                     self.start_here(network, model, from, heading, started);
                     if !only_start {
@@ -305,7 +350,7 @@ impl Backward {
         }
         self.walk = walk;
         for lift in network.lifts_to(node) {
-            self.offer(network, model, lift.from, heading, 0, cost + lift.travel as u32);
+            self.offer(network, lift.from, heading, 0, cost + lift.travel as u32);
         }
     }
 
@@ -316,30 +361,29 @@ impl Backward {
     /// The robot is at rest with any heading, turns and starts a run of known cost.
     fn start_here(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
         for before in 0..self.headings as u8 {
-            if before != heading {
-                self.offer(network, model, node, before, 0, cost + model.turning(before, heading));
+            let cost = cost + model.turning(before, heading);
+            let index = network.index(node, before);
+            // nobody stops to go straight on, or arrives in a direction that no edge has
+            if before != heading && !network.behind(node, before).is_empty() {
+                self.offer(network, node, before, 0, cost);
+            } else {
+                let known = &mut self.straight[index];
+                if known.0 != self.queue.stamp || cost < known.1 {
+                    *known = (self.queue.stamp, cost);
+                }
             }
-        }
-        let stamp = self.queue.stamp;
-        let known = &mut self.straight[network.index(node, heading)];
-        if known.0 != stamp || cost < known.1 {
-            *known = (stamp, cost);
         }
     }
 
-    fn offer(
-        &mut self,
-        network: &Network,
-        model: &Model,
-        node: u32,
-        heading: u8,
-        rolling: usize,
-        cost: u32,
-    ) {
+    fn offer(&mut self, network: &Network, node: u32, heading: u8, rolling: usize, cost: u32) {
         let state = network.index(node, heading) * 2 + rolling;
         if cost < self.queue.best(state) {
-            let total =
-                cost + self.bound(network, model, node, (rolling == ROLLING).then_some(heading));
+            let bound = if rolling == ROLLING {
+                self.bound_rolling(network, node, heading)
+            } else {
+                self.bound_at_rest(network, node)
+            };
+            let total = cost + bound;
             self.queue.improve(state, cost, total);
         }
     }
@@ -348,8 +392,8 @@ impl Backward {
 /// A queue of states in buckets of their total time; improving a state again is allowed.
 #[derive(Debug)]
 struct Buckets {
-    best: Vec<u32>,
-    stamps: Vec<u32>,
+    /// Least cost of each state, and in which search that was.
+    best: Vec<(u32, u32)>,
     stamp: u32,
     buckets: Vec<Vec<(u32, u32)>>,
     at: usize,
@@ -359,8 +403,7 @@ struct Buckets {
 impl Buckets {
     fn new(states: usize) -> Self {
         Self {
-            best: vec![UNREACHABLE; states],
-            stamps: vec![0; states],
+            best: vec![(0, UNREACHABLE); states],
             stamp: 0,
             buckets: Vec::new(),
             at: 0,
@@ -379,15 +422,15 @@ impl Buckets {
     }
 
     fn best(&self, state: usize) -> u32 {
-        if self.stamps[state] == self.stamp { self.best[state] } else { UNREACHABLE }
+        let (stamp, cost) = self.best[state];
+        if stamp == self.stamp { cost } else { UNREACHABLE }
     }
 
     fn improve(&mut self, state: usize, cost: u32, total: u32) {
         if cost >= self.best(state) {
             return;
         }
-        self.best[state] = cost;
-        self.stamps[state] = self.stamp;
+        self.best[state] = (self.stamp, cost);
         let bucket = ((total / BUCKET) as usize).max(self.at);
         if bucket >= self.buckets.len() {
             self.buckets.resize_with(bucket + 1, Vec::new);

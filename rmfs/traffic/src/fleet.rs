@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use crate::costs::Cache;
 use crate::kinematics::Kind;
 use crate::network::{NONE, Network};
+use crate::postpone::postpone;
 use crate::record::{Piece, Record, Row, Standing, Trip, TripKind, enters_zone, move_rows};
 use crate::reservations::{Interval, Table};
 use crate::robot::{Phase, Robot, Step};
@@ -448,12 +449,13 @@ impl Fleet {
             query.budget = u64::MAX;
             outcome = planner.search(network, table, &query);
         }
-        let Outcome::Found(moves) = outcome else {
+        let Outcome::Found(mut moves) = outcome else {
             self.counters.failures += 1;
             self.reserve(robot);
             return false;
         };
         let unhindered = planner.unhindered(network, &query);
+        postpone(network, table, kind, &mut moves);
         let departs = kept == 0 && !moves.is_empty();
         if self.legs[robot as usize].is_none() {
             self.counters.plans += 1;

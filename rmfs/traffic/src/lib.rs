@@ -4,6 +4,7 @@ pub mod costs;
 pub mod fleet;
 pub mod kinematics;
 pub mod network;
+pub mod postpone;
 pub mod record;
 pub mod reservations;
 pub mod robot;

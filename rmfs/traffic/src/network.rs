@@ -42,9 +42,9 @@ pub struct Network {
     next: Vec<u32>,
     /// Length of that edge in metres.
     length: Vec<f64>,
-    /// Waypoints from which `v` is reached in direction `h`, CSR by `v * H + h`.
+    /// Waypoints from which `v` is reached in direction `h`, and the metres, CSR by `v * H + h`.
     before_start: Vec<u32>,
-    before: Vec<u32>,
+    before: Vec<(u32, f64)>,
     pub storage: Vec<bool>,
     /// Station whose private queue zone the waypoint belongs to, or `NONE`.
     pub zone: Vec<u32>,
@@ -56,17 +56,13 @@ pub struct Network {
     lifts_to: Vec<Vec<Lift>>,
     x: Vec<f64>,
     y: Vec<f64>,
-    pub metric: Metric,
-}
-
-/// What bounds the length of a way from below.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Metric {
-    /// All edges run along x or y.
-    Manhattan,
-    Euclid,
-    /// Elevators that move robots sideways leave no bound.
-    Nothing,
+    /// Distinct coordinates, and which of them each waypoint has.
+    pub columns: Vec<f64>,
+    pub rows: Vec<f64>,
+    pub column: Vec<u32>,
+    pub row: Vec<u32>,
+    /// Whether all edges run along x or y and elevators move robots straight up or down.
+    pub axis_parallel: bool,
 }
 
 impl Network {
@@ -90,7 +86,7 @@ impl Network {
         let count = headings.len();
         let mut next = vec![NONE; nodes * count];
         let mut length = vec![0.0; nodes * count];
-        let mut incoming: Vec<Vec<u32>> = vec![Vec::new(); nodes * count];
+        let mut incoming: Vec<Vec<(u32, f64)>> = vec![Vec::new(); nodes * count];
         for v in 0..nodes {
             for w in targets(v) {
                 let h = headings.binary_search(&angle(v, w)).expect("collected above");
@@ -98,13 +94,16 @@ impl Network {
                     return Err(format!("waypoint {v} has two edges in one direction"));
                 }
                 next[v * count + h] = w as u32;
-                length[v * count + h] = (plan.x[w] - plan.x[v]).hypot(plan.y[w] - plan.y[v]);
-                incoming[w * count + h].push(v as u32);
+                let metres = (plan.x[w] - plan.x[v]).hypot(plan.y[w] - plan.y[v]);
+                length[v * count + h] = metres;
+                incoming[w * count + h].push((v as u32, metres));
             }
         }
         let (before_start, before) = csr(&incoming);
         let zone = zones(&plan, nodes);
-        let metric = metric(&plan, &headings);
+        let axis_parallel = is_axis_parallel(&plan, &headings);
+        let (columns, column) = distinct(&plan.x);
+        let (rows, row) = distinct(&plan.y);
         let (resource, resources) = shared_resources(&plan.elevators, nodes);
         let mut lifts_from = vec![Vec::new(); nodes];
         let mut lifts_to = vec![Vec::new(); nodes];
@@ -128,18 +127,20 @@ impl Network {
             lifts_to,
             x: plan.x,
             y: plan.y,
-            metric,
+            columns,
+            rows,
+            column,
+            row,
+            axis_parallel,
         })
     }
 
-    /// Offsets in x and y, in metres, between two waypoints.
-    pub fn offset(&self, from: u32, to: u32) -> (f64, f64) {
-        let dx = (self.x[from as usize] - self.x[to as usize]).abs();
-        let dy = (self.y[from as usize] - self.y[to as usize]).abs();
-        (dx, dy)
+    /// Position in metres.
+    pub fn position(&self, node: u32) -> (f64, f64) {
+        (self.x[node as usize], self.y[node as usize])
     }
 
-    /// Whether a heading points along x (or against it); only on axis-parallel networks.
+    /// Whether a heading points along x (or against it); only if `axis_parallel`.
     pub fn along_x(&self, heading: u8) -> bool {
         self.headings[heading as usize] % 500_000 == 0
     }
@@ -161,8 +162,8 @@ impl Network {
         (target != NONE).then(|| (target, self.length[index]))
     }
 
-    /// Waypoints from which `node` is reached by driving in direction `heading`.
-    pub fn behind(&self, node: u32, heading: u8) -> &[u32] {
+    /// Waypoints from which `node` is reached by driving in direction `heading`, and the metres.
+    pub fn behind(&self, node: u32, heading: u8) -> &[(u32, f64)] {
         let index = self.index(node, heading);
         &self.before[self.before_start[index] as usize..self.before_start[index + 1] as usize]
     }
@@ -204,22 +205,25 @@ impl Network {
     }
 }
 
-fn metric(plan: &Plan, headings: &[MicroTurn]) -> Metric {
-    let sideways = |lift: &Lift| {
+/// Distinct values, ascending, and the index of each value among them.
+fn distinct(values: &[f64]) -> (Vec<f64>, Vec<u32>) {
+    let mut known = values.to_vec();
+    known.sort_by(f64::total_cmp);
+    known.dedup();
+    let index = values.iter().map(|v| known.partition_point(|k| k < v) as u32).collect();
+    (known, index)
+}
+
+fn is_axis_parallel(plan: &Plan, headings: &[MicroTurn]) -> bool {
+    let straight_up = |lift: &Lift| {
         let (from, to) = (lift.from as usize, lift.to as usize);
-        (plan.x[from] - plan.x[to]).abs() + (plan.y[from] - plan.y[to]).abs() > 1e-6
+        (plan.x[from] - plan.x[to]).abs() + (plan.y[from] - plan.y[to]).abs() < 1e-6
     };
-    if plan.lifts.iter().any(sideways) {
-        Metric::Nothing
-    } else if headings.iter().all(|heading| heading % 250_000 == 0) {
-        Metric::Manhattan
-    } else {
-        Metric::Euclid
-    }
+    plan.lifts.iter().all(straight_up) && headings.iter().all(|heading| heading % 250_000 == 0)
 }
 
 /// Flattens lists into offsets and items.
-fn csr(lists: &[Vec<u32>]) -> (Vec<u32>, Vec<u32>) {
+fn csr<T: Copy>(lists: &[Vec<T>]) -> (Vec<u32>, Vec<T>) {
     let mut start = Vec::with_capacity(lists.len() + 1);
     let mut items = Vec::new();
     start.push(0);

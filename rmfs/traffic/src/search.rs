@@ -222,12 +222,12 @@ impl Planner {
 
     /// Starts the unhindered search back from the goal. Returns whether there is a way at all.
     fn guide_from_start(&mut self, network: &Network, query: &Query) -> bool {
-        self.guide.begin(network, query.goal, query.loaded, Some(query.start));
-        while !self.guide.knows(network, query.model, query.start, query.heading) {
+        self.guide.begin(network, query.model, query.goal, query.loaded, Some(query.start));
+        while !self.guide.knows(network, query.start, query.heading) {
             let reach = self.guide.reach().saturating_add(GUIDE_STEP);
             self.guide.advance(network, query.model, reach);
         }
-        self.guide.to_go(network, query.model, query.start, query.heading) != UNREACHABLE
+        self.to_go(network, query, query.start, query.heading).is_some()
     }
 
     /// Lower bound of the time from rest to the goal, or `None` if there is no way.
@@ -235,7 +235,7 @@ impl Planner {
         if query.goal == NONE {
             return Some(0);
         }
-        let time = self.guide.to_go(network, query.model, node, heading);
+        let time = self.guide.to_go(network, node, heading);
         (time != UNREACHABLE).then_some(Us::from(time))
     }
 
@@ -261,7 +261,7 @@ impl Planner {
         if query.goal == NONE {
             return None;
         }
-        while !self.guide.knows(network, query.model, label.node, label.heading) {
+        while !self.guide.knows(network, label.node, label.heading) {
             let reach = self.guide.reach().saturating_add(GUIDE_STEP);
             self.guide.advance(network, query.model, reach);
             let to_go = self.to_go(network, query, label.node, label.heading);

@@ -1,0 +1,78 @@
+"""`rmfs controllers`: list, show and check sets of controllers."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from rmfs import instances
+from rmfs.config import parse_override
+from rmfs.control import registry
+from rmfs.control.problems import Problem
+from rmfs.control.settings import load
+from rmfs.control.toml import to_toml
+from rmfs.errors import InputError
+
+app = typer.Typer(
+    name="controllers", help="List, show and check sets of controllers.", no_args_is_help=True
+)
+
+Name = Annotated[str, typer.Argument(help="A TOML file, or the name of a shipped set.")]
+
+
+@app.command("list")
+def list_controllers(
+    rules: Annotated[
+        bool, typer.Option("--rules", help="List the rules for each decision problem instead.")
+    ] = False,
+) -> None:
+    """List the shipped sets of controllers, or all rules there are."""
+    Console().print(_rules() if rules else _sets())
+
+
+@app.command()
+def show(
+    controllers: Name,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Set a parameter, as in `rmfs run`."),
+    ] = None,
+) -> None:
+    """Print all rules and parameters as TOML, defaults included and explained."""
+    overrides = [_below_controllers(text) for text in settings or []]
+    typer.echo(to_toml(load(controllers, overrides)), nl=False)
+
+
+@app.command()
+def check(controllers: Name) -> None:
+    """Read a set of controllers, and say what is wrong or which rules it names."""
+    choices = load(controllers).choices.values()
+    named = ", ".join(f"{choice.problem} {choice.name}" for choice in choices)
+    typer.echo(f"{controllers}: ok, {named}")
+
+
+def _sets() -> Table:
+    table = Table("name", "description", box=None)
+    for name in instances.names("controllers"):
+        table.add_row(name, load(name).description)
+    return table
+
+
+def _rules() -> Table:
+    table = Table("problem", "rule", "what it does", box=None)
+    for problem in Problem:
+        for name in registry.names(problem):
+            lines = (registry.find(problem, name).__doc__ or "").splitlines()
+            table.add_row(problem, name, lines[0] if lines else "")
+    return table
+
+
+def _below_controllers(text: str) -> tuple[list[str], object]:
+    """Read one `--set`; its key starts with `controllers`, as everywhere."""
+    path, value = parse_override(text)
+    if path[0] != "controllers" or len(path) == 1:
+        raise InputError(f"--set {text}: expected a key such as controllers.psa.name")
+    return path[1:], value

@@ -1,0 +1,42 @@
+"""Writing a set of controllers as TOML, with what each parameter means as a comment."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from rmfs.control.settings import FORMAT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.control.settings import Choice, ControllerSettings
+
+
+def to_toml(settings: ControllerSettings) -> str:
+    """Write all rules and parameters, defaults included; reading the text back gives the same."""
+    head = [f'format = "{FORMAT}"', f"name = {_value(settings.name)}"]
+    if settings.description:
+        head.append(f"description = {_value(settings.description)}")
+    tables = (line for choice in settings.choices.values() for line in _table(choice))
+    return "\n".join([*head, *tables]) + "\n"
+
+
+def _table(choice: Choice) -> Iterator[str]:
+    yield ""
+    yield f"[{choice.problem}]  # {choice.problem.meaning}"
+    yield f"name = {_value(choice.name)}"
+    fields = type(choice.parameters).model_fields
+    for name, value in choice.parameters.model_dump(mode="json").items():
+        description = fields[name].description
+        line = f"{name} = {_value(value)}"
+        yield f"{line}  # {' '.join(description.split())}" if description else line
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {_value(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(_value(item) for item in value) + "]"
+    # numbers, strings and truth values are written in TOML as in JSON
+    return json.dumps(value, ensure_ascii=False)

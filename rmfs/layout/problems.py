@@ -1,0 +1,27 @@
+"""All problems of a file in one line."""
+
+from __future__ import annotations
+
+from rmfs.errors import InputError
+
+MOST_PROBLEMS = 10
+"""Problems named in one message; more are counted."""
+
+
+def stop_if_any(problems: list[str], source: object) -> None:
+    """Raise an error if there are problems.
+
+    Parameters
+    ----------
+    source
+        Name of the file.
+
+    Raises
+    ------
+    InputError
+        One line with the first of them and the number of the others.
+    """
+    if problems:
+        more = len(problems) - MOST_PROBLEMS
+        tail = [f"and {more} more"] if more > 0 else []
+        raise InputError(f"{source}: {'; '.join(problems[:MOST_PROBLEMS] + tail)}")
