@@ -1,0 +1,242 @@
+//! The planner against an exhaustive search over critical departure times on small random grids.
+
+use std::collections::{BTreeSet, HashSet};
+
+use _core::costs::Model;
+use _core::kinematics::Kind;
+use _core::network::{Lift, Network, Plan};
+use _core::reservations::{Interval, Table};
+use _core::search::{Outcome, Planner, Query};
+use _core::units::{FOREVER, Us, ceil_us, floor_us};
+
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, limit: u64) -> u64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % limit
+    }
+
+    fn chance(&mut self, percent: u64) -> bool {
+        self.below(100) < percent
+    }
+}
+
+fn kind() -> Kind {
+    Kind {
+        acceleration: 0.5,
+        deceleration: 0.8,
+        top_speed: 1.5,
+        full_turn: 2_500_000,
+        pod_transfer: 3_000_000,
+    }
+}
+
+/// A grid of 3 x 4 waypoints with random one-way and two-way edges and random storage places.
+fn random_network(random: &mut Random) -> Network {
+    let (columns, rows) = (4, 3);
+    let at = |c: usize, r: usize| (r * columns + c) as u32;
+    let mut edges = BTreeSet::new();
+    for r in 0..rows {
+        for c in 0..columns {
+            for (dc, dr) in [(1, 0), (0, 1)] {
+                if c + dc < columns && r + dr < rows {
+                    let (v, w) = (at(c, r), at(c + dc, r + dr));
+                    if random.chance(75) {
+                        edges.insert((v, w));
+                    }
+                    if random.chance(75) {
+                        edges.insert((w, v));
+                    }
+                }
+            }
+        }
+    }
+    let nodes = columns * rows;
+    let mut edge_start = vec![0];
+    let mut edge_target = Vec::new();
+    for v in 0..nodes as u32 {
+        edge_target.extend(edges.iter().filter(|e| e.0 == v).map(|e| e.1));
+        edge_start.push(edge_target.len() as u32);
+    }
+    Network::new(Plan {
+        x: (0..nodes).map(|v| (v % columns) as f64).collect(),
+        y: (0..nodes).map(|v| (v / columns) as f64).collect(),
+        tier: vec![0; nodes],
+        edge_start,
+        edge_target,
+        storage: (0..nodes).map(|_| random.chance(25)).collect(),
+        queue: vec![false; nodes],
+        stations: Vec::new(),
+        elevators: Vec::new(),
+        lifts: Vec::<Lift>::new(),
+        extra_headings: vec![0, 250_000, 500_000, 750_000],
+    })
+    .expect("a grid")
+}
+
+fn random_table(random: &mut Random, network: &Network, start: u32) -> Table {
+    let mut table = Table::new(network.resources);
+    for node in 0..network.nodes as u32 {
+        let mut time = 0;
+        for robot in 1..=random.below(4) as u32 {
+            let from = time + random.below(6_000_000) as Us;
+            let last = random.chance(8);
+            let until = if last { FOREVER } else { from + 500_000 + random.below(5_000_000) as Us };
+            let covers_start = node == start && from <= 1_000_000;
+            if !covers_start {
+                table.insert(node, Interval { start: from, end: until, robot }, -1);
+            }
+            if last {
+                break;
+            }
+            time = until;
+        }
+    }
+    table
+}
+
+fn free(table: &Table, node: u32, from: Us, until: Us) -> bool {
+    table.row(node).iter().all(|taken| until <= taken.start || from >= taken.end)
+}
+
+/// Earliest arrival by trying every departure at which something changes.
+fn brute_force(network: &Network, table: &Table, query: &Query) -> Option<Us> {
+    let mut open = BTreeSet::from([(query.ready, query.start, query.heading)]);
+    let mut seen: HashSet<(Us, u32, u8)> = HashSet::new();
+    while let Some((time, node, heading)) = open.pop_first() {
+        if !seen.insert((time, node, heading)) {
+            continue;
+        }
+        if node == query.goal && free(table, node, time, FOREVER) {
+            return Some(time);
+        }
+        if time > 60_000_000 {
+            return None;
+        }
+        for towards in 0..network.heading_count() as u8 {
+            let turn = query
+                .kind
+                .turn(network.headings[heading as usize], network.headings[towards as usize]);
+            let mut line = vec![(node, 0.0)];
+            while let Some((next, length)) = network.ahead(line[line.len() - 1].0, towards) {
+                let here = line[line.len() - 1];
+                if !network.may_enter(here.0, next, query.goal, query.loaded) {
+                    break;
+                }
+                line.push((next, here.1 + length));
+                for departure in departures(table, query.kind, &line, time + turn) {
+                    if let Some(arrival) = drive(table, query.kind, &line, time, departure) {
+                        open.insert((arrival, next, towards));
+                    }
+                }
+                if query.loaded && network.storage[next as usize] {
+                    break;
+                }
+            }
+        }
+    }
+    None
+}
+
+/// When the robot is at each waypoint of a line, relative to its departure.
+fn passing(kind: &Kind, line: &[(u32, f64)]) -> Vec<f64> {
+    let profile = kind.run(line[line.len() - 1].1);
+    line.iter().map(|(_, distance)| profile.time_at(*distance)).collect()
+}
+
+fn departures(table: &Table, kind: &Kind, line: &[(u32, f64)], ready: Us) -> Vec<Us> {
+    let times = passing(kind, line);
+    let mut candidates = vec![ready];
+    for i in 1..line.len() {
+        for taken in table.row(line[i].0) {
+            let departure = taken.end - floor_us(times[i - 1]);
+            if taken.end < FOREVER && departure > ready {
+                candidates.push(departure);
+            }
+        }
+    }
+    candidates
+}
+
+fn drive(table: &Table, kind: &Kind, line: &[(u32, f64)], since: Us, departure: Us) -> Option<Us> {
+    let times = passing(kind, line);
+    let last = line.len() - 1;
+    let arrival = departure + ceil_us(times[last]);
+    let clear = (0..=last).all(|i| {
+        let from = if i == 0 { since } else { departure + floor_us(times[i - 1]) };
+        let until = if i == last { arrival } else { departure + ceil_us(times[i + 1]) };
+        free(table, line[i].0, from, until)
+    });
+    clear.then_some(arrival)
+}
+
+#[test]
+fn earliest_arrivals_agree_with_exhaustive_search() {
+    let kind = kind();
+    let mut random = Random(42);
+    let (mut found, mut impossible) = (0, 0);
+    for case in 0..1_500 {
+        let network = random_network(&mut random);
+        let start = random.below(12) as u32;
+        let goal = random.below(12) as u32;
+        let table = random_table(&mut random, &network, start);
+        let model = Model::new(&network, &kind);
+        let query = Query {
+            start,
+            heading: random.below(4) as u8,
+            ready: 1_000_000,
+            goal,
+            loaded: random.chance(50),
+            kind: &kind,
+            model: &model,
+            budget: u64::MAX,
+        };
+        if !free(&table, start, query.ready, query.ready + 1) {
+            continue;
+        }
+        let expected = brute_force(&network, &table, &query);
+        let got = match Planner::new(&network).search(&network, &table, &query) {
+            Outcome::Found(moves) => Some(moves.last().map_or(query.ready, |last| last.end)),
+            _ => None,
+        };
+        assert_eq!(got, expected, "case {case}: {start} to {goal}, loaded {}", query.loaded);
+        if expected.is_some() { found += 1 } else { impossible += 1 }
+    }
+    assert!(found > 500 && impossible > 100, "{found} found, {impossible} impossible");
+}
+
+#[test]
+fn bounds_never_exceed_the_time_on_an_empty_network() {
+    let kind = kind();
+    let mut random = Random(7);
+    for _ in 0..200 {
+        let network = random_network(&mut random);
+        let table = Table::new(network.resources);
+        let model = Model::new(&network, &kind);
+        let goal = random.below(12) as u32;
+        let loaded = random.chance(50);
+        let times = model.towards(&network, goal, loaded);
+        for start in 0..12 {
+            let query = Query {
+                start,
+                heading: 0,
+                ready: 0,
+                goal,
+                loaded,
+                kind: &kind,
+                model: &model,
+                budget: u64::MAX,
+            };
+            let bound = times[network.index(start, 0)];
+            match brute_force(&network, &table, &query) {
+                // each run's time is rounded down in the bound and up in the plan
+                Some(time) => {
+                    assert!((0..20).contains(&(time - Us::from(bound))), "{time} {bound}")
+                }
+                None => assert_eq!(bound, u32::MAX),
+            }
+        }
+    }
+}
