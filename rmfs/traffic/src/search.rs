@@ -336,7 +336,7 @@ impl Planner {
                 if estimate > upto {
                     beyond = beyond.min(estimate);
                 } else if estimate > label.scanned
-                    && useful_stop(network, table, query, next, heading)
+                    && (label.until < FOREVER || useful_stop(network, table, query, next, heading))
                 {
                     if !self.settle_line(network, table, query.kind, &mut settled, label.until) {
                         break;
@@ -344,7 +344,7 @@ impl Planner {
                     self.stop(network, table, query, parent, label, heading, settled);
                 }
             }
-            if ends && query.loaded {
+            if query.loaded && network.storage[next as usize] {
                 break;
             }
         }
@@ -524,7 +524,8 @@ fn is_goal(network: &Network, query: &Query, node: u32) -> bool {
 }
 
 /// Whether stopping at a waypoint can pay: it is the goal, it lets the robot turn towards somewhere,
-/// it is an elevator, or traffic ahead makes it a waiting place.
+/// it is an elevator, or traffic ahead makes it a waiting place. (Where the robot cannot stay before
+/// the run for good, every stop can pay.)
 fn useful_stop(network: &Network, table: &Table, query: &Query, node: u32, heading: u8) -> bool {
     if is_goal(network, query, node) || !network.lifts_from(node).is_empty() {
         return true;

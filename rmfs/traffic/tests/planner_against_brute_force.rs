@@ -43,10 +43,10 @@ fn random_network(random: &mut Random) -> Network {
             for (dc, dr) in [(1, 0), (0, 1)] {
                 if c + dc < columns && r + dr < rows {
                     let (v, w) = (at(c, r), at(c + dc, r + dr));
-                    if random.chance(75) {
+                    if random.chance(90) {
                         edges.insert((v, w));
                     }
-                    if random.chance(75) {
+                    if random.chance(90) {
                         edges.insert((w, v));
                     }
                 }
@@ -177,7 +177,7 @@ fn earliest_arrivals_agree_with_exhaustive_search() {
     let kind = kind();
     let mut random = Random(42);
     let (mut found, mut impossible) = (0, 0);
-    for case in 0..1_500 {
+    for case in 0..2_000 {
         let network = random_network(&mut random);
         let start = random.below(12) as u32;
         let goal = random.below(12) as u32;
@@ -204,7 +204,7 @@ fn earliest_arrivals_agree_with_exhaustive_search() {
         assert_eq!(got, expected, "case {case}: {start} to {goal}, loaded {}", query.loaded);
         if expected.is_some() { found += 1 } else { impossible += 1 }
     }
-    assert!(found > 500 && impossible > 100, "{found} found, {impossible} impossible");
+    assert!(found > 500 && impossible > 300, "{found} found, {impossible} impossible");
 }
 
 #[test]
