@@ -33,18 +33,18 @@ def footprint(run: Run, report: CheckReport | None = None) -> pd.Series:
     """
     from rmfs.measure import tables
 
-    return tables.footprint(run, report).iloc[0]
+    return tables.all_tables(run, report)["footprint"].iloc[0]
 
 
 def series(run: Run) -> pd.DataFrame:
     """Return the course of a run, one row per minute."""
     from rmfs.measure import tables
 
-    return tables.series(run.recorder)
+    return tables.series(tables.Logs(run.recorder))
 
 
 def decisions(run: Run) -> pd.DataFrame:
     """Return the decisions of a run, one row per call of a controller."""
     from rmfs.measure import tables
 
-    return tables.decisions(run.recorder)
+    return tables.decisions(tables.Logs(run.recorder))

@@ -7,6 +7,7 @@ the tables leave it out.
 
 from __future__ import annotations
 
+from array import array
 from math import nan
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,34 @@ if TYPE_CHECKING:
     from rmfs.simulation.simulation import Simulation
     from rmfs.world.orders import Bundle, Order
     from rmfs.world.world import World
+
+
+class Calls:
+    """Calls of controllers, column by column: a long run has millions.
+
+    Attributes
+    ----------
+    problems
+        Names of the problems, in the order in which they first occurred.
+    time_s, problem, decisions, wall_s
+        One entry per call; `problem` is an index into `problems`.
+    """
+
+    def __init__(self) -> None:
+        self.problems: list[str] = []
+        self.time_s = array("d")
+        self.problem = array("b")
+        self.decisions = array("i")
+        self.wall_s = array("d")
+
+    def add(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
+        """Write a call down."""
+        if problem not in self.problems:
+            self.problems.append(problem)
+        self.time_s.append(time_s)
+        self.problem.append(self.problems.index(problem))
+        self.decisions.append(decisions)
+        self.wall_s.append(wall_s)
 
 
 class Recorder(Observer):
@@ -50,8 +79,8 @@ class Recorder(Observer):
         Tasks started: time, robot, kind.
     lifts
         Pods lifted: time, pod, robot.
-    decisions
-        Controllers asked: time, problem, decisions, wall time.
+    calls
+        Controllers asked.
     activations
         Stations switched: time, station, active.
     samples
@@ -73,7 +102,7 @@ class Recorder(Observer):
         self.busy: list[tuple[int, float, float]] = []
         self.tasks: list[tuple[float, int, str]] = []
         self.lifts: list[tuple[float, int, int]] = []
-        self.decisions: list[tuple[float, str, int, float]] = []
+        self.calls = Calls()
         self.activations: list[tuple[float, int, bool]] = []
         self.samples: list[tuple[float, dict[str, float]]] = []
         self.stored_space_start = 0.0
@@ -176,7 +205,7 @@ class Recorder(Observer):
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
         """Write the call down."""
-        self.decisions.append((time_s, problem, decisions, wall_s))
+        self.calls.add(problem, time_s, wall_s, decisions)
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
         """Write the switch down."""

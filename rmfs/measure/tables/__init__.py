@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from rmfs.measure.tables.decisions import decisions as decisions
 from rmfs.measure.tables.footprint import Measured as Measured
 from rmfs.measure.tables.footprint import footprint as footprint
+from rmfs.measure.tables.logs import Logs as Logs
 from rmfs.measure.tables.motion import heat as heat
 from rmfs.measure.tables.motion import trips as trips
 from rmfs.measure.tables.orders import orders as orders
@@ -32,10 +33,11 @@ MAKERS = {
     "heat": heat,
     "decisions": decisions,
 }
-"""How each table but the footprint is made from a recorder."""
+"""How each table but the footprint is made from what happened."""
 
 
 def all_tables(run: Measured, report: CheckReport | None = None) -> dict[str, pd.DataFrame]:
-    """Make every table of a run, by name."""
-    made = {name: make(run.recorder) for name, make in MAKERS.items()}
-    return {"footprint": footprint(run, report), **made}
+    """Make every table of a run, by name; `report` fills the footprint's `collisions`."""
+    logs = Logs(run.recorder)
+    made = {name: make(logs) for name, make in MAKERS.items()}
+    return {"footprint": footprint(run, logs, made, report), **made}

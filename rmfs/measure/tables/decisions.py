@@ -4,16 +4,28 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.measure.tables import logs
-from rmfs.measure.tables.tidy import log, tidy
+import numpy as np
+
+from rmfs.measure.tables.tidy import tidy
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rmfs.measure.recorder import Recorder
+    from rmfs.measure.tables.logs import Logs
 
 
-def decisions(recorder: Recorder) -> pd.DataFrame:
-    """One row per call of a controller that decided something or took time."""
-    frame = log(recorder.decisions, "time_s", "problem", "decisions", "wall_s")
-    return tidy("decisions", logs.measured(recorder, frame).reset_index(drop=True))
+def decisions(logs: Logs) -> pd.DataFrame:
+    """One row per call of a controller, whether it came to a decision or not."""
+    calls = logs.recorder.calls
+    time_s = np.array(calls.time_s)
+    now = time_s >= logs.start_s
+    names = np.array(calls.problems or [""])
+    return tidy(
+        "decisions",
+        {
+            "time_s": time_s[now],
+            "problem": names[np.array(calls.problem)[now]],
+            "decisions": np.array(calls.decisions)[now],
+            "wall_s": np.array(calls.wall_s)[now],
+        },
+    )

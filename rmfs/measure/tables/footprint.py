@@ -8,20 +8,24 @@ import pandas as pd
 
 from rmfs.measure.memory import peak_rss_mb
 from rmfs.measure.steps import Steps
-from rmfs.measure.tables import logs
-from rmfs.measure.tables.decisions import decisions
-from rmfs.measure.tables.motion import trips
-from rmfs.measure.tables.orders import completed, orders
-from rmfs.measure.tables.robots import STATES, robots
+from rmfs.measure.tables.orders import completed
+from rmfs.measure.tables.robots import STATES
 from rmfs.measure.tables.series import inventory_share
-from rmfs.measure.tables.stations import stations
 from rmfs.measure.tables.tidy import tidy
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rmfs.measure.checker import CheckReport
     from rmfs.measure.recorder import Recorder
+    from rmfs.measure.tables.logs import Logs
+
+    Tables = Mapping[str, pd.DataFrame]
 
 NOTHING = float("nan")
+
+BUSY = ("pick", "replenish", "park", "reposition")
+"""The tasks in which a robot counts as busy."""
 
 
 class Measured(Protocol):
@@ -44,29 +48,31 @@ class Measured(Protocol):
         """Wall time of the simulation."""
 
 
-def footprint(run: Measured, report: CheckReport | None = None) -> pd.DataFrame:
+def footprint(
+    run: Measured, logs: Logs, tables: Tables, report: CheckReport | None = None
+) -> pd.DataFrame:
     """Return the table of one row.
 
     Parameters
     ----------
+    logs, tables
+        What happened, and the other tables made from it: what they count is not counted again.
     report
         What the trace checker found; without it `collisions` stays empty.
     """
-    recorder = run.recorder
-    at_stations = stations(recorder)
-    counted = {**_counts(recorder, at_stations), **_motion(recorder)}
+    counted = {**_counts(logs, tables["stations"]), **_motion(logs, tables["trips"])}
     columns = {
-        **_heading(run),
+        **_heading(run, logs),
         **counted,
-        **_rates(recorder, counted),
-        **_visits(recorder, counted),
-        **_per_distance(recorder, counted),
-        **_shares(recorder, at_stations),
-        **_times(recorder),
-        **_levels(recorder),
-        **_planning(recorder, report),
-        **_decisions(recorder),
-        **_machine(run),
+        **_rates(logs, counted),
+        **_per_visit(logs, counted),
+        **_per_distance(logs, counted),
+        **_shares(logs, tables["stations"], tables["robots"]),
+        **_times(logs, tables["orders"]),
+        **_levels(logs),
+        **_planning(logs, report),
+        **_decisions(tables["decisions"]),
+        **_machine(run, logs),
     }
     return tidy("footprint", {name: [value] for name, value in columns.items()})
 
@@ -76,111 +82,99 @@ def ratio(amount: float, by: float) -> float:
     return amount / by if by else NOTHING
 
 
-def _heading(run: Measured) -> dict[str, Any]:
-    recorder = run.recorder
-    layout = recorder.layout
+def _heading(run: Measured, logs: Logs) -> dict[str, Any]:
+    layout = logs.layout
     names = dict(zip(("layout", "scenario", "controllers"), run.names, strict=True))
     return {
         **names,
         "seed": run.seed,
-        "warmup_s": recorder.start_s,
-        "duration_s": recorder.duration_s,
+        "warmup_s": logs.start_s,
+        "duration_s": logs.duration_s,
         "tiers": len(layout.tiers),
         "robots": layout.robots,
         "pods": layout.pods,
         "pick_stations": len(layout.pick_stations),
         "replenishment_stations": len(layout.replenishment_stations),
-        "skus": len(recorder.world.skus),
+        "skus": len(logs.world.skus),
     }
 
 
-def _counts(recorder: Recorder, at_stations: pd.DataFrame) -> dict[str, Any]:
-    """Count what was handled; all of it happens at stations."""
-    visits = logs.visits(recorder)
-    bundles = logs.measured(recorder, logs.stored(recorder))
-    arrived = logs.measured(recorder, logs.orders(recorder), "created_s")
+def _counts(logs: Logs, stations: pd.DataFrame) -> dict[str, Any]:
+    """Count what arrived and what was handled, which happens at stations."""
     handled = ("orders_completed", "lines_picked", "units_picked", "bundles_stored")
     return {
-        **{name: int(at_stations[name].sum()) for name in handled},
-        "pick_visits": int((visits["units"] > 0).sum()),
-        "replenishment_visits": int((visits["bundles"] > 0).sum()),
-        "units_stored": int(bundles["units"].sum()),
-        "orders_created": len(arrived),
-        "bundles_created": len(logs.measured(recorder, logs.bundles(recorder), "created_s")),
-        "order_redraws": int(recorder.counters["order_redraws"]),
+        **{name: int(stations[name].sum()) for name in handled},
+        "pick_visits": int((logs.visits["units"] > 0).sum()),
+        "replenishment_visits": int((logs.visits["bundles"] > 0).sum()),
+        "units_stored": int(logs.stored_now["units"].sum()),
+        "orders_created": int((logs.orders["created_s"] >= logs.start_s).sum()),
+        "bundles_created": int((logs.bundles["created_s"] >= logs.start_s).sum()),
+        "order_redraws": int(logs.recorder.counters["order_redraws"]),
     }
 
 
-def _motion(recorder: Recorder) -> dict[str, Any]:
-    ended = trips(recorder)
-    lasted = ended["end_s"] - ended["start_s"]
-    delay = (lasted - ended["unhindered_s"])[ended["kind"] != "to_station"]
+def _motion(logs: Logs, trips: pd.DataFrame) -> dict[str, Any]:
+    motion = logs.recorder.motion
+    lasted = trips["end_s"] - trips["start_s"]
+    delay = (lasted - trips["unhindered_s"])[trips["kind"] != "to_station"]
     return {
-        "distance_m": float(recorder.motion["distance_m"].sum()),
-        "loaded_distance_m": float(recorder.motion["loaded_distance_m"].sum()),
-        "trips": len(ended),
+        "distance_m": float(motion["distance_m"].sum()),
+        "loaded_distance_m": float(motion["loaded_distance_m"].sum()),
+        "trips": len(trips),
         "trip_time_mean_s": lasted.mean(),
         "trip_delay_mean_s": delay.mean(),
-        "pods_lifted": sum(time >= recorder.start_s for time, _, _ in recorder.lifts),
+        "pods_lifted": len(logs.lifts_now),
     }
 
 
-def _rates(recorder: Recorder, counted: dict[str, Any]) -> dict[str, float]:
-    hours = recorder.duration_s / 3600.0
+def _rates(logs: Logs, counted: dict[str, Any]) -> dict[str, float]:
+    hours = logs.duration_s / 3600.0
     handled = {"orders": "completed", "lines": "picked", "units": "picked", "bundles": "stored"}
     return {
         f"{what}_per_h": ratio(counted[f"{what}_{how}"], hours) for what, how in handled.items()
     }
 
 
-def _visits(recorder: Recorder, counted: dict[str, Any]) -> dict[str, float]:
-    late = logs.measured(recorder, logs.units(recorder))["late_bound"].sum()
+def _per_visit(logs: Logs, counted: dict[str, Any]) -> dict[str, float]:
     picks = counted["pick_visits"]
     return {
         "units_per_visit": ratio(counted["units_picked"], picks),
         "lines_per_visit": ratio(counted["lines_picked"], picks),
         "orders_per_visit": ratio(counted["orders_completed"], picks),
-        "late_bound_units_per_visit": ratio(int(late), picks),
+        "late_bound_units_per_visit": ratio(int(logs.units_now["late_bound"].sum()), picks),
         "bundles_per_visit": ratio(counted["bundles_stored"], counted["replenishment_visits"]),
     }
 
 
-def _per_distance(recorder: Recorder, counted: dict[str, Any]) -> dict[str, float]:
+def _per_distance(logs: Logs, counted: dict[str, Any]) -> dict[str, float]:
     return {
-        "distance_per_robot_m": ratio(counted["distance_m"], recorder.layout.robots),
+        "distance_per_robot_m": ratio(counted["distance_m"], logs.layout.robots),
         "distance_per_unit_m": ratio(counted["distance_m"], counted["units_picked"]),
     }
 
 
-def _shares(recorder: Recorder, at_stations: pd.DataFrame) -> dict[str, float]:
+def _shares(logs: Logs, stations: pd.DataFrame, robots: pd.DataFrame) -> dict[str, float]:
     """Shares of stations' and robots' time, and the score against the stations' bound."""
-    by_robot = robots(recorder)
-    robot_time = recorder.layout.robots * recorder.duration_s
-    busy = sum(
-        by_robot[f"task_{task}_s"].sum() for task in ("pick", "replenish", "park", "reposition")
-    )
-    kinds = at_stations.groupby("kind")["idle_share"].mean()
-    bound = at_stations["units_per_h_bound"].sum()
-    rate = ratio(at_stations["units_picked"].sum() * 3600.0, recorder.duration_s)
+    robot_time = logs.layout.robots * logs.duration_s
+    busy = sum(robots[f"task_{task}_s"].sum() for task in BUSY)
+    idle = {kind: own["idle_share"].mean() for kind, own in stations.groupby("kind")}
+    bound = stations["units_per_h_bound"].sum()
+    rate = ratio(stations["units_picked"].sum() * 3600.0, logs.duration_s)
     return {
         "units_per_h_bound": bound,
         "units_score": ratio(rate, bound),
-        "pick_station_idle_share": kinds.get("pick", NOTHING),
-        "replenishment_station_idle_share": kinds.get("replenishment", NOTHING),
+        "pick_station_idle_share": idle.get("pick", NOTHING),
+        "replenishment_station_idle_share": idle.get("replenishment", NOTHING),
         "robot_busy_share": ratio(busy, robot_time),
-        **{
-            f"robot_{state}_share": ratio(by_robot[f"{state}_s"].sum(), robot_time)
-            for state in STATES
-        },
+        **{f"robot_{one}_share": ratio(robots[f"{one}_s"].sum(), robot_time) for one in STATES},
     }
 
 
-def _times(recorder: Recorder) -> dict[str, Any]:
+def _times(logs: Logs, orders: pd.DataFrame) -> dict[str, Any]:
     """How long orders and bundles took, and how many orders were late."""
-    done = completed(orders(recorder))
+    done = completed(orders)
     turnover, throughput = done["turnover_s"], done["throughput_time_s"]
-    bundles = logs.measured(recorder, logs.stored(recorder))
-    stored = bundles["time_s"] - bundles["created_s"]
+    stored = logs.stored_now["time_s"] - logs.stored_now["created_s"]
     return {
         "order_turnover_mean_s": turnover.mean(),
         "order_turnover_median_s": turnover.median(),
@@ -194,47 +188,42 @@ def _times(recorder: Recorder) -> dict[str, Any]:
     }
 
 
-def _levels(recorder: Recorder) -> dict[str, Any]:
+def _levels(logs: Logs) -> dict[str, Any]:
     """Time averages of what waits and what is in stock."""
-    every = logs.orders(recorder)
-    begin, end = recorder.start_s, recorder.end_s
-    backlog = Steps.between(every["created_s"], every["assigned_s"])
+    orders, measured = logs.orders, (logs.start_s, logs.end_s)
+    backlog = Steps.between(orders["created_s"], orders["assigned_s"])
+    at_stations = Steps.between(orders["assigned_s"], orders["completed_s"])
     return {
-        "backlog_orders_mean": backlog.mean(begin, end),
-        "backlog_orders_end": int(backlog.at(end)),
-        "open_orders_mean": Steps.between(every["assigned_s"], every["completed_s"]).mean(
-            begin, end
-        ),
-        "inventory_share_mean": inventory_share(recorder).mean(begin, end),
+        "backlog_orders_mean": backlog.mean(*measured),
+        "backlog_orders_end": int(backlog.at(logs.end_s)),
+        "open_orders_mean": at_stations.mean(*measured),
+        "inventory_share_mean": inventory_share(logs).mean(*measured),
     }
 
 
-def _planning(recorder: Recorder, report: CheckReport | None) -> dict[str, Any]:
-    counters = recorder.counters
+def _planning(logs: Logs, report: CheckReport | None) -> dict[str, Any]:
+    counters = logs.recorder.counters
+    names = ("plans", "plan_failures", "replans", "expansions")
     return {
-        **{
-            name: int(counters[name])
-            for name in ("plans", "plan_failures", "replans", "expansions")
-        },
+        **{name: int(counters[name]) for name in names},
         "planning_wall_s": counters["planning_s"],
         "collisions": pd.NA if report is None else report.collisions,
     }
 
 
-def _decisions(recorder: Recorder) -> dict[str, Any]:
-    frame = decisions(recorder)
+def _decisions(decisions: pd.DataFrame) -> dict[str, Any]:
     return {
-        "decisions": int(frame["decisions"].sum()),
-        "decision_wall_s": float(frame["wall_s"].sum()),
+        "decisions": int(decisions["decisions"].sum()),
+        "decision_wall_s": float(decisions["wall_s"].sum()),
         "optimiser_calls": 0,
         "optimiser_gap_mean": NOTHING,
         "paced_s": 0.0,
     }
 
 
-def _machine(run: Measured) -> dict[str, float]:
+def _machine(run: Measured, logs: Logs) -> dict[str, float]:
     return {
         "wall_s": run.wall_s,
-        "sim_per_wall": ratio(run.recorder.end_s, run.wall_s),
+        "sim_per_wall": ratio(logs.end_s, run.wall_s),
         "peak_rss_mb": peak_rss_mb(),
     }

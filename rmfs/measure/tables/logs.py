@@ -1,81 +1,179 @@
-"""The recorder's lists as frames; `measured` leaves out what happened during the warm-up."""
+"""The recorder's lists as frames, each made once and shared by all tables of a run."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
 from rmfs.measure.recorder import bundle_row, order_row
-from rmfs.measure.tables.tidy import log
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
     from rmfs.measure.recorder import Recorder
 
-ORDER = ("order", "station", "lines", "units", "created_s", "due_s", "assigned_s", "completed_s")
-BUNDLE = ("time_s", "created_s", "assigned_s", "sku", "units", "space", "pod", "station")
+INTEGER, REAL, FLAG, TEXT = np.int64, np.float64, np.bool_, np.object_
+
+UNITS = {
+    "time_s": REAL,
+    "sku": INTEGER,
+    "pod": INTEGER,
+    "robot": INTEGER,
+    "station": INTEGER,
+    "late_bound": FLAG,
+}
+LINES = {"time_s": REAL, "sku": INTEGER, "station": INTEGER}
+ORDERS = {
+    "order": INTEGER,
+    "station": INTEGER,
+    "lines": INTEGER,
+    "units": INTEGER,
+    "created_s": REAL,
+    "due_s": REAL,
+    "assigned_s": REAL,
+    "completed_s": REAL,
+}
+BUNDLES = {
+    "time_s": REAL,
+    "created_s": REAL,
+    "assigned_s": REAL,
+    "sku": INTEGER,
+    "units": INTEGER,
+    "space": REAL,
+    "pod": INTEGER,
+    "station": INTEGER,
+    "robot": INTEGER,
+}
+VISITS = {"station": INTEGER, "pod": INTEGER, "robot": INTEGER, "begin_s": REAL, "end_s": REAL}
+BUSY = {"station": INTEGER, "begin_s": REAL, "end_s": REAL}
+TASKS = {"begin_s": REAL, "robot": INTEGER, "kind": TEXT}
+LIFTS = {"time_s": REAL, "pod": INTEGER, "robot": INTEGER}
+SWITCHES = {"time_s": REAL, "station": INTEGER, "active": FLAG}
 
 
-def measured(recorder: Recorder, frame: pd.DataFrame, time: str = "time_s") -> pd.DataFrame:
-    """Keep the rows from the measured time."""
-    return frame[frame[time] >= recorder.start_s]
+class Logs:
+    """What happened in a run, as frames.
 
-
-def units(recorder: Recorder) -> pd.DataFrame:
-    """All units picked."""
-    return log(recorder.units, "time_s", "sku", "pod", "robot", "station", "late_bound").astype(
-        {"late_bound": bool}
-    )
-
-
-def lines(recorder: Recorder) -> pd.DataFrame:
-    """All lines finished."""
-    return log(recorder.lines, "time_s", "sku", "station")
-
-
-def orders(recorder: Recorder) -> pd.DataFrame:
-    """All orders that ever arrived, by ordinal."""
-    rows = [*recorder.finished_orders, *map(order_row, recorder.open_orders.values())]
-    return log(rows, *ORDER).sort_values("order", ignore_index=True)
-
-
-def stored(recorder: Recorder) -> pd.DataFrame:
-    """All bundles stored."""
-    return log(recorder.stored_bundles, *BUNDLE, "robot")
-
-
-def bundles(recorder: Recorder) -> pd.DataFrame:
-    """All bundles that ever arrived, stored or not."""
-    waiting = log([bundle_row(bundle) for bundle in recorder.open_bundles.values()], *BUNDLE)
-    done = stored(recorder).drop(columns="robot")
-    return pd.concat([part for part in (done, waiting) if len(part)] or [done], ignore_index=True)
-
-
-def visits(recorder: Recorder) -> pd.DataFrame:
-    """Stays of pods at stations, with what was handled during the measured time.
-
-    Each unit or bundle belongs to the last visit to its station that began before it.
+    Those that end in `_now` hold the measured time only; the others also hold the warm-up, because
+    what was begun then carries over.
     """
-    frame = log(recorder.visits, "station", "pod", "robot", "begin_s", "end_s")
-    frame = frame.sort_values(["station", "begin_s"], ignore_index=True)
-    for name, handled in (("units", units(recorder)), ("bundles", stored(recorder))):
-        now = measured(recorder, handled)
-        which = _visit_of(frame, now["station"].to_numpy(int), now["time_s"].to_numpy(float))
-        frame[name] = np.bincount(which, minlength=len(frame))
-    return frame
+
+    def __init__(self, recorder: Recorder) -> None:
+        self.recorder = recorder
+        self.layout = recorder.layout
+        self.world = recorder.world
+        self.start_s = recorder.start_s
+        self.end_s = recorder.end_s
+        self.duration_s = recorder.duration_s
+
+    @cached_property
+    def units(self) -> pd.DataFrame:
+        """Units picked."""
+        return framed(self.recorder.units, UNITS)
+
+    @cached_property
+    def units_now(self) -> pd.DataFrame:
+        """Units picked in the measured time."""
+        return self._since(self.units)
+
+    @cached_property
+    def lines_now(self) -> pd.DataFrame:
+        """Lines finished in the measured time."""
+        return self._since(framed(self.recorder.lines, LINES))
+
+    @cached_property
+    def orders(self) -> pd.DataFrame:
+        """Orders that ever arrived, by ordinal."""
+        waiting = [order_row(order) for order in self.recorder.open_orders.values()]
+        rows = framed([*self.recorder.finished_orders, *waiting], ORDERS)
+        return rows.sort_values("order", ignore_index=True)
+
+    @cached_property
+    def stored(self) -> pd.DataFrame:
+        """Bundles stored."""
+        return framed(self.recorder.stored_bundles, BUNDLES)
+
+    @cached_property
+    def stored_now(self) -> pd.DataFrame:
+        """Bundles stored in the measured time."""
+        return self._since(self.stored)
+
+    @cached_property
+    def bundles(self) -> pd.DataFrame:
+        """Bundles that ever arrived; those not stored yet have neither time nor robot."""
+        waiting = [(*bundle_row(bundle), -1) for bundle in self.recorder.open_bundles.values()]
+        return framed([*self.recorder.stored_bundles, *waiting], BUNDLES)
+
+    @cached_property
+    def busy(self) -> pd.DataFrame:
+        """When stations handled something, by station and time."""
+        frame = framed(self.recorder.busy, BUSY)
+        return frame.sort_values(["station", "begin_s"], ignore_index=True)
+
+    @cached_property
+    def lifts_now(self) -> pd.DataFrame:
+        """Pods lifted in the measured time."""
+        return self._since(framed(self.recorder.lifts, LIFTS))
+
+    @cached_property
+    def switches(self) -> pd.DataFrame:
+        """Stations switched on or off."""
+        return framed(self.recorder.activations, SWITCHES)
+
+    @cached_property
+    def tasks(self) -> pd.DataFrame:
+        """From when to when each robot had each task; a task lasts until the next one starts."""
+        frame = framed(self.recorder.tasks, TASKS)
+        frame = frame.sort_values(["robot", "begin_s"], kind="stable", ignore_index=True)
+        robot, begin = frame["robot"].to_numpy(), frame["begin_s"].to_numpy()
+        end = np.full(len(frame), self.end_s)
+        follows = robot[1:] == robot[:-1]
+        end[:-1][follows] = begin[1:][follows]
+        return frame.assign(end_s=end)
+
+    @cached_property
+    def visits(self) -> pd.DataFrame:
+        """Stays of pods at stations, with the `units` and `bundles` handled in the measured time.
+
+        Each unit or bundle belongs to the last visit to its station that began before it.
+        """
+        frame = framed(self.recorder.visits, VISITS)
+        frame = frame.sort_values(["station", "begin_s"], ignore_index=True)
+        for name, handled in (("units", self.units_now), ("bundles", self.stored_now)):
+            which = _visit_of(frame, handled["station"].to_numpy(), handled["time_s"].to_numpy())
+            frame[name] = np.bincount(which, minlength=len(frame))
+        return frame
+
+    def _since(self, frame: pd.DataFrame) -> pd.DataFrame:
+        """Keep what happened in the measured time."""
+        return frame[frame["time_s"].to_numpy() >= self.start_s]
+
+
+def framed(rows: Sequence[tuple[Any, ...]], columns: dict[str, Any]) -> pd.DataFrame:
+    """Turn rows into a frame with columns of given types, also if there are none."""
+    values = list(zip(*rows, strict=True)) if rows else [()] * len(columns)
+    arrays = zip(columns.items(), values, strict=True)
+    return pd.DataFrame({name: np.array(column, dtype) for (name, dtype), column in arrays})
+
+
+def count(index: pd.Series[int], length: int) -> NDArray[np.int64]:
+    """Count how often each of the indices 0 to length - 1 occurs."""
+    return np.bincount(index.to_numpy(), minlength=length)
 
 
 def _visit_of(
-    visits: pd.DataFrame,
-    station: np.ndarray[tuple[int], np.dtype[np.int64]],
-    time_s: np.ndarray[tuple[int], np.dtype[np.float64]],
-) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
+    visits: pd.DataFrame, station: NDArray[np.int64], time_s: NDArray[np.float64]
+) -> NDArray[np.int64]:
     """Return the visit during which something was handled at a station and time."""
     found = np.zeros(len(station), np.int64)
     for one in np.unique(station):
         rows = np.flatnonzero(visits["station"].to_numpy() == one)
-        begins = visits["begin_s"].to_numpy(float)[rows]
+        begins = visits["begin_s"].to_numpy()[rows]
         here = station == one
         found[here] = rows[np.searchsorted(begins, time_s[here], side="right") - 1]
     return found

@@ -11,14 +11,14 @@ from rmfs.measure.tables.tidy import tidy
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rmfs.measure.recorder import Recorder
+    from rmfs.measure.tables.logs import Logs
 
 TRIP_KINDS = np.array(["to_pod", "to_station", "to_storage", "to_rest"])
 
 
-def trips(recorder: Recorder) -> pd.DataFrame:
+def trips(logs: Logs) -> pd.DataFrame:
     """Trips that ended during the measured time, by their end."""
-    told = recorder.trips
+    told = logs.recorder.trips
     return tidy(
         "trips",
         {
@@ -35,9 +35,9 @@ def trips(recorder: Recorder) -> pd.DataFrame:
     )
 
 
-def heat(recorder: Recorder) -> pd.DataFrame:
+def heat(logs: Logs) -> pd.DataFrame:
     """One row per waypoint."""
-    layout = recorder.layout
+    layout = logs.layout
     return tidy(
         "heat",
         {
@@ -45,6 +45,6 @@ def heat(recorder: Recorder) -> pd.DataFrame:
             "tier": layout.tier,
             "x_m": layout.x_m,
             "y_m": layout.y_m,
-            **recorder.heat,
+            **logs.recorder.heat,
         },
     )

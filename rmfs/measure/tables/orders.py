@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.measure.tables import logs
 from rmfs.measure.tables.tidy import tidy
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rmfs.measure.recorder import Recorder
+    from rmfs.measure.tables.logs import Logs
 
 
-def orders(recorder: Recorder) -> pd.DataFrame:
+def orders(logs: Logs) -> pd.DataFrame:
     """Every order that was waiting, open or completed during the measured time."""
-    frame = logs.orders(recorder)
-    frame = frame[~(frame["completed_s"] < recorder.start_s)].reset_index(drop=True)
+    frame = logs.orders
+    frame = frame[~(frame["completed_s"] < logs.start_s)].reset_index(drop=True)
     frame["turnover_s"] = frame["completed_s"] - frame["created_s"]
     frame["throughput_time_s"] = frame["completed_s"] - frame["assigned_s"]
     frame["lateness_s"] = frame["completed_s"] - frame["due_s"]

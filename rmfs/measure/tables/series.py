@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rmfs.layout.model import PickStation
 from rmfs.measure.steps import Steps, counts
-from rmfs.measure.tables import logs
 from rmfs.measure.tables.robots import STATES, TASKS, with_task
 from rmfs.measure.tables.stations import busy_until
 from rmfs.measure.tables.tidy import tidy
@@ -17,23 +16,23 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-    from rmfs.measure.recorder import Recorder
+    from rmfs.measure.tables.logs import Logs
 
     Floats = NDArray[np.float64]
 
 
-def series(recorder: Recorder) -> pd.DataFrame:
+def series(logs: Logs) -> pd.DataFrame:
     """Return counts per interval, and levels at its end."""
-    ends = np.array([time for time, _ in recorder.samples])
-    edges = np.concatenate([[recorder.start_s], ends])
+    ends = np.array([time for time, _ in logs.recorder.samples])
+    edges = np.concatenate([[logs.start_s], ends])
     length = np.diff(edges)
-    orders, bundles = logs.orders(recorder), logs.bundles(recorder)
-    driven = motion_per_interval(recorder)
-    columns = {
+    orders, bundles = logs.orders, logs.bundles
+    driven = motion_per_interval(logs)
+    columns: dict[str, Any] = {
         "time_s": ends,
         "interval_s": length,
-        "units_picked": counts(logs.units(recorder)["time_s"], edges),
-        "lines_picked": counts(logs.lines(recorder)["time_s"], edges),
+        "units_picked": counts(logs.units_now["time_s"], edges),
+        "lines_picked": counts(logs.lines_now["time_s"], edges),
         "orders_created": counts(orders["created_s"], edges),
         "orders_completed": counts(orders["completed_s"], edges),
         "bundles_created": counts(bundles["created_s"], edges),
@@ -42,45 +41,43 @@ def series(recorder: Recorder) -> pd.DataFrame:
         "backlog_orders": Steps.between(orders["created_s"], orders["assigned_s"]).at(ends),
         "open_orders": Steps.between(orders["assigned_s"], orders["completed_s"]).at(ends),
         "backlog_bundles": Steps.between(bundles["created_s"], bundles["assigned_s"]).at(ends),
-        "inventory_share": inventory_share(recorder).at(ends),
+        "inventory_share": inventory_share(logs).at(ends),
     }
     for kind, is_pick in (("pick", True), ("replenishment", False)):
-        columns[f"{kind}_station_busy_share"] = _busy_share(recorder, edges, is_pick)
+        columns[f"{kind}_station_busy_share"] = _busy_share(logs, edges, is_pick)
     for task in TASKS:
-        columns[f"robots_task_{task}"] = with_task(recorder, task).at(ends)
+        columns[f"robots_task_{task}"] = with_task(logs, task).at(ends)
     for state in STATES:
         columns[f"robots_{state}"] = driven[f"{state}_s"] / length
     return tidy("series", columns)
 
 
-def motion_per_interval(recorder: Recorder) -> dict[str, Floats]:
+def motion_per_interval(logs: Logs) -> dict[str, Floats]:
     """Return the growth of the fleet's totals in each interval."""
-    names = recorder.samples[0][1].keys()
-    return {
-        name: np.diff([0.0, *(totals[name] for _, totals in recorder.samples)]) for name in names
-    }
+    samples = logs.recorder.samples
+    names = samples[0][1].keys()
+    return {name: np.diff([0.0, *(totals[name] for _, totals in samples)]) for name in names}
 
 
-def inventory_share(recorder: Recorder) -> Steps:
+def inventory_share(logs: Logs) -> Steps:
     """Return the space used by stored units over the capacity of all pods, over time."""
-    units, bundles = logs.units(recorder), logs.stored(recorder)
-    inventory = recorder.world.inventory
-    taken = -inventory.unit_space[units["sku"].to_numpy(np.int64)]
-    put = bundles["space"].to_numpy(np.float64)
-    time = np.concatenate([units["time_s"].to_numpy(float), bundles["time_s"].to_numpy(float)])
-    change = np.concatenate([taken, put]) / inventory.total_capacity
-    return Steps(time, change, recorder.stored_space_start / inventory.total_capacity)
+    inventory = logs.world.inventory
+    taken = -inventory.unit_space[logs.units["sku"].to_numpy()]
+    time = np.concatenate([logs.units["time_s"].to_numpy(), logs.stored["time_s"].to_numpy()])
+    change = np.concatenate([taken, logs.stored["space"].to_numpy()])
+    initial = logs.recorder.stored_space_start / inventory.total_capacity
+    return Steps(time, change / inventory.total_capacity, initial)
 
 
-def _busy_share(recorder: Recorder, edges: Floats, is_pick: bool) -> Floats:
+def _busy_share(logs: Logs, edges: Floats, is_pick: bool) -> Floats:
     """Return the share of each interval that the stations of one kind were busy."""
     chosen = [
         number
-        for number, station in enumerate(recorder.layout.stations)
+        for number, station in enumerate(logs.layout.stations)
         if isinstance(station, PickStation) == is_pick
     ]
     if not chosen:
         return np.full(len(edges) - 1, np.nan)
-    busy = sum(np.diff(busy_until(recorder, number, edges)) for number in chosen)
+    busy = sum(np.diff(busy_until(logs, number, edges)) for number in chosen)
     share: Floats = busy / (np.diff(edges) * len(chosen))
     return share

@@ -6,58 +6,48 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rmfs.measure.tables import logs
-from rmfs.measure.tables.tidy import log, tidy
+from rmfs.measure.tables.logs import count
+from rmfs.measure.tables.tidy import tidy
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rmfs.measure.recorder import Recorder
+    from rmfs.measure.tables.logs import Logs
 
 
-def pods(recorder: Recorder) -> pd.DataFrame:
+def pods(logs: Logs) -> pd.DataFrame:
     """One row per pod."""
-    world = recorder.world
-    count = recorder.layout.pods
-    visits = logs.visits(recorder)
-    lifts = logs.measured(recorder, log(recorder.lifts, "time_s", "pod", "robot"))
-    units = logs.measured(recorder, logs.units(recorder))
-    bundles = logs.measured(recorder, logs.stored(recorder))
+    number, visits = logs.layout.pods, logs.visits
     return tidy(
         "pods",
         {
-            "pod": np.arange(count),
-            "capacity": world.inventory.capacity,
-            "used_end": world.inventory.used,
-            "waypoint_end": world.storage.place_of,
-            "lifts": _count(lifts["pod"], count),
-            "pick_visits": _count(visits["pod"][visits["units"] > 0], count),
-            "replenishment_visits": _count(visits["pod"][visits["bundles"] > 0], count),
-            "units_picked": _count(units["pod"], count),
-            "bundles_stored": _count(bundles["pod"], count),
+            "pod": np.arange(number),
+            "capacity": logs.world.inventory.capacity,
+            "used_end": logs.world.inventory.used,
+            "waypoint_end": logs.world.storage.place_of,
+            "lifts": count(logs.lifts_now["pod"], number),
+            "pick_visits": count(visits["pod"][visits["units"] > 0], number),
+            "replenishment_visits": count(visits["pod"][visits["bundles"] > 0], number),
+            "units_picked": count(logs.units_now["pod"], number),
+            "bundles_stored": count(logs.stored_now["pod"], number),
         },
     )
 
 
-def skus(recorder: Recorder) -> pd.DataFrame:
+def skus(logs: Logs) -> pd.DataFrame:
     """One row per SKU."""
-    world = recorder.world
-    count = len(world.skus)
-    contained = world.inventory.contained
+    known = logs.world.skus
+    number, contained = len(known), logs.world.inventory.contained
     return tidy(
         "skus",
         {
-            "sku": np.arange(count),
-            "popularity": world.skus.popularity,
-            "space": world.skus.space_per_unit,
-            "lines_picked": _count(logs.measured(recorder, logs.lines(recorder))["sku"], count),
-            "units_picked": _count(logs.measured(recorder, logs.units(recorder))["sku"], count),
-            "bundles_stored": _count(logs.measured(recorder, logs.stored(recorder))["sku"], count),
+            "sku": np.arange(number),
+            "popularity": known.popularity,
+            "space": known.space_per_unit,
+            "lines_picked": count(logs.lines_now["sku"], number),
+            "units_picked": count(logs.units_now["sku"], number),
+            "bundles_stored": count(logs.stored_now["sku"], number),
             "units_end": contained.sum(axis=1),
             "pods_end": (contained > 0).sum(axis=1),
         },
     )
-
-
-def _count(index: pd.Series, length: int) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
-    return np.bincount(index.to_numpy(np.int64), minlength=length)

@@ -9,7 +9,7 @@ import pandas as pd
 from rmfs.measure.dictionary import TABLES
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
 
 def tidy(table: str, columns: Mapping[str, Any] | pd.DataFrame) -> pd.DataFrame:
@@ -25,8 +25,3 @@ def tidy(table: str, columns: Mapping[str, Any] | pd.DataFrame) -> pd.DataFrame:
     if wrong:
         raise ValueError(f"table {table} and its dictionary differ in {', '.join(sorted(wrong))}")
     return pd.DataFrame({name: columns[name] for name in described}).astype(described)
-
-
-def log(rows: Sequence[tuple[Any, ...]], *names: str) -> pd.DataFrame:
-    """Turn a list of rows into a frame, also if there are none."""
-    return pd.DataFrame(list(rows), columns=list(names))

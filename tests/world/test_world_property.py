@@ -1,0 +1,256 @@
+"""Random operations on a world, compared with a model that keeps every unit as a thing of its own."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+from doubles import Situation, small_layout, small_skus
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
+
+from rmfs.world import TaskKind, verify
+
+SKUS, PODS, ROBOTS = 4, 5, 3
+small = st.integers(1, 3)
+
+
+class NaiveWarehouse:
+    """Dictionaries and loops: units on pods, units bound, space promised, units ordered."""
+
+    def __init__(self) -> None:
+        self.on_pod: Counter[tuple[int, int]] = Counter()
+        self.bound: Counter[tuple[int, int]] = Counter()
+        self.promised: Counter[int] = Counter()
+        self.wanted_in_backlog: Counter[int] = Counter()
+        self.open_at: Counter[tuple[int, int]] = Counter()
+
+    def available(self, sku: int, pod: int) -> int:
+        return self.on_pod[sku, pod] - self.bound[sku, pod]
+
+    def uncommitted(self, sku: int) -> int:
+        stock = sum(self.available(sku, pod) for pod in range(PODS))
+        at_stations = sum(self.open_at[station, sku] for station in range(2))
+        return stock - at_stations - self.wanted_in_backlog[sku]
+
+
+class WorldMachine(RuleBasedStateMachine):
+    """Every operation of the world, in any order that the rules of the warehouse allow."""
+
+    @initialize(seed=st.integers(0, 2**16))
+    def begin(self, seed: int) -> None:
+        layout = small_layout(
+            places=8,
+            pods=PODS,
+            robots=ROBOTS,
+            pick_stations=2,
+            replenishment_stations=2,
+            slots=3,
+            pod_capacity=40.0,
+            station_capacity=30.0,
+        )
+        self.situation = Situation(layout, small_skus(SKUS, space=1.5))
+        self.world = self.situation.world
+        self.naive = NaiveWarehouse()
+        self.rng = np.random.default_rng(seed)
+        for pod in range(PODS):
+            for sku in range(SKUS):
+                units = int(self.rng.integers(0, 5))
+                self.world.stock([pod], [sku], [units])
+                self.naive.on_pod[sku, pod] += units
+
+    def any_of(self, things):
+        things = list(things)
+        return things[int(self.rng.integers(len(things)))] if things else None
+
+    def robots(self, kind: TaskKind, carrying: bool):
+        return [
+            robot
+            for robot in self.world.robots
+            if robot.task is not None and robot.task.kind is kind and (robot.pod >= 0) == carrying
+        ]
+
+    # --- orders ---------------------------------------------------------------------------------
+
+    @rule(units=st.dictionaries(st.integers(0, SKUS - 1), small, min_size=1, max_size=3))
+    def order(self, units) -> None:
+        self.situation.order(**{f"s{sku}": count for sku, count in units.items()})
+        for sku, count in units.items():
+            self.naive.wanted_in_backlog[sku] += count
+
+    @precondition(lambda self: len(self.world.orders))
+    @rule()
+    def assign_order(self) -> None:
+        free = [station for station in self.world.pick_stations if station.free_slots]
+        order = self.any_of(self.world.orders)
+        stock = self.world.inventory.free_stock
+        if not free or any(stock[line.sku] < line.units for line in order.lines):
+            return
+        station = self.any_of(free).index
+        self.world.assign_order(order, station)
+        for line in order.lines:
+            self.naive.wanted_in_backlog[line.sku] -= line.units
+            self.naive.open_at[station, line.sku] += line.units
+
+    # --- bundles --------------------------------------------------------------------------------
+
+    @rule(sku=st.integers(0, SKUS - 1), units=small)
+    def bundle(self, sku, units) -> None:
+        self.situation.bundle(sku, units)
+
+    @rule()
+    def promise(self) -> None:
+        bundle = self.any_of(self.world.bundles.without_pod.values())
+        if bundle is None:
+            return
+        used = [sum(1.5 * self.naive.on_pod[s, p] for s in range(SKUS)) for p in range(PODS)]
+        fits = [
+            pod
+            for pod in range(PODS)
+            if used[pod] + self.naive.promised[pod] + bundle.space <= 40
+        ]
+        pod = self.any_of(fits)
+        if pod is not None:
+            self.world.promise(bundle, pod)
+            self.naive.promised[pod] += bundle.space
+
+    @rule()
+    def release(self) -> None:
+        pod = self.any_of(self.world.bundles.unreleased)
+        if pod is not None:
+            self.world.release_bundles(pod)
+
+    @rule()
+    def choose_station(self) -> None:
+        bundle = self.any_of(self.world.bundles.without_station.values())
+        stations = [
+            station.index
+            for station in self.world.replenishment_stations
+            if bundle is not None and bundle.space <= station.free_space
+        ]
+        if stations:
+            self.world.choose_station(bundle, self.any_of(stations))
+
+    # --- robots ---------------------------------------------------------------------------------
+
+    @rule(station=st.integers(0, 3))
+    def bring(self, station) -> None:
+        robot = self.any_of(robot for robot in self.world.robots if robot.task is None)
+        if robot is None:
+            return
+        pods = np.flatnonzero(self.world.storage.is_at_hand).tolist()
+        pod = robot.pod if robot.pod >= 0 else self.any_of(pods)
+        if pod is None:
+            return
+        if self.world.is_pick_station(station):
+            for sku in range(SKUS):
+                self.naive_bind(sku, pod, station)
+            self.world.start_pick(robot, pod, station)
+        else:
+            self.world.start_replenish(robot, pod, station)
+        if robot.pod < 0:
+            place = self.world.storage.place_of[pod]
+            if self.world.storage.kept_by[place] in (-1, robot.index):
+                self.world.storage.keep(robot, place)
+                robot.waypoint = place
+
+    def naive_bind(self, sku, pod, station) -> None:
+        count = min(self.naive.available(sku, pod), self.naive.open_at[station, sku])
+        self.naive.bound[sku, pod] += count
+        self.naive.open_at[station, sku] -= count
+
+    @rule(sku=st.integers(0, SKUS - 1))
+    def extend(self, sku) -> None:
+        robot = self.any_of(self.robots(TaskKind.PICK, carrying=True))
+        if robot is not None:
+            self.naive_bind(sku, robot.pod, robot.task.station)
+            self.world.extend_pick(robot.task, sku)
+        robot = self.any_of(self.robots(TaskKind.REPLENISH, carrying=True))
+        if robot is not None:
+            self.world.extend_replenish(robot.task)
+
+    @rule()
+    def lift(self) -> None:
+        storage = self.world.storage
+        robots = self.robots(TaskKind.PICK, False) + self.robots(TaskKind.REPLENISH, False)
+        ready = [r for r in robots if storage.place_of[r.task.pod] in r.places]
+        robot = self.any_of(ready)
+        if robot is not None:
+            self.world.lift(robot, robot.task.pod)
+            robot.waypoint = self.world.stations[robot.task.station].waypoint
+            storage.departed(robot, robot.waypoint)
+
+    @rule()
+    def pick(self) -> None:
+        robot = self.any_of(r for r in self.robots(TaskKind.PICK, True) if r.task.picks)
+        if robot is not None:
+            line = self.world.pick_unit(robot.task).line
+            self.naive.on_pod[line.sku, robot.pod] -= 1
+            self.naive.bound[line.sku, robot.pod] -= 1
+            if not line.order.unpicked_units:
+                self.world.complete_order(line.order)
+
+    @rule()
+    def store(self) -> None:
+        robot = self.any_of(r for r in self.robots(TaskKind.REPLENISH, True) if r.task.bundles)
+        if robot is not None:
+            bundle = self.world.store_bundle(robot.task)
+            self.naive.on_pod[bundle.sku, robot.pod] += bundle.units
+            self.naive.promised[robot.pod] -= bundle.space
+
+    @rule()
+    def end_task(self) -> None:
+        robots = self.robots(TaskKind.PICK, True) + self.robots(TaskKind.REPLENISH, True)
+        robot = self.any_of(r for r in robots if not r.task.picks and not r.task.bundles)
+        if robot is not None:
+            self.world.end_task(robot)
+
+    @rule()
+    def park(self) -> None:
+        robot = self.any_of(r for r in self.world.robots if r.task is None and r.pod >= 0)
+        places = self.world.storage.places[self.world.storage.is_empty].tolist()
+        if robot is not None and places:
+            place = self.any_of(places)
+            self.world.start_park(robot, place)
+            robot.waypoint = place
+            self.world.storage.departed(robot, place)
+
+    @rule()
+    def set_down(self) -> None:
+        robot = self.any_of(self.robots(TaskKind.PARK, True))
+        if robot is not None:
+            self.world.set_down(robot, robot.waypoint)
+            self.world.end_task(robot)
+
+    @rule()
+    def rest(self) -> None:
+        robot = self.any_of(robot for robot in self.world.robots if robot.is_free)
+        places = self.world.storage.places[self.world.storage.is_restful].tolist()
+        if robot is not None and places:
+            place = self.any_of(places)
+            self.world.start_rest(robot, place)
+            robot.waypoint = place
+            self.world.storage.departed(robot, place)
+
+    # --- comparison -----------------------------------------------------------------------------
+
+    @invariant()
+    def same_counts(self) -> None:
+        if not hasattr(self, "world"):
+            return
+        inventory = self.world.inventory
+        for sku in range(SKUS):
+            assert inventory.uncommitted[sku] == self.naive.uncommitted(sku)
+            for pod in range(PODS):
+                assert inventory.contained[sku, pod] == self.naive.on_pod[sku, pod]
+                assert inventory.available[sku, pod] == self.naive.available(sku, pod)
+            for station in range(2):
+                assert self.world.need[station, sku] == self.naive.open_at[station, sku]
+        for pod in range(PODS):
+            assert inventory.promised[pod] == self.naive.promised[pod]
+        verify(self.world)
+
+
+TestWorld = WorldMachine.TestCase
+TestWorld.settings = settings(max_examples=60, stateful_step_count=40, deadline=None)
