@@ -16,7 +16,7 @@ import pandas as pd
 from scipy import stats
 
 from rmfs.errors import InputError
-from rmfs.measure import load_run, tables, write_run
+from rmfs.measure import load_run, write_run
 from rmfs.measure.checker import check
 from rmfs.simulation.run import simulate
 
@@ -58,7 +58,7 @@ def run(seed: int) -> pd.DataFrame:
         raise SystemExit(f"seed {seed}: {report.summary()}")
     write_run(done, TARGET / f"seed{seed}", report=report)
     say(f"seed {seed}: {done.end_s:,.0f} s in {done.wall_s:.2f} s; {report.summary()}")
-    return tables.footprint(done, report)
+    return load_run(TARGET / f"seed{seed}").table("footprint")
 
 
 def table(footprints: pd.DataFrame) -> Group:

@@ -91,7 +91,9 @@ def _mean_visit(visits: pd.DataFrame, stations: int) -> NDArray[np.float64]:
     length = (ended["end_s"] - ended["begin_s"]).to_numpy()
     number = count(ended["station"], stations)
     total = np.bincount(ended["station"].to_numpy(), weights=length, minlength=stations)
-    return np.divide(total, number, out=np.full(stations, np.nan), where=number > 0)
+    mean = np.full(stations, np.nan)
+    np.divide(total, number, out=mean, where=number > 0)
+    return mean
 
 
 def _active_share(logs: Logs, station: int) -> float:

@@ -7,6 +7,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use crate::backward::{Backward, ROLLING};
+use crate::buckets::Buckets;
 use crate::kinematics::Kind;
 use crate::network::Network;
 use crate::units::Us;
@@ -17,19 +19,13 @@ pub const UNREACHABLE: u32 = u32::MAX;
 /// Microseconds from rest at (waypoint, heading) to rest at the goal, indexed as in [`Network`].
 pub type Table = Arc<[u32]>;
 
-/// Width of a bucket of the search's queue, in microseconds: about a third of an edge.
-const BUCKET: u32 = 1 << 18;
-
-/// Keeps the straight-line bound below the sum of rounded edge times.
-const SAFETY: f64 = 0.999_99;
-
 /// What is constant for one kind of robot on one network.
 #[derive(Debug)]
 pub struct Model {
     /// Microseconds per metre at top speed.
-    pace: f64,
+    pub pace: f64,
     /// Metres from which a run reaches top speed.
-    full_speed: f64,
+    pub full_speed: f64,
     /// Microseconds a run that reaches top speed takes longer than at top speed throughout.
     run_constant: f64,
     /// `2 (a + b) / (a b)`: a shorter run of `l` metres takes the root of `l` times this, in seconds.
@@ -58,7 +54,8 @@ impl Model {
         }
     }
 
-    fn roll(&self, length: f64) -> u32 {
+    /// Time at top speed, rounded down.
+    pub fn roll(&self, length: f64) -> u32 {
         (length * self.pace) as u32
     }
 
@@ -158,308 +155,6 @@ impl Model {
             }
             here = next;
         }
-    }
-}
-
-const ROLLING: usize = 1;
-
-/// Least times to cover an extent along one axis: as runs, or as a part of one that is paid for.
-#[derive(Clone, Copy, Debug, Default)]
-struct Bound {
-    at_rest: u32,
-    rolling: u32,
-}
-
-impl Bound {
-    fn of(model: &Model, metres: f64) -> Self {
-        let safe = |time: u32| (f64::from(time) * SAFETY) as u32;
-        Self { at_rest: safe(model.run(metres)), rolling: safe(model.roll(metres)) }
-    }
-}
-
-/// Resumable backward search from a goal, led towards a start if there is one.
-#[derive(Debug)]
-pub struct Backward {
-    queue: Buckets,
-    headings: usize,
-    goal: u32,
-    loaded: bool,
-    columns: Vec<Bound>,
-    rows: Vec<Bound>,
-    /// Times with their stamps of states that nobody comes to, so that they are only values.
-    straight: Vec<(u32, u32)>,
-    walk: Vec<(u32, f64)>,
-}
-
-impl Backward {
-    /// Memory for searches on `network`.
-    pub fn new(network: &Network) -> Self {
-        let headings = network.heading_count();
-        let queue = Buckets::new(network.nodes * headings * 2);
-        let straight = vec![(0, UNREACHABLE); network.nodes * headings];
-        Self {
-            queue,
-            headings,
-            goal: 0,
-            loaded: false,
-            columns: Vec::new(),
-            rows: Vec::new(),
-            straight,
-            walk: Vec::new(),
-        }
-    }
-
-    /// Starts anew: times to `goal`, first where they matter on the way from `start`.
-    pub fn begin(
-        &mut self,
-        network: &Network,
-        model: &Model,
-        goal: u32,
-        loaded: bool,
-        start: Option<u32>,
-    ) {
-        (self.goal, self.loaded) = (goal, loaded);
-        self.prepare_bounds(network, model, start);
-        self.queue.clear();
-        for heading in 0..self.headings as u8 {
-            self.queue.improve(network.index(goal, heading) * 2, 0, 0);
-        }
-    }
-
-    /// The least time found so far from rest at an index of (waypoint, heading).
-    fn best(&self, index: usize) -> u32 {
-        let (stamp, straight) = self.straight[index];
-        let turning = self.queue.best(index * 2);
-        if stamp == self.queue.stamp { straight.min(turning) } else { turning }
-    }
-
-    /// A lower bound of the time from the start to rest at a waypoint.
-    fn bound_at_rest(&self, network: &Network, node: u32) -> u32 {
-        let (column, row) = (network.column[node as usize], network.row[node as usize]);
-        self.columns[column as usize].at_rest + self.rows[row as usize].at_rest
-    }
-
-    /// A lower bound of the time from the start to passing a waypoint in a run whose speeding up and
-    /// braking is counted on the way from there to the goal.
-    fn bound_rolling(&self, network: &Network, node: u32, heading: u8) -> u32 {
-        let column = &self.columns[network.column[node as usize] as usize];
-        let row = &self.rows[network.row[node as usize] as usize];
-        if network.along_x(heading) {
-            column.rolling + row.at_rest
-        } else {
-            column.at_rest + row.rolling
-        }
-    }
-
-    /// Prepares the bounds: a way covers its extent in x and in y, in a run each at least.
-    fn prepare_bounds(&mut self, network: &Network, model: &Model, start: Option<u32>) {
-        let led = start.filter(|_| network.axis_parallel);
-        let bounds = |places: &[f64], at: Option<f64>, into: &mut Vec<Bound>| {
-            into.clear();
-            into.extend(places.iter().map(|place| match at {
-                Some(at) => Bound::of(model, (place - at).abs()),
-                None => Bound::default(),
-            }));
-        };
-        let position = led.map(|node| network.position(node));
-        bounds(&network.columns, position.map(|p| p.0), &mut self.columns);
-        bounds(&network.rows, position.map(|p| p.1), &mut self.rows);
-    }
-
-    /// Lower bound of the time from rest at (waypoint, heading) to the goal; exact where the search
-    /// has been.
-    pub fn to_go(&self, network: &Network, node: u32, heading: u8) -> u32 {
-        let known = self.best(network.index(node, heading));
-        let bound = self.bound_at_rest(network, node);
-        let settled = self.queue.settled();
-        if known != UNREACHABLE && known.saturating_add(bound) < settled {
-            return known;
-        }
-        if self.queue.exhausted() {
-            return known;
-        }
-        known.min(settled.saturating_sub(bound))
-    }
-
-    /// Whether [`Backward::to_go`] cannot get any better for this state.
-    pub fn knows(&self, network: &Network, node: u32, heading: u8) -> bool {
-        let known = self.best(network.index(node, heading));
-        self.queue.exhausted()
-            || (known != UNREACHABLE
-                && known.saturating_add(self.bound_at_rest(network, node)) < self.queue.settled())
-    }
-
-    /// Total time (from start to goal over a state) up to which every state is known.
-    pub fn reach(&self) -> u32 {
-        self.queue.settled()
-    }
-
-    /// Searches on until every state with a total time below `limit` is known.
-    pub fn advance(&mut self, network: &Network, model: &Model, limit: u32) {
-        while let Some((cost, state)) = self.queue.pop(limit) {
-            let index = state / 2;
-            let (node, heading) = ((index / self.headings) as u32, (index % self.headings) as u8);
-            if state % 2 == ROLLING {
-                self.roll_back(network, model, node, heading, cost);
-            } else {
-                self.come_from(network, model, node, heading, cost);
-            }
-        }
-    }
-
-    /// A run that has reached top speed started at this waypoint or before it.
-    fn roll_back(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
-        self.start_here(network, model, node, heading, cost);
-        for &(from, length) in network.behind(node, heading) {
-            if !self.passable(network, from, node) {
-                continue;
-            }
-            let cost = cost + model.roll(length);
-            if self.loaded && network.storage[from as usize] {
-                self.start_here(network, model, from, heading, cost);
-            } else {
-                self.offer(network, from, heading, ROLLING, cost);
-            }
-        }
-    }
-
-    /// The robot stops here: short runs that end so, the first long one, and rides.
-    fn come_from(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
-        if self.loaded && network.storage[node as usize] && node != self.goal {
-            return;
-        }
-        let mut walk = std::mem::take(&mut self.walk);
-        walk.push((node, 0.0));
-        while let Some((here, total)) = walk.pop() {
-            for &(from, length) in network.behind(here, heading) {
-                if !self.passable(network, from, here) {
-                    continue;
-                }
-                let total = total + length;
-                let started = cost + model.run(total);
-                let only_start = self.loaded && network.storage[from as usize];
-                if total >= model.full_speed && !only_start {
-                    self.offer(network, from, heading, ROLLING, started);
-                } else {
-                    self.start_here(network, model, from, heading, started);
-                    if !only_start {
-                        walk.push((from, total));
-                    }
-                }
-            }
-        }
-        self.walk = walk;
-        for lift in network.lifts_to(node) {
-            self.offer(network, lift.from, heading, 0, cost + lift.travel as u32);
-        }
-    }
-
-    fn passable(&self, network: &Network, from: u32, to: u32) -> bool {
-        network.may_enter(from, to, self.goal, self.loaded)
-    }
-
-    /// The robot is at rest with any heading, turns and starts a run of known cost.
-    fn start_here(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
-        for before in 0..self.headings as u8 {
-            let cost = cost + model.turning(before, heading);
-            let index = network.index(node, before);
-            // nobody stops to go straight on, or arrives in a direction that no edge has
-            if before != heading && !network.behind(node, before).is_empty() {
-                self.offer(network, node, before, 0, cost);
-            } else {
-                let known = &mut self.straight[index];
-                if known.0 != self.queue.stamp || cost < known.1 {
-                    *known = (self.queue.stamp, cost);
-                }
-            }
-        }
-    }
-
-    fn offer(&mut self, network: &Network, node: u32, heading: u8, rolling: usize, cost: u32) {
-        let state = network.index(node, heading) * 2 + rolling;
-        if cost < self.queue.best(state) {
-            let bound = if rolling == ROLLING {
-                self.bound_rolling(network, node, heading)
-            } else {
-                self.bound_at_rest(network, node)
-            };
-            let total = cost + bound;
-            self.queue.improve(state, cost, total);
-        }
-    }
-}
-
-/// A queue of states in buckets of their total time; improving a state again is allowed.
-#[derive(Debug)]
-struct Buckets {
-    /// Least cost of each state, and in which search that was.
-    best: Vec<(u32, u32)>,
-    stamp: u32,
-    buckets: Vec<Vec<(u32, u32)>>,
-    at: usize,
-    waiting: usize,
-}
-
-impl Buckets {
-    fn new(states: usize) -> Self {
-        Self {
-            best: vec![(0, UNREACHABLE); states],
-            stamp: 0,
-            buckets: Vec::new(),
-            at: 0,
-            waiting: 0,
-        }
-    }
-
-    fn clear(&mut self) {
-        self.stamp += 1;
-        let first = self.at.min(self.buckets.len());
-        for bucket in &mut self.buckets[first..] {
-            bucket.clear();
-        }
-        self.at = 0;
-        self.waiting = 0;
-    }
-
-    fn best(&self, state: usize) -> u32 {
-        let (stamp, cost) = self.best[state];
-        if stamp == self.stamp { cost } else { UNREACHABLE }
-    }
-
-    fn improve(&mut self, state: usize, cost: u32, total: u32) {
-        if cost >= self.best(state) {
-            return;
-        }
-        self.best[state] = (self.stamp, cost);
-        let bucket = ((total / BUCKET) as usize).max(self.at);
-        if bucket >= self.buckets.len() {
-            self.buckets.resize_with(bucket + 1, Vec::new);
-        }
-        self.buckets[bucket].push((cost, state as u32));
-        self.waiting += 1;
-    }
-
-    /// The next state whose bucket ends at or before `limit`.
-    fn pop(&mut self, limit: u32) -> Option<(u32, usize)> {
-        while self.waiting > 0 && (self.at as u32).saturating_mul(BUCKET) < limit {
-            while let Some((cost, state)) = self.buckets[self.at].pop() {
-                self.waiting -= 1;
-                if self.best(state as usize) == cost {
-                    return Some((cost, state as usize));
-                }
-            }
-            self.at += 1;
-        }
-        None
-    }
-
-    /// All states with a total time below this are final.
-    fn settled(&self) -> u32 {
-        if self.waiting == 0 { UNREACHABLE } else { (self.at as u32).saturating_mul(BUCKET) }
-    }
-
-    fn exhausted(&self) -> bool {
-        self.waiting == 0
     }
 }
 

@@ -1,5 +1,7 @@
 //! Traffic of a Robotic Mobile Fulfillment System: what moves, without knowing why.
 
+pub mod backward;
+pub mod buckets;
 pub mod costs;
 pub mod fleet;
 pub mod kinematics;

@@ -15,7 +15,8 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::costs::{Backward, Model, UNREACHABLE};
+use crate::backward::Backward;
+use crate::costs::{Model, UNREACHABLE};
 use crate::kinematics::Kind;
 use crate::network::{NONE, Network};
 use crate::reservations::{Table, Windows};

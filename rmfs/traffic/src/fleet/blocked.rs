@@ -1,0 +1,95 @@
+//! Robots that want to drive and have found no way: they stay parked and try again.
+
+use std::cmp::Reverse;
+
+use crate::network::NONE;
+use crate::robot::{Phase, Step};
+use crate::search::{Outcome, Query};
+use crate::units::Us;
+
+use super::{Due, Fleet};
+
+/// How often robots that found no way try again.
+const RETRY: Us = 1_000_000;
+
+impl Fleet {
+    pub(super) fn schedule_retry(&mut self) {
+        let needed = !self.blocked.is_empty() || !self.stalled.is_empty();
+        if needed && !self.retry_due {
+            self.retry_due = true;
+            self.agenda.push(Reverse((self.now + RETRY, u32::MAX, Due::Retry, 0)));
+        }
+    }
+
+    /// Lets robots try again whose goal somebody has just planned to leave.
+    pub(super) fn retry_released(&mut self) {
+        while !self.released.is_empty() {
+            let released = std::mem::take(&mut self.released);
+            if self.blocked.is_empty() {
+                return;
+            }
+            self.retry(|fleet, robot| match fleet.robots[robot as usize].program.front() {
+                Some(Step::Drive(goal)) => released.contains(goal),
+                Some(Step::Station(station)) => {
+                    released.iter().any(|&v| fleet.network.stations[*station as usize].contains(&v))
+                }
+                _ => true,
+            });
+        }
+    }
+
+    pub(super) fn retry(&mut self, concerns: impl Fn(&Self, u32) -> bool) {
+        for robot in std::mem::take(&mut self.blocked) {
+            let state = &self.robots[robot as usize];
+            if state.phase != Phase::Blocked || self.blocked.contains(&robot) {
+                continue;
+            }
+            if concerns(self, robot) {
+                if !self.plan_step(robot) {
+                    self.step_aside(robot);
+                    self.robots[robot as usize].phase = Phase::Blocked;
+                    self.blocked.push(robot);
+                }
+            } else {
+                self.blocked.push(robot);
+            }
+        }
+        self.schedule_retry();
+    }
+
+    /// Sends a blocked robot that stands in the way of others to the nearest free storage place.
+    pub(super) fn step_aside(&mut self, robot: u32) {
+        self.settle(robot);
+        let Fleet { network, kinds, robots, table, planner, costs, .. } = self;
+        let state = &robots[robot as usize];
+        let rests_well = network.storage[state.anchor as usize] || state.place.is_some();
+        if !state.moves.is_empty() || rests_well {
+            return;
+        }
+        for held in &state.held {
+            table.remove(held.resource, robot);
+        }
+        let query = Query {
+            start: state.anchor,
+            heading: state.heading,
+            ready: self.now.max(state.busy_until),
+            goal: NONE,
+            loaded: state.pod.is_some(),
+            kind: &kinds[state.kind as usize],
+            model: &costs.models[state.kind as usize],
+            budget: self.budget,
+        };
+        match planner.search(network, table, &query) {
+            Outcome::Found(moves) => {
+                self.counters.replans += 1;
+                self.adopt(robot, 0, moves);
+            }
+            Outcome::NoWay | Outcome::OutOfBudget => self.reserve(robot),
+        }
+    }
+
+    /// Robots that want to drive and have found no way.
+    pub fn blocked(&self) -> &[u32] {
+        &self.blocked
+    }
+}

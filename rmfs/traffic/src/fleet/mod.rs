@@ -1,0 +1,210 @@
+//! All robots on one network: programs, plans and the events they cause.
+//!
+//! Every robot always owns one conflict-free plan that ends in an unlimited hold. A new plan
+//! replaces the old one only when the whole of it is free, so "no plan" means to stay parked, and
+//! nothing can collide.
+
+mod blocked;
+mod planning;
+mod programs;
+mod progress;
+mod queues;
+
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, VecDeque};
+use std::time::Duration;
+
+use crate::costs::Cache;
+use crate::kinematics::Kind;
+use crate::network::Network;
+use crate::record::Record;
+use crate::reservations::Table;
+use crate::robot::{Phase, Robot, Step};
+use crate::search::Planner;
+use crate::units::Us;
+
+/// What happened to a robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i64)]
+pub enum EventKind {
+    Arrived = 0,
+    LiftStarted = 1,
+    Lifted = 2,
+    Departed = 3,
+    QueueEntered = 4,
+    AtHead = 5,
+    SetDownStarted = 6,
+    SetDown = 7,
+    Idle = 8,
+}
+
+/// An event with its time; `value` is a waypoint, pod or station.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Event {
+    pub time: Us,
+    pub kind: EventKind,
+    pub robot: u32,
+    pub value: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Due {
+    TransferEnd,
+    LegEnd,
+    Retry,
+}
+
+/// What planning has cost so far.
+#[derive(Clone, Debug, Default)]
+pub struct Counters {
+    pub plans: u64,
+    pub failures: u64,
+    pub replans: u64,
+    /// Wall time spent planning.
+    pub planning: Duration,
+}
+
+/// What a robot's current leg is, for the table of trips.
+#[derive(Clone, Debug)]
+struct Leg {
+    from: u32,
+    start: Us,
+    unhindered: Us,
+    distance_before: f64,
+    /// When the robot reached the queue zone of the station it drives to.
+    zone_entered: Option<Us>,
+}
+
+/// The traffic of one warehouse.
+#[derive(Debug)]
+pub struct Fleet {
+    pub network: Network,
+    pub kinds: Vec<Kind>,
+    pub robots: Vec<Robot>,
+    pub now: Us,
+    pub record: Record,
+    pub counters: Counters,
+    pub planner: Planner,
+    pub costs: Cache,
+    table: Table,
+    budget: u64,
+    /// Robots with a place in each station's queue, in the order of their places.
+    queues: Vec<Vec<u32>>,
+    legs: Vec<Option<Leg>>,
+    blocked: Vec<u32>,
+    /// Stations in whose queue somebody could not move up although places are free.
+    stalled: Vec<u32>,
+    released: Vec<u32>,
+    retry_due: bool,
+    agenda: BinaryHeap<Reverse<(Us, u32, Due, u32)>>,
+    outbox: Vec<Event>,
+}
+
+impl Fleet {
+    /// Puts robots `(waypoint, heading, kind)` on a network.
+    ///
+    /// # Errors
+    /// If two robots stand on one waypoint.
+    pub fn new(
+        network: Network,
+        kinds: Vec<Kind>,
+        robots: &[(u32, u8, u8)],
+        budget: u64,
+        cost_bytes: usize,
+        with_trace: bool,
+    ) -> Result<Self, String> {
+        let mut fleet = Self {
+            planner: Planner::new(&network),
+            costs: Cache::new(&network, &kinds, cost_bytes),
+            table: Table::new(network.resources),
+            record: Record::new(robots.len(), network.nodes, with_trace),
+            queues: vec![Vec::new(); network.stations.len()],
+            robots: Vec::new(),
+            legs: vec![None; robots.len()],
+            stalled: Vec::new(),
+            counters: Counters::default(),
+            blocked: Vec::new(),
+            released: Vec::new(),
+            retry_due: false,
+            agenda: BinaryHeap::new(),
+            outbox: Vec::new(),
+            now: 0,
+            network,
+            kinds,
+            budget,
+        };
+        for (id, &(node, heading, kind)) in robots.iter().enumerate() {
+            if let Some(other) = fleet.table.final_holder(fleet.network.resource[node as usize]) {
+                return Err(format!("robots {other} and {id} both start at waypoint {node}"));
+            }
+            fleet.robots.push(Robot::at(node, heading, kind));
+            fleet.occupy(id as u32);
+        }
+        Ok(fleet)
+    }
+
+    /// Replaces what is left of a robot's program; a moving robot goes on to its next stop first.
+    ///
+    /// # Errors
+    /// If the robot is lifting or setting down, or the program starts with that away from rest.
+    pub fn command(&mut self, robot: u32, program: &[Step]) -> Result<(), String> {
+        let state = &self.robots[robot as usize];
+        if state.phase == Phase::Transferring {
+            return Err(format!("robot {robot} is lifting or setting down a pod"));
+        }
+        self.settle(robot);
+        let state = &mut self.robots[robot as usize];
+        if !state.moves.is_empty()
+            && matches!(program.first(), Some(Step::Lift(_) | Step::SetDown(_)))
+        {
+            return Err(format!("robot {robot} is driving and cannot lift or set down"));
+        }
+        state.program = VecDeque::from(program.to_vec());
+        self.begin(robot);
+        Ok(())
+    }
+
+    /// Advances to the first time not after `until` at which something happens, or to `until`.
+    pub fn advance(&mut self, until: Us) -> Vec<Event> {
+        while self.outbox.is_empty() {
+            match self.agenda.peek() {
+                Some(&Reverse((time, ..))) if time <= until => self.instant(time),
+                _ => {
+                    self.now = self.now.max(until);
+                    break;
+                }
+            }
+        }
+        std::mem::take(&mut self.outbox)
+    }
+
+    /// Handles everything due at one time.
+    fn instant(&mut self, time: Us) {
+        self.now = time;
+        while let Some(&Reverse((at, robot, due, version))) = self.agenda.peek() {
+            if at > time {
+                break;
+            }
+            self.agenda.pop();
+            match due {
+                Due::TransferEnd => self.transfer_ended(robot),
+                Due::LegEnd if self.robots[robot as usize].version == version => {
+                    self.leg_ended(robot)
+                }
+                Due::LegEnd => {}
+                Due::Retry => {
+                    self.retry_due = false;
+                    for station in std::mem::take(&mut self.stalled) {
+                        self.move_up(station);
+                    }
+                    self.retry(|_, _| true);
+                }
+            }
+        }
+        self.retry_released();
+    }
+
+    fn emit(&mut self, kind: EventKind, robot: u32, value: u32) {
+        self.outbox.push(Event { time: self.now, kind, robot, value });
+    }
+}

@@ -1,0 +1,165 @@
+//! Planning one leg, and making the plan the robot's own.
+
+use std::cmp::Reverse;
+use std::time::Instant;
+
+use crate::kinematics::Kind;
+use crate::network::{NONE, Network};
+use crate::postpone::postpone;
+use crate::record::enters_zone;
+use crate::reservations::Interval;
+use crate::robot::Phase;
+use crate::search::{Move, Outcome, Query};
+use crate::units::Us;
+
+use super::{Due, EventKind, Fleet, Leg};
+
+/// How hard a plan is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Effort {
+    /// The robot needs it.
+    Full,
+    /// It would be better than what the robot has.
+    Try,
+}
+
+impl Effort {
+    fn labels(self) -> u64 {
+        match self {
+            Effort::Full => u64::MAX,
+            Effort::Try => 300,
+        }
+    }
+}
+
+impl Fleet {
+    /// Plans from the first rest that can still be chosen to `goal` and, if that works, makes it
+    /// the robot's plan. `keep` says which of the moves not yet begun stay as they are.
+    pub(super) fn plan(
+        &mut self,
+        robot: u32,
+        goal: u32,
+        effort: Effort,
+        keep: impl Fn(&Network, &Move) -> bool,
+    ) -> bool {
+        let begun = Instant::now();
+        let planned = self.plan_untimed(robot, goal, effort, keep);
+        self.counters.planning += begun.elapsed();
+        planned
+    }
+
+    fn plan_untimed(
+        &mut self,
+        robot: u32,
+        goal: u32,
+        effort: Effort,
+        keep: impl Fn(&Network, &Move) -> bool,
+    ) -> bool {
+        self.settle(robot);
+        let Fleet { network, kinds, robots, table, planner, costs, .. } = self;
+        let state = &robots[robot as usize];
+        let kind = &kinds[state.kind as usize];
+        if table.final_holder(network.resource[goal as usize]).is_some_and(|holder| holder != robot)
+        {
+            self.counters.failures += 1;
+            return false;
+        }
+        let kept = state
+            .committed(network, kind, self.now)
+            .max(state.moves.iter().take_while(|step| keep(network, step)).count());
+        let (start, heading, rested) = match kept.checked_sub(1) {
+            Some(last) => (state.moves[last].to, state.moves[last].heading, state.moves[last].end),
+            None => (state.anchor, state.heading, state.rested),
+        };
+        let ready = rested.max(self.now).max(state.busy_until);
+        let loaded = state.pod.is_some();
+        let model = &costs.models[state.kind as usize];
+        for held in &state.held {
+            table.remove(held.resource, robot);
+        }
+        let mut query = Query {
+            start,
+            heading,
+            ready,
+            goal,
+            loaded,
+            kind,
+            model,
+            budget: self.budget.min(effort.labels()),
+        };
+        let mut outcome = planner.search(network, table, &query);
+        if outcome == Outcome::OutOfBudget && effort == Effort::Full {
+            // with every planned motion over, the search is an ordinary shortest path
+            query.ready = query.ready.max(table.horizon());
+            query.budget = u64::MAX;
+            outcome = planner.search(network, table, &query);
+        }
+        let Outcome::Found(mut moves) = outcome else {
+            self.counters.failures += 1;
+            self.reserve(robot);
+            return false;
+        };
+        // a trip to a station ends at its queue zone, and so does the time it is compared with
+        let zone = network.zone[goal as usize];
+        let unhindered =
+            planner.unhindered(network, &query) - time_in_zone(network, kind, &moves, zone);
+        postpone(network, table, kind, &mut moves);
+        let departs = kept == 0 && !moves.is_empty();
+        if self.legs[robot as usize].is_none() {
+            self.counters.plans += 1;
+            self.legs[robot as usize] = Some(Leg {
+                from: start,
+                start: ready,
+                unhindered,
+                distance_before: self.record.totals[robot as usize].distance,
+                zone_entered: None,
+            });
+        } else {
+            self.counters.replans += 1;
+        }
+        self.adopt(robot, kept, moves);
+        if departs && self.network.storage[start as usize] {
+            self.emit(EventKind::Departed, robot, start);
+        }
+        self.released.push(start);
+        true
+    }
+
+    /// Makes the kept moves and the new ones the robot's plan.
+    pub(super) fn adopt(&mut self, robot: u32, kept: usize, moves: Vec<Move>) {
+        let state = &mut self.robots[robot as usize];
+        state.moves.truncate(kept);
+        state.moves.extend(moves);
+        state.version += 1;
+        state.phase = Phase::Driving;
+        let (_, _, end) = state.destination();
+        let due = end.max(self.now).max(state.busy_until);
+        self.agenda.push(Reverse((due, robot, Due::LegEnd, state.version)));
+        self.occupy(robot);
+    }
+
+    /// Computes what the robot's plan occupies and reserves it.
+    pub(super) fn occupy(&mut self, robot: u32) {
+        let state = &mut self.robots[robot as usize];
+        state.held = state.occupation(&self.network, &self.kinds[state.kind as usize]);
+        self.reserve(robot);
+    }
+
+    pub(super) fn reserve(&mut self, robot: u32) {
+        for held in &self.robots[robot as usize].held {
+            if held.end > self.now {
+                let interval = Interval { start: held.start, end: held.end, robot };
+                self.table.insert(held.resource, interval, self.now);
+            }
+        }
+    }
+}
+
+/// How long a plan that ends in a queue zone takes from entering it to its end.
+fn time_in_zone(network: &Network, kind: &Kind, moves: &[Move], zone: u32) -> Us {
+    if zone == NONE {
+        return 0;
+    }
+    let entered = moves.iter().find_map(|step| enters_zone(network, kind, step, zone));
+    entered.map_or(0, |at| moves[moves.len() - 1].end - at)
+}

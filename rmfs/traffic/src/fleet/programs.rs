@@ -1,0 +1,172 @@
+//! Programs: what a robot was told, step by step, and what it reports.
+
+use std::cmp::Reverse;
+
+use crate::record::{Piece, Trip, TripKind};
+use crate::robot::{Phase, Step};
+use crate::units::Us;
+
+use super::planning::Effort;
+use super::{Due, EventKind, Fleet};
+
+impl Fleet {
+    /// Starts the first step of the robot's program.
+    pub(super) fn begin(&mut self, robot: u32) {
+        self.legs[robot as usize] = None;
+        match self.robots[robot as usize].program.front().copied() {
+            None => {
+                self.robots[robot as usize].phase = Phase::Idle;
+                let at = self.robots[robot as usize].destination().0;
+                self.emit(EventKind::Idle, robot, at);
+            }
+            Some(Step::Drive(_) | Step::Station(_)) => self.set_off(robot),
+            Some(Step::Lift(pod)) => self.lift(robot, pod),
+            Some(Step::SetDown(pod)) => self.set_down(robot, pod),
+        }
+    }
+
+    /// Plans the way of a driving step; without one the robot is blocked and tries again later.
+    pub(super) fn set_off(&mut self, robot: u32) {
+        if !self.plan_step(robot) {
+            self.robots[robot as usize].phase = Phase::Blocked;
+            self.blocked.push(robot);
+            self.schedule_retry();
+        }
+    }
+
+    /// Plans the first step of the program, a driving one. Returns whether that worked.
+    pub(super) fn plan_step(&mut self, robot: u32) -> bool {
+        match self.robots[robot as usize].program.front().copied() {
+            Some(Step::Drive(goal)) => self.plan_drive(robot, goal),
+            Some(Step::Station(station)) => self.plan_station(robot, station),
+            _ => unreachable!("only driving steps are planned"),
+        }
+    }
+
+    pub(super) fn plan_drive(&mut self, robot: u32, goal: u32) -> bool {
+        let left_place = self.robots[robot as usize].place;
+        if !self.plan(robot, goal, Effort::Full, |_, _| false) {
+            return false;
+        }
+        if let Some((station, _)) = left_place {
+            self.leave_queue(robot, station);
+        }
+        true
+    }
+
+    pub(super) fn lift(&mut self, robot: u32, pod: u32) {
+        self.emit(EventKind::LiftStarted, robot, pod);
+        let state = &mut self.robots[robot as usize];
+        state.pod = Some(pod);
+        self.start_transfer(robot);
+        // plan ahead, so that the robot leaves the moment it has its pod
+        let state = &mut self.robots[robot as usize];
+        if matches!(state.program.get(1), Some(Step::Drive(_) | Step::Station(_))) {
+            let step = state.program.pop_front().expect("the lift");
+            self.plan_step(robot);
+            let state = &mut self.robots[robot as usize];
+            state.program.push_front(step);
+            state.phase = Phase::Transferring;
+        }
+    }
+
+    pub(super) fn set_down(&mut self, robot: u32, pod: u32) {
+        self.emit(EventKind::SetDownStarted, robot, pod);
+        self.start_transfer(robot);
+    }
+
+    pub(super) fn start_transfer(&mut self, robot: u32) {
+        let now = self.now;
+        let state = &mut self.robots[robot as usize];
+        state.phase = Phase::Transferring;
+        state.busy_until = now + self.kinds[state.kind as usize].pod_transfer;
+        self.agenda.push(Reverse((state.busy_until, robot, Due::TransferEnd, 0)));
+    }
+
+    pub(super) fn transfer_ended(&mut self, robot: u32) {
+        let state = &mut self.robots[robot as usize];
+        let (step, node, heading) =
+            (state.program.pop_front().expect("a transfer"), state.anchor, state.heading);
+        match step {
+            Step::Lift(pod) => {
+                self.record.transfer(robot, self.now, node, heading, pod, Piece::Lift);
+                self.emit(EventKind::Lifted, robot, pod);
+            }
+            Step::SetDown(pod) => {
+                state.pod = None;
+                self.record.transfer(robot, self.now, node, heading, pod, Piece::SetDown);
+                self.emit(EventKind::SetDown, robot, pod);
+            }
+            Step::Drive(_) | Step::Station(_) => unreachable!("a transfer ended"),
+        }
+        let state = &mut self.robots[robot as usize];
+        if state.moves.is_empty() {
+            self.begin(robot);
+        } else {
+            state.phase = Phase::Driving;
+        }
+    }
+
+    pub(super) fn leg_ended(&mut self, robot: u32) {
+        self.settle(robot);
+        let state = &self.robots[robot as usize];
+        debug_assert!(state.moves.is_empty());
+        if state.phase != Phase::Driving {
+            // a blocked robot came to the end of what it still had to drive
+            return;
+        }
+        match state.program.front().copied() {
+            Some(Step::Drive(goal)) if state.anchor == goal => self.arrived(robot, goal),
+            Some(Step::Station(station)) => self.stopped_in_queue(robot, station),
+            _ => unreachable!("a leg ends where the step wants to be"),
+        }
+    }
+
+    pub(super) fn arrived(&mut self, robot: u32, goal: u32) {
+        let state = &self.robots[robot as usize];
+        let kind = match (state.pod, state.program.get(1)) {
+            (None, Some(Step::Lift(_))) => TripKind::ToPod,
+            (None, _) => TripKind::ToRest,
+            (Some(_), _) => TripKind::ToStorage,
+        };
+        self.finish_trip(robot, kind, self.now);
+        self.emit(EventKind::Arrived, robot, goal);
+        self.robots[robot as usize].program.pop_front();
+        self.begin(robot);
+    }
+
+    pub(super) fn stopped_in_queue(&mut self, robot: u32, station: u32) {
+        let (_, place) = self.robots[robot as usize].place.expect("planned to a place");
+        if place > 0 {
+            self.move_up(station);
+            return;
+        }
+        let entered =
+            self.legs[robot as usize].as_ref().and_then(|leg| leg.zone_entered).unwrap_or(self.now);
+        self.record.totals[robot as usize].queueing += self.now - entered;
+        self.finish_trip(robot, TripKind::ToStation, entered);
+        self.at_head(robot, station);
+    }
+
+    pub(super) fn at_head(&mut self, robot: u32, station: u32) {
+        self.robots[robot as usize].program.pop_front();
+        self.robots[robot as usize].phase = Phase::Idle;
+        self.emit(EventKind::AtHead, robot, station);
+    }
+
+    pub(super) fn finish_trip(&mut self, robot: u32, kind: TripKind, end: Us) {
+        let state = &self.robots[robot as usize];
+        let Some(leg) = self.legs[robot as usize].take() else { return };
+        self.record.trips.push(Trip {
+            robot,
+            kind,
+            start: leg.start.min(end),
+            end,
+            from: leg.from,
+            to: state.anchor,
+            loaded: state.pod.is_some(),
+            distance: self.record.totals[robot as usize].distance - leg.distance_before,
+            unhindered: leg.unhindered,
+        });
+    }
+}

@@ -1,0 +1,189 @@
+"""PPS scorers and rules in small situations, the answers worked out by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from doubles import Situation, small_layout
+
+from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
+from rmfs.control.pps.lexicographic import Lexicographic
+from rmfs.control.pps.random import RandomPod
+from rmfs.control.pps.scorers import BundleWorkAmount, Completeable, Nearest, PickWorkAmount
+
+
+@pytest.fixture
+def situation() -> Situation:
+    """Pick station 0 at (0, 10), replenishment station 1 at (5, 10); pods at x = 0 to 5.
+
+    Robot 0 stands at (0, 2), robot 1 at (1, 2). Top speed 1 m/s, a quarter turn takes 1 s.
+    """
+    return Situation(small_layout(places=8, pods=6, robots=2))
+
+
+def candidates(situation: Situation):
+    view = situation.view
+    return pick_candidates(view, view.robots[0], view.pick_stations[0])
+
+
+class TestCandidates:
+    def test_pods_at_hand_with_a_wanted_unit(self, situation) -> None:
+        """SKU 0 is on pods 1, 2 and 4; pod 2 is claimed; pod 4's only unit is bound."""
+        for pod in (1, 2, 4):
+            situation.stock(pod, s0=1)
+        situation.stock(3, s1=1)
+        situation.assigned(s0=1)
+        situation.world.start_pick(situation.world.robots[1], pod=4, station=0)
+        situation.assigned(s0=1)
+        situation.world.storage.claim(2, robot=1)
+        assert candidates(situation).pods.tolist() == [1]
+
+    def test_none_without_open_requests(self, situation) -> None:
+        situation.stock(1, s0=1)
+        assert len(candidates(situation)) == 0
+
+    def test_pods_for_which_bundles_wait_at_the_station(self, situation) -> None:
+        situation.waiting_bundle(pod=3, station=1)
+        view = situation.view
+        found = replenishment_candidates(view, view.robots[0], view.replenishment_stations[0])
+        assert found.pods.tolist() == [3]
+
+
+class TestScorers:
+    @pytest.fixture
+    def three_orders(self, situation) -> Situation:
+        """Orders: 0 wants 2 of SKU 0; 1 wants 1 of SKU 0 and 1 of SKU 1; 2 wants 1 of SKU 1.
+
+        Pod 0 has 3 of SKU 0: completes order 0 only, serves 3 units.
+        Pod 1 has 1 of each: for order 0 it lacks a unit; completes order 1, then nothing is left
+        for order 2; serves 2 units.
+        Pod 2 has 3 of SKU 0 and 2 of SKU 1: completes all, serves 5 units.
+        """
+        situation.stock(0, s0=3)
+        situation.stock(1, s0=1, s1=1)
+        situation.stock(2, s0=3, s1=2)
+        situation.assigned(s0=2)
+        situation.assigned(s0=1, s1=1)
+        situation.assigned(s1=1)
+        return situation
+
+    def test_completeable(self, three_orders) -> None:
+        found = candidates(three_orders)
+        assert Completeable().score(found, three_orders.rng).tolist() == [1, 1, 3]
+        assert found.completed()[1].tolist() == [2, 2, 5]
+
+    def test_servable_units(self, three_orders) -> None:
+        assert candidates(three_orders).servable_units().tolist() == [3, 2, 5]
+
+    def test_work_amount_counts_units_of_completed_orders_twice(self, three_orders) -> None:
+        """3 + 2, 2 + 2, 5 + 5."""
+        scorer = PickWorkAmount(time_cost=0.0)
+        scores = scorer.score(candidates(three_orders), three_orders.rng)
+        assert scores.tolist() == [5.0, 4.0, 10.0]
+
+    def test_work_amount_charges_for_the_way(self, three_orders) -> None:
+        """Robot (0, 2) to pod x: 1 s turn + x + 2; pod to station (0, 10): x + 10. Sum 13 + 2 x.
+
+        At half a unit per second and without boost: 3 - 6.5, 2 - 7.5, 5 - 8.5.
+        """
+        scorer = PickWorkAmount(time_cost=0.5, completable_boost=0.0)
+        scores = scorer.score(candidates(three_orders), three_orders.rng)
+        assert scores.tolist() == [-3.5, -5.5, -3.5]
+
+    def test_nearest_by_time_and_by_distance(self, three_orders) -> None:
+        """By time as above; by distance sqrt(x^2 + 4) + sqrt(x^2 + 100)."""
+        found = candidates(three_orders)
+        assert Nearest().score(found, three_orders.rng).tolist() == [-13.0, -15.0, -17.0]
+        x = np.arange(3)
+        expected = -(np.sqrt(x**2 + 4) + np.sqrt(x**2 + 100))
+        scores = Nearest(metric="distance").score(found, three_orders.rng)
+        assert np.allclose(scores, expected)
+
+    def test_narrowing_keeps_what_was_counted(self, three_orders) -> None:
+        found = candidates(three_orders)
+        found.completed()
+        kept = found.narrowed(np.array([0, 2]))
+        assert kept.pods.tolist() == [0, 2]
+        assert kept.completed()[0].tolist() == [1, 3]
+        assert kept.servable_units().tolist() == [3, 5]
+
+    def test_bundles(self, situation) -> None:
+        for pod in (3, 3, 2):
+            situation.waiting_bundle(pod, station=1)
+        view = situation.view
+        found = replenishment_candidates(view, view.robots[0], view.replenishment_stations[0])
+        assert BundleWorkAmount().score(found, situation.rng).tolist() == [1.0, 2.0]
+
+
+class TestLexicographic:
+    def choose(self, situation, **parameters) -> int:
+        controller = situation.make(Lexicographic, **parameters)
+        return controller.pick_pod(situation.world.robots[0], situation.world.pick_stations[0])
+
+    def test_the_second_scorer_decides_among_equals_of_the_first(self, situation) -> None:
+        """Pods 0 and 2 complete one order each, pod 1 none; pod 2 serves a unit more.
+
+        Order 0 wants 1 of SKU 0, order 1 wants 2 of SKU 1. Pod 2 has one of each: 1 completed, 2
+        units. Way: 13 s to pod 0, 17 s to pod 2. Work amount: 1 + 1 - 13/3 = -2.33 against 2 + 1 -
+        17/3 = -2.67: pod 0. With travel for nothing: 2 against 3, pod 2.
+        """
+        situation.stock(0, s0=1)
+        situation.stock(1, s1=1)
+        situation.stock(2, s0=1, s1=1)
+        situation.assigned(s0=1)
+        situation.assigned(s1=2)
+        assert self.choose(situation) == 0
+        free = {"scorer": "work-amount", "time_cost": 0.0}
+        assert self.choose(situation, pick_pod=("completeable", free)) == 2
+
+    def test_the_first_scorer_outweighs_all_others(self, situation) -> None:
+        """Pod 5 completes one order of one unit, pod 0 gives five units of another: pod 5."""
+        situation.stock(0, s1=5)
+        situation.stock(5, s0=1)
+        situation.assigned(s0=1)
+        situation.assigned(s1=6)
+        assert self.choose(situation) == 5
+
+    def test_full_ties_go_to_the_first_pod(self, situation) -> None:
+        for pod in (1, 3):
+            situation.stock(pod, s0=1)
+        situation.assigned(s0=1)
+        assert self.choose(situation, pick_pod=("completeable",)) == 1
+
+    def test_nothing_to_choose_from(self, situation) -> None:
+        situation.assigned(s0=1)
+        assert self.choose(situation) == -1
+
+    def test_replenishment_takes_most_bundles_then_the_nearest(self, situation) -> None:
+        """Two bundles each for pods 1 and 4, one for pod 0.
+
+        Robot (0, 2) - pod - station (5, 10): for pod 1 sqrt(5) + sqrt(116) = 13.01, for pod 4
+        sqrt(20) + sqrt(101) = 14.52.
+        """
+        for pod in (0, 1, 1, 4, 4):
+            situation.waiting_bundle(pod, station=1)
+        controller = situation.make(Lexicographic)
+        robot, station = situation.world.robots[0], situation.world.replenishment_stations[0]
+        assert controller.replenishment_pod(robot, station) == 1
+
+    def test_the_next_station_is_the_one_with_most_work_then_the_nearest(self) -> None:
+        """Stations 0, 1 and 2 at x = 0, 10, 20. Pod 0 finds 1, 2 and 2 units; 1 is nearer than 2."""
+        situation = Situation(small_layout(pick_stations=3))
+        situation.stock(0, s0=9)
+        situation.assigned(station=0, s1=1)
+        situation.stock(0, s1=1)
+        situation.carry(robot=0, pod=0)
+        for station, units in ((0, 1), (1, 2), (2, 2)):
+            situation.assigned(station, s0=units)
+        controller = situation.make(Lexicographic)
+        assert controller.next_station(situation.world.robots[0], [0, 1, 2]) == 1
+
+
+def test_random_takes_any_pod_with_work(situation) -> None:
+    for pod in (1, 3, 4):
+        situation.stock(pod, s0=1)
+    situation.stock(2, s1=1)
+    situation.assigned(s0=1)
+    controller = situation.make(RandomPod)
+    robot, station = situation.world.robots[0], situation.world.pick_stations[0]
+    assert {controller.pick_pod(robot, station) for _ in range(60)} == {1, 3, 4}
