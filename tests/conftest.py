@@ -1,1 +1,1 @@
-"""Makes `doubles` and `ledger`, beside this file, importable from the tests in the folders below."""
+"""Makes `doubles` and `ledger`, beside this file, importable from the tests in all folders."""

@@ -43,7 +43,7 @@ def small_layout(
     unit_pick_s: float = 3.0,
     bundle_transfer_s: float = 10.0,
 ) -> Layout:
-    """Places on y = 0 from x = 0 on, pods on the first of them, robots on y = 2, stations on y = 10.
+    """Places on y = 0 from x = 0 on, pods on the first, robots on y = 2, stations on y = 10.
 
     Waypoints: places first, then the robots' starts, then the pick stations (x = 0, 10, ...), then
     the replenishment stations (x = 5, 15, ...). There are no edges: for `FreeTraffic` only.
@@ -255,9 +255,7 @@ class Situation:
         """Let an order join the backlog."""
         skus = tuple(int(sku[1:]) for sku in units)
         now_s = self.world.now_s
-        order = Order.of(
-            self.world.orders_created, now_s, due_s, skus, tuple(units.values())
-        )
+        order = Order.of(self.world.orders_created, now_s, due_s, skus, tuple(units.values()))
         self.world.add_order(order)
         return order
 

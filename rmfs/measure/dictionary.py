@@ -169,7 +169,13 @@ FOOTPRINT = (
         "where it did not run",
     ),
     Column("decisions", INTEGER, "decisions", "Decisions given by all controllers"),
-    Column("decision_wall_s", REAL, "s", "Wall time spent in controllers", measured=True),
+    Column(
+        "decision_wall_s",
+        REAL,
+        "s",
+        "Wall time spent in controllers, also where they came to no decision",
+        measured=True,
+    ),
     Column("optimiser_calls", INTEGER, "calls", "Decision problems handed to an optimiser"),
     Column(
         "optimiser_gap_mean",
@@ -384,7 +390,12 @@ HEAT = (
 )
 
 DECISIONS = (
-    Column("time_s", REAL, "s", "When the controller was asked, since the start of the run"),
+    Column(
+        "time_s",
+        REAL,
+        "s",
+        "When a controller was asked that came to a decision, since the start of the run",
+    ),
     Column("problem", TEXT, "", "Decision problem: roa, poa, rps, pps, psa, ta, sa, mm"),
     Column("decisions", INTEGER, "decisions", "Decisions given"),
     Column("wall_s", REAL, "s", "Wall time it took", measured=True),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import shutil
 import tempfile
 from contextlib import contextmanager
@@ -77,11 +78,22 @@ def fill(
         tables["footprint"].to_csv(folder / "footprint.csv", index=False, lineterminator="\n")
         if trace:
             _write_table(folder / TRACE, pd.DataFrame(run.trace))
-        parameters = {"format": FORMAT, **describe(run, report, inputs)}
-        text = json.dumps(parameters, indent=2, ensure_ascii=False, allow_nan=False)
+        parameters = plain({"format": FORMAT, **describe(run, report, inputs)})
+        text = json.dumps(parameters, indent=2, ensure_ascii=False, allow_nan=False, default=str)
         (folder / PARAMETERS).write_text(text + "\n", encoding="utf-8")
     except OSError as error:
         raise InputError(f"{folder}: cannot be written ({error.strerror or error})") from None
+
+
+def plain(value: Any) -> Any:
+    """Return a value as JSON can say it: infinite and missing numbers become words."""
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value
 
 
 def _write_table(path: Path, frame: pd.DataFrame) -> None:

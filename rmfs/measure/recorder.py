@@ -25,18 +25,18 @@ if TYPE_CHECKING:
 
 
 class Calls:
-    """Calls of controllers, column by column: a long run has millions.
+    """Calls of controllers that came to a decision, column by column: a long run has millions.
 
     Attributes
     ----------
-    problems
-        Names of the problems, in the order in which they first occurred.
+    number
+        A number for each problem, in the order in which they first occurred.
     time_s, problem, decisions, wall_s
-        One entry per call; `problem` is an index into `problems`.
+        One entry per call; `problem` holds the problem's number.
     """
 
     def __init__(self) -> None:
-        self.problems: list[str] = []
+        self.number: dict[str, int] = {}
         self.time_s = array("d")
         self.problem = array("b")
         self.decisions = array("i")
@@ -44,10 +44,8 @@ class Calls:
 
     def add(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
         """Write a call down."""
-        if problem not in self.problems:
-            self.problems.append(problem)
         self.time_s.append(time_s)
-        self.problem.append(self.problems.index(problem))
+        self.problem.append(self.number.setdefault(problem, len(self.number)))
         self.decisions.append(decisions)
         self.wall_s.append(wall_s)
 
@@ -80,7 +78,9 @@ class Recorder(Observer):
     lifts
         Pods lifted: time, pod, robot.
     calls
-        Controllers asked.
+        Controllers asked that came to a decision.
+    idle_wall_s
+        Wall time of the calls since the warm-up that came to none.
     activations
         Stations switched: time, station, active.
     samples
@@ -103,6 +103,7 @@ class Recorder(Observer):
         self.tasks: list[tuple[float, int, str]] = []
         self.lifts: list[tuple[float, int, int]] = []
         self.calls = Calls()
+        self.idle_wall_s = 0.0
         self.activations: list[tuple[float, int, bool]] = []
         self.samples: list[tuple[float, dict[str, float]]] = []
         self.stored_space_start = 0.0
@@ -127,6 +128,7 @@ class Recorder(Observer):
     def warmup_ended(self, time_s: float) -> None:
         """Begin to measure."""
         self.start_s = time_s
+        self.idle_wall_s = 0.0
         self._redraws_before = self.world.order_redraws
 
     def run_ended(self, time_s: float) -> None:
@@ -205,7 +207,10 @@ class Recorder(Observer):
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
         """Write the call down."""
-        self.calls.add(problem, time_s, wall_s, decisions)
+        if decisions:
+            self.calls.add(problem, time_s, wall_s, decisions)
+        else:
+            self.idle_wall_s += wall_s
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
         """Write the switch down."""

@@ -149,6 +149,7 @@ class Dispatch:
         robot.waypoint = world.stations[robot.task.station].waypoint
         robot.tier = self._tier[robot.waypoint]
         self._simulation.observers.pod_lifted(world.now_s, pod, index, place)
+        self._simulation.late_binding.pod_lifted(pod)
         self._simulation.phase.signal(Trigger.POD_LIFTED, pod)
 
     def at_head(self, index: int, station: int) -> None:

@@ -54,7 +54,7 @@ class Panel:
         return self._installed[problem]
 
     def install(self, choice: Choice) -> None:
-        """Exchange the controller of a problem; the caller raises `Trigger.START` for it."""
+        """Exchange the controller of a problem."""
         self._create(choice)
         self._connect()
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from rmfs.control.pps import PodSelection
     from rmfs.control.psa import PodStorageAssignment
-    from rmfs.control.settings import ControllerSettings
+    from rmfs.control.settings import Choice, ControllerSettings
     from rmfs.simulation.simulation import Simulation
     from rmfs.world.orders import Bundle
     from rmfs.world.robots import Robot
@@ -83,10 +83,21 @@ class DecisionPhase:
             say.Park: dispatch.park,
             say.Rest: dispatch.rest,
         }
-        self.connect()
+        self._connect()
 
-    def connect(self) -> None:
-        """Take note of who is asked after which trigger; again after an exchange."""
+    def exchange(self, choice: Choice) -> None:
+        """Install another controller for a problem; it is asked in the phase of this instant."""
+        problem = choice.problem
+        self._panel.install(choice)
+        self._connect()
+        if problem in self.statistics:
+            self.statistics[problem].name = choice.name
+        if problem in self._step_of:
+            self._overdue.add(problem)
+            self._due |= 1 << self._step_of[problem]
+
+    def _connect(self) -> None:
+        """Take note of who is asked after which trigger."""
         step_of = self._step_of
         self._masks = []
         for trigger in Trigger:

@@ -107,7 +107,7 @@ class TestPodMatch:
 class TestFastLane:
     @pytest.fixture
     def served(self, situation) -> Situation:
-        """Pod 0 stands at station 0, ten units of SKU 0 less one that is bound; one slot is free."""
+        """Pod 0 stands at station 0 with ten units of SKU 0, one of them bound; a slot is free."""
         situation.stock(0, s1=1)
         situation.assigned(s0=1)
         for _ in range(2):
@@ -116,7 +116,7 @@ class TestFastLane:
         return situation
 
     def test_the_pod_at_the_station_takes_an_order_it_completes(self, served) -> None:
-        """Order 3 needs pod 2 as well; orders 4 and 5 fit, 5 is due first and gets the last slot."""
+        """Order 3 needs pod 2 as well; 4 and 5 fit, 5 is due first and gets the last slot."""
         served.world.pick_stations[1].active = False
         served.order(due_s=1.0, s0=1, s2=1)
         served.order(due_s=90.0, s0=1, s1=1)

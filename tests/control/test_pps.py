@@ -167,7 +167,7 @@ class TestLexicographic:
         assert controller.replenishment_pod(robot, station) == 1
 
     def test_the_next_station_is_the_one_with_most_work_then_the_nearest(self) -> None:
-        """Stations 0, 1 and 2 at x = 0, 10, 20. Pod 0 finds 1, 2 and 2 units; 1 is nearer than 2."""
+        """Stations at x = 0, 10, 20. Pod 0 finds 1, 2 and 2 units; station 1 is nearer than 2."""
         situation = Situation(small_layout(pick_stations=3))
         situation.stock(0, s0=9)
         situation.assigned(station=0, s1=1)

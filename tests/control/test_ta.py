@@ -97,7 +97,7 @@ class TestNumbers:
 
 @pytest.fixture
 def situation() -> Situation:
-    """One pick station (0), one replenishment station (1), three robots, four pods at x = 0 to 3."""
+    """One pick station (0), one replenishment station (1), three robots, pods at x = 0 to 3."""
     return Situation(small_layout(places=8, pods=4, robots=3, pick_stations=1))
 
 
@@ -153,10 +153,10 @@ def test_pps_is_asked_once_for_each_change(situation) -> None:
 def test_a_resting_robot_is_given_work_that_appears(situation) -> None:
     controller = balanced(situation, [0, -1, -1])
     decide(situation, controller, Answers())
-    situation.stock(1, s0=1)
+    situation.stock(0, s0=1)
     situation.assigned(s0=1)
-    made = decide(situation, controller, Answers(pods={0: 1}))
-    assert made == [BringForPicks(situation.world.robots[0], 1, 0)]
+    made = decide(situation, controller, Answers(pods={0: 0}))
+    assert made == [BringForPicks(situation.world.robots[0], 0, 0)]
 
 
 def test_an_idle_robot_beneath_the_pod_gets_the_job(situation) -> None:

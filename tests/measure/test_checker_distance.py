@@ -32,7 +32,7 @@ def sampled(one: Pieces, other: Pieces, count: int = 4001) -> np.ndarray:
 
 
 @given(motions(), motions(), st.floats(0.1, 5.0))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=200, deadline=None)
 def test_verdict_agrees_with_dense_sampling(one, other, limit):
     if max(one.t0_s[0], other.t0_s[0]) >= min(one.t1_s[0], other.t1_s[0]):
         other = Pieces(other.row, one.t0_s, one.t1_s, *(getattr(other, n) for n in _REST))
@@ -50,7 +50,7 @@ _REST = ("x_m", "y_m", "vx", "vy", "hx", "hy")
 
 
 @given(motions(), motions())
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=200, deadline=None)
 def test_minimum_is_reached_and_not_undercut(one, other):
     other = Pieces(other.row, one.t0_s, one.t1_s, *(getattr(other, n) for n in _REST))
     _, _, power = squared_distance(one, other)

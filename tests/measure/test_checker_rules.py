@@ -338,3 +338,22 @@ def test_an_endless_hold_is_one_row():
     assert trace["kind"].tolist() == [HOLD, HOLD]
     assert check(layout, trace).ok
     assert math.isclose(trace["t1_us"][0], 3.6e9)
+
+
+def test_a_trace_without_rows_misses_every_robot():
+    layout = grid(3, 1, [0, 2])
+    report = check(layout, Script(layout).columns(0.0), until_us=7_000_000)
+    assert [finding.robots for finding in report.findings] == [(0,), (1,)]
+    assert kinds(report) == {FindingKind.GAP}
+
+
+def test_the_hall_may_lie_anywhere():
+    """Negative coordinates and a late begin change nothing."""
+    for shift, late in [(0.0, 0), (-1000.0, 86_400_000_000)]:
+        layout = grid(9, 1, [0, 8])
+        layout.x_m[:] += shift
+        trace = drive(layout, lambda r: r.run(8), lambda r: r.run(0))
+        trace["t0_us"] += late
+        trace["t1_us"] += late
+        (finding,) = check(layout, trace).of(FindingKind.ROBOTS_OVERLAP)
+        assert finding.amount == pytest.approx(0.7, abs=1e-6)

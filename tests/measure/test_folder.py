@@ -12,7 +12,7 @@ from rmfs.errors import InputError
 from rmfs.measure import load_run, write_run
 from rmfs.measure.checker import CheckReport
 from rmfs.measure.dictionary import TABLES
-from rmfs.measure.folder import reserved
+from rmfs.measure.folder import plain, reserved
 
 
 @pytest.fixture(scope="module")
@@ -211,3 +211,8 @@ def test_description_is_json_without_surprises(written):
     text = (written / "run.json").read_text()
     assert "NaN" not in text
     assert json.loads(text)["machine"]["cores"] >= 1
+
+
+def test_infinite_numbers_become_words():
+    told = plain({"a": [1.5, float("inf")], "b": (float("nan"), "x", None)})
+    assert json.dumps(told, allow_nan=False) == '{"a": [1.5, "inf"], "b": ["nan", "x", null]}'

@@ -47,7 +47,7 @@ def test_late_units_are_marked(situation) -> None:
 
 
 def test_uncommitted_stock_counts_each_unit_once(situation) -> None:
-    """6 units of SKU 0: 2 wanted in the backlog, 1 open, 1 bound leave 2; picking changes nothing."""
+    """6 units of SKU 0, 2 wanted in the backlog, 1 open, 1 bound: 2 left, also after the pick."""
     world = situation.world
     situation.order(s0=2)
     situation.assigned(s0=1)

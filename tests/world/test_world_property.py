@@ -1,4 +1,4 @@
-"""Random operations on a world, compared with a model that keeps every unit as a thing of its own."""
+"""Random operations on a world, compared with a model of dictionaries and loops."""
 
 from __future__ import annotations
 
@@ -106,9 +106,7 @@ class WorldMachine(RuleBasedStateMachine):
             return
         used = [sum(1.5 * self.naive.on_pod[s, p] for s in range(SKUS)) for p in range(PODS)]
         fits = [
-            pod
-            for pod in range(PODS)
-            if used[pod] + self.naive.promised[pod] + bundle.space <= 40
+            pod for pod in range(PODS) if used[pod] + self.naive.promised[pod] + bundle.space <= 40
         ]
         pod = self.any_of(fits)
         if pod is not None:

@@ -26,6 +26,9 @@ ROUNDS = 40
 """Halvings before an interval counts as touching the limit, not violating it: it is then 1e-12 of
 the motion, over which the squared distance changes less than rounding does."""
 
+EXACT = 1e-12
+"""Squared distances closer than this, in m², are the same."""
+
 _TO_BERNSTEIN = np.array(
     [
         [1, 0, 0, 0, 0],
@@ -109,18 +112,30 @@ def _halved(b: Floats) -> tuple[Floats, Floats]:
 def minimum(power: Floats) -> tuple[Floats, Floats]:
     """Return where on [0, 1] each polynomial is least, and its value there.
 
-    Meant for the few pairs that violate a limit: the derivative's roots are found one by one.
+    By the same bounds: halves that cannot hold less than what is known already are dropped.
 
     Returns
     -------
     tuple
-        Arguments and values, each of shape (K,).
+        Arguments and values, each of shape (K,); values are exact to 1e-12.
     """
-    where, value = np.zeros(len(power)), np.zeros(len(power))
-    for k, coefficients in enumerate(power[:, ::-1]):
-        roots = np.roots(np.polyder(coefficients))
-        inside = roots.real[(np.abs(roots.imag) < 1e-6) & (roots.real > 0) & (roots.real < 1)]
-        candidates = np.concatenate([[0.0, 1.0], inside])
-        values = np.polyval(coefficients, candidates)
-        where[k], value[k] = candidates[np.argmin(values)], values.min()
+    where, value = np.zeros(len(power)), np.full(len(power), np.inf)
+    which: Index = np.arange(len(power))
+    begin, width = np.zeros(len(power)), 1.0
+    coefficients = power @ _TO_BERNSTEIN.T
+    for _ in range(ROUNDS):
+        for at_end, argument in ((0, begin), (4, begin + width)):
+            reached = coefficients[:, at_end]
+            # of several halves of one polynomial the least is assigned last
+            order = np.argsort(-reached, kind="stable")
+            better = order[reached[order] < value[which[order]]]
+            where[which[better]], value[which[better]] = argument[better], reached[better]
+        open_ = coefficients.min(axis=1) < value[which] - EXACT
+        if not open_.any():
+            break
+        left, right = _halved(coefficients[open_])
+        width /= 2
+        coefficients = np.concatenate([left, right])
+        which = np.concatenate([which[open_], which[open_]])
+        begin = np.concatenate([begin[open_], begin[open_] + width])
     return where, value

@@ -9,7 +9,7 @@ import numpy as np
 from .distance import below, minimum, squared_distance
 from .episodes import worst
 from .report import Finding, FindingKind
-from .sweep import boxes, close_pairs
+from .sweep import close_pairs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,7 +49,7 @@ def check(
     nothing = np.zeros(0, np.int64)
     hits: list[tuple[Index, Index]] = [(nothing, nothing)]
     examined = 0
-    for one, other in close_pairs(boxes(pieces, radius, tier), robot):
+    for one, other in close_pairs(pieces, radius, tier, robot):
         limit = (radius[one] + radius[other] - TOLERANCE_M) ** 2
         _, _, power = squared_distance(pieces.take(one), pieces.take(other))
         hit = below(power, limit)

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 SLAB_S = 2.0
 """Length of a time slab: about the length of a motion, so that few motions span many."""
 
-BOXES_AT_ONCE = 100_000
-"""How many boxes are swept together: bounds the memory, some 200 MB at worst."""
+BOXES_AT_ONCE = 50_000
+"""About how many boxes are made and swept together: bounds the memory whatever the run's length."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,71 +54,85 @@ class Boxes:
         """Return the number of boxes."""
         return len(self.piece)
 
-    def take(self, index: Index | slice) -> Boxes:
+    def take(self, index: Index) -> Boxes:
         """Return the chosen boxes."""
         return Boxes(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
 
 
-def boxes(pieces: Pieces, radius_m: Floats, tier: Index) -> Boxes:
-    """Cut each piece at the slab borders and bound what is left, grown by its radius.
-
-    A piece drives along a line and never turns back, so its ends bound it.
-    """
-    first = np.floor(pieces.t0_s / SLAB_S).astype(np.int64)
-    last = np.maximum(np.ceil(pieces.t1_s / SLAB_S).astype(np.int64), first + 1)
-    count = last - first
-    piece = np.repeat(np.arange(len(pieces)), count)
-    slab = np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count) + first[piece]
-    whole = pieces.take(piece)
-    begin = np.maximum(whole.t0_s, slab * SLAB_S)
-    end = np.minimum(whole.t1_s, (slab + 1) * SLAB_S)
-    xa, ya = whole.at(begin)
-    xb, yb = whole.at(end)
-    grow = radius_m[piece]
-    tiers = int(tier.max(initial=0)) + 1
-    return Boxes(
-        piece,
-        slab * tiers + tier[piece],
-        begin,
-        end,
-        np.minimum(xa, xb) - grow,
-        np.maximum(xa, xb) + grow,
-        np.minimum(ya, yb) - grow,
-        np.maximum(ya, yb) + grow,
-    )
-
-
-def close_pairs(all_boxes: Boxes, robot: Index) -> Iterator[tuple[Index, Index]]:
+def close_pairs(
+    pieces: Pieces, radius_m: Floats, tier: Index, robot: Index
+) -> Iterator[tuple[Index, Index]]:
     """Yield pairs of pieces of different robots whose boxes overlap in time and space.
 
     Parameters
     ----------
-    robot
-        Robot of each piece.
+    radius_m, tier, robot
+        What each piece keeps clear around it, where it is, and whose it is, shape (K,).
 
     Yields
     ------
     tuple
         Indices of the first and second pieces of a batch of pairs, without repetition in a batch.
     """
-    order = np.lexsort((all_boxes.x0_m, all_boxes.lane))
-    ordered = all_boxes.take(order)
-    for begin, end in _batches(ordered.lane):
-        yield _sweep(ordered.take(slice(begin, end)), robot)
+    for begin, end in _windows(pieces, int(robot.max(initial=0)) + 1):
+        within = (pieces.t0_s < end * SLAB_S) & (pieces.t1_s > begin * SLAB_S)
+        index = np.flatnonzero(within)
+        made = boxes(pieces.take(index), radius_m[index], tier[index], begin, end)
+        one, other = _sweep(made, robot[index])
+        yield index[one], index[other]
 
 
-def _batches(lane: Index) -> Iterator[tuple[int, int]]:
-    """Cut sorted lanes into stretches of whole lanes of about `BOXES_AT_ONCE` boxes."""
-    begin = 0
-    while begin < len(lane):
-        reach = min(begin + BOXES_AT_ONCE, len(lane))
-        end = int(np.searchsorted(lane, lane[reach - 1], side="right"))
-        yield begin, end
-        begin = end
+def _windows(pieces: Pieces, robots: int) -> Iterator[tuple[int, int]]:
+    """Cut the run into stretches of slabs that hold about `BOXES_AT_ONCE` boxes each."""
+    if not len(pieces):
+        return
+    first = int(np.floor(pieces.t0_s.min() / SLAB_S))
+    last = int(np.ceil(pieces.t1_s.max() / SLAB_S))
+    # every robot has a box in every slab, and one more wherever a piece begins
+    per_slab = robots + len(pieces) / (last - first)
+    step = max(1, int(BOXES_AT_ONCE / per_slab))
+    for begin in range(first, last, step):
+        yield begin, min(begin + step, last)
+
+
+def boxes(pieces: Pieces, radius_m: Floats, tier: Index, begin: int, end: int) -> Boxes:
+    """Cut each piece at the slab borders and bound what is left, grown by its radius.
+
+    A piece drives along a line and never turns back, so its ends bound it.
+
+    Parameters
+    ----------
+    begin, end
+        The slabs wanted, `end` excluded.
+    """
+    first = np.maximum(np.floor(pieces.t0_s / SLAB_S).astype(np.int64), begin)
+    last = np.minimum(np.ceil(pieces.t1_s / SLAB_S).astype(np.int64), end)
+    count = np.maximum(last - first, 0)
+    piece = np.repeat(np.arange(len(pieces)), count)
+    slab = np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count) + first[piece]
+    whole = pieces.take(piece)
+    t0 = np.maximum(whole.t0_s, slab * SLAB_S)
+    t1 = np.minimum(whole.t1_s, (slab + 1) * SLAB_S)
+    xa, ya = whole.at(t0)
+    xb, yb = whole.at(t1)
+    grow = radius_m[piece]
+    made = Boxes(
+        piece,
+        slab * (int(tier.max(initial=0)) + 1) + tier[piece],
+        t0,
+        t1,
+        np.minimum(xa, xb) - grow,
+        np.maximum(xa, xb) + grow,
+        np.minimum(ya, yb) - grow,
+        np.maximum(ya, yb) + grow,
+    )
+    return made.take(np.lexsort((made.x0_m, made.lane)))
 
 
 def _sweep(part: Boxes, robot: Index) -> tuple[Index, Index]:
     """Find the overlapping boxes of one batch, sorted by lane and left border."""
+    if not len(part):
+        return part.piece, part.piece
     # lanes are laid side by side, further apart than the hall is wide
     width = float(part.x1_m.max() - part.x0_m.min()) + 1.0
     shift = (part.lane - part.lane[0]) * width

@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 
 def decisions(logs: Logs) -> pd.DataFrame:
-    """One row per call of a controller, whether it came to a decision or not."""
+    """One row per call of a controller that came to a decision."""
     calls = logs.recorder.calls
     time_s = np.array(calls.time_s)
     now = time_s >= logs.start_s
-    names = np.array(calls.problems or [""])
+    names = np.array([*calls.number, ""])
     return tidy(
         "decisions",
         {

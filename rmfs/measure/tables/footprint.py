@@ -40,6 +40,14 @@ class Measured(Protocol):
         """Seed of the run."""
 
     @property
+    def warmup_s(self) -> float:
+        """Simulated time before the measured time."""
+
+    @property
+    def duration_s(self) -> float:
+        """Measured time."""
+
+    @property
     def recorder(self) -> Recorder:
         """What was written down."""
 
@@ -71,7 +79,7 @@ def footprint(
         **_times(logs, tables["orders"]),
         **_levels(logs),
         **_planning(logs, report),
-        **_decisions(tables["decisions"]),
+        **_decisions(logs, tables["decisions"]),
         **_machine(run, logs),
     }
     return tidy("footprint", {name: [value] for name, value in columns.items()})
@@ -88,8 +96,8 @@ def _heading(run: Measured, logs: Logs) -> dict[str, Any]:
     return {
         **names,
         "seed": run.seed,
-        "warmup_s": logs.start_s,
-        "duration_s": logs.duration_s,
+        "warmup_s": run.warmup_s,
+        "duration_s": run.duration_s,
         "tiers": len(layout.tiers),
         "robots": layout.robots,
         "pods": layout.pods,
@@ -211,10 +219,10 @@ def _planning(logs: Logs, report: CheckReport | None) -> dict[str, Any]:
     }
 
 
-def _decisions(decisions: pd.DataFrame) -> dict[str, Any]:
+def _decisions(logs: Logs, decisions: pd.DataFrame) -> dict[str, Any]:
     return {
         "decisions": int(decisions["decisions"].sum()),
-        "decision_wall_s": float(decisions["wall_s"].sum()),
+        "decision_wall_s": float(decisions["wall_s"].sum()) + logs.recorder.idle_wall_s,
         "optimiser_calls": 0,
         "optimiser_gap_mean": NOTHING,
         "paced_s": 0.0,

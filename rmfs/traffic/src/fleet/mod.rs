@@ -146,12 +146,13 @@ impl Fleet {
     /// Replaces what is left of a robot's program; a moving robot goes on to its next stop first.
     ///
     /// # Errors
-    /// If the robot is lifting or setting down, or the program starts with that away from rest.
+    /// If a waypoint or station does not exist, the robot is lifting or setting down, or the program starts with that away from rest.
     pub fn command(&mut self, robot: u32, program: &[Step]) -> Result<(), String> {
         let state = &self.robots[robot as usize];
         if state.phase == Phase::Transferring {
             return Err(format!("robot {robot} is lifting or setting down a pod"));
         }
+        program.iter().try_for_each(|&step| self.exists(step))?;
         self.settle(robot);
         let state = &mut self.robots[robot as usize];
         if !state.moves.is_empty()
@@ -162,6 +163,18 @@ impl Fleet {
         state.program = VecDeque::from(program.to_vec());
         self.begin(robot);
         Ok(())
+    }
+
+    fn exists(&self, step: Step) -> Result<(), String> {
+        match step {
+            Step::Drive(waypoint) if waypoint as usize >= self.network.nodes => {
+                Err(format!("no waypoint {waypoint}"))
+            }
+            Step::Station(station) if station as usize >= self.network.stations.len() => {
+                Err(format!("no station {station}"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Advances to the first time not after `until` at which something happens, or to `until`.

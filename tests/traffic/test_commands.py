@@ -1,0 +1,129 @@
+import numpy as np
+import pytest
+
+from rmfs.layout import load
+from rmfs.traffic import EventKind, Step, Traffic
+
+
+@pytest.fixture
+def layout():
+    return load("default", [(["robots"], 4)])
+
+
+def events_until(traffic, until_s):
+    events = []
+    while traffic.now_us < until_s * 1e6:
+        events += traffic.advance(round(until_s * 1e6))
+    return events
+
+
+def test_a_whole_task(layout):
+    """Fetch, lift, deliver, come back, set down: the events in their order."""
+    traffic = Traffic(layout)
+    place = int(layout.pod_waypoint[7])
+    traffic.command(0, [(Step.DRIVE, place), (Step.LIFT, 7), (Step.STATION, 1)])
+    kinds = [EventKind(kind) for _, kind, _, _ in events_until(traffic, 400)]
+    assert kinds == [
+        EventKind.ARRIVED,
+        EventKind.LIFT_STARTED,
+        EventKind.DEPARTED,
+        EventKind.LIFTED,
+        EventKind.AT_HEAD,
+    ]
+    traffic.command(0, [(Step.DRIVE, place), (Step.SET_DOWN, 7)])
+    kinds = [EventKind(kind) for _, kind, _, _ in events_until(traffic, 800)]
+    assert kinds == [
+        EventKind.ARRIVED,
+        EventKind.SET_DOWN_STARTED,
+        EventKind.SET_DOWN,
+        EventKind.IDLE,
+    ]
+
+
+def test_lifting_takes_its_time(layout):
+    traffic = Traffic(layout)
+    place = int(layout.pod_waypoint[3])
+    traffic.command(0, [(Step.DRIVE, place), (Step.LIFT, 3)])
+    times = {kind: time for time, kind, _, _ in events_until(traffic, 300)}
+    transfer_us = round(layout.robot_kinds[0].pod_transfer_s * 1e6)
+    assert times[EventKind.LIFTED] - times[EventKind.LIFT_STARTED] == transfer_us
+
+
+def test_a_robot_on_its_way_can_be_sent_elsewhere(layout):
+    """It stops where it next can and turns to its new goal."""
+    traffic = Traffic(layout, record_trace=True)
+    first, second = layout.pod_waypoint[[10, 200]].tolist()
+    traffic.command(0, [(Step.DRIVE, first)])
+    traffic.advance(5_000_000)
+    traffic.command(0, [(Step.DRIVE, second)])
+    arrived = [
+        value for _, kind, _, value in events_until(traffic, 300) if kind == EventKind.ARRIVED
+    ]
+    assert arrived == [second]
+    assert traffic.rest_waypoint(0) == second
+
+
+def test_a_held_place_is_waited_for(layout):
+    """Robot 1 wants the place beneath which robot 0 rests: it goes as soon as robot 0 leaves."""
+    traffic = Traffic(layout)
+    place, other = layout.pod_waypoint[[10, 200]].tolist()
+    traffic.command(0, [(Step.DRIVE, place)])
+    events_until(traffic, 200)
+    traffic.command(1, [(Step.DRIVE, place)])
+    events_until(traffic, 400)
+    assert traffic.blocked() == [1]
+    traffic.command(0, [(Step.DRIVE, other)])
+    events_until(traffic, 700)
+    assert traffic.blocked() == []
+    assert traffic.rest_waypoint(1) == place
+
+
+def test_no_command_while_lifting(layout):
+    traffic = Traffic(layout)
+    place = int(layout.pod_waypoint[3])
+    traffic.command(0, [(Step.DRIVE, place), (Step.LIFT, 3)])
+    while not any(kind == EventKind.LIFT_STARTED for _, kind, _, _ in traffic.advance(10**9)):
+        pass
+    with pytest.raises(ValueError, match="robot 0 is lifting"):
+        traffic.command(0, [(Step.DRIVE, place)])
+
+
+@pytest.mark.parametrize(
+    ("program", "message"), [([(9, 0)], "unknown step 9"), ([(0, 10**6)], "no waypoint 1000000")]
+)
+def test_bad_commands(layout, program, message):
+    with pytest.raises(ValueError, match=message):
+        Traffic(layout).command(0, program)
+
+
+def test_unhindered_times_are_met_without_traffic(layout):
+    """One robot alone takes exactly the unhindered time to a pod."""
+    traffic = Traffic(load("default", [(["robots"], 1)]))
+    for pod in (5, 100, 300):
+        traffic.command(0, [(Step.DRIVE, int(layout.pod_waypoint[pod]))])
+        events_until(traffic, traffic.now_us / 1e6 + 300)
+    trips = traffic.trips()
+    taken = (trips["t1_us"] - trips["t0_us"]) / 1e6
+    np.testing.assert_allclose(taken, trips["unhindered_s"], atol=1e-4)
+
+
+def test_travel_times(layout):
+    """Zero at home, more for loaded robots than for empty ones, which drive beneath pods."""
+    traffic = Traffic(layout)
+    place = int(layout.pod_waypoint[50])
+    empty, loaded = (traffic.travel_times_to(place, loaded) for loaded in (False, True))
+    assert empty[place] == loaded[place] == 0
+    reached = np.isfinite(loaded)
+    assert (loaded[reached] >= empty[reached] - 1e-9).all()
+    assert reached[layout.is_storage].all()
+
+
+def test_resetting_statistics(layout):
+    traffic = Traffic(layout)
+    traffic.command(0, [(Step.DRIVE, int(layout.pod_waypoint[50]))])
+    traffic.advance(4_000_000)
+    before = traffic.motion()["distance_m"][0]
+    traffic.reset_statistics()
+    assert before > 0
+    assert traffic.counters()["plans"] == 0
+    assert traffic.motion()["idle_s"].sum() == 0
