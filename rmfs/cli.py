@@ -32,7 +32,11 @@ SUB_COMMANDS = {
 """Module and help of each group of commands; its module is imported when it is called."""
 
 UNSAFE = 1
+"""Exit code where the checker finds a trace unsafe: a defect."""
+
 STALLED = 1
+"""Exit code where nothing can move any more: possible in layouts that are not well-formed."""
+
 WRONG_INPUT = 2
 INTERRUPTED = 130
 
@@ -93,7 +97,8 @@ def main(arguments: list[str] | None = None) -> int:
     except InputError as error:
         return _complain(str(error))
     except typer.TyperException as error:
-        return _complain(error.format_message())
+        # without a message, a group was called without a command and has shown its help
+        return _complain(error.format_message()) if error.format_message() else 0
     except (KeyboardInterrupt, typer.Abort):
         _complain("interrupted")
         return INTERRUPTED

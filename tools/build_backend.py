@@ -70,8 +70,8 @@ def get_requires_for_build_wheel(config_settings: Any = None) -> list[str]:
     if present is None or numbers(present) < numbers(needed):
         state = "none is on PATH" if present is None else f"the one on PATH is {present}"
         raise SystemExit(
-            f"rmfs is built with Rust {needed} or newer, and {state}: install it "
-            "(https://rustup.rs), or use `make setup` in a checkout, which brings its own"
+            f"rmfs is built with Rust {needed} or newer, and {state}: get one from "
+            "https://rustup.rs, or run `make setup` in a checkout, which brings its own"
         )
     return []
 

@@ -30,7 +30,8 @@ class Agenda:
     @property
     def next_us(self) -> int:
         """Time of the next entry, `NEVER_US` if there is none."""
-        self._drop_cancelled()
+        if self._cancelled:
+            self._drop_cancelled()
         return self._heap[0][0] if self._heap else NEVER_US
 
     def at(self, time_us: int, callback: Callable[[], None], priority: int = 0) -> int:
@@ -54,5 +55,5 @@ class Agenda:
                 callback()
 
     def _drop_cancelled(self) -> None:
-        while self._cancelled and self._heap and self._heap[0][2] in self._cancelled:
+        while self._heap and self._heap[0][2] in self._cancelled:
             self._cancelled.remove(heappop(self._heap)[2])

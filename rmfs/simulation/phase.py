@@ -8,6 +8,7 @@ from time import perf_counter_ns
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control import decisions as say
+from rmfs.control.base import Controller
 from rmfs.control.problems import Problem, Trigger
 from rmfs.simulation.statistics import DecisionStatistics
 
@@ -59,8 +60,9 @@ class DecisionPhase:
         self._panel = simulation.panel
         self._due = 0
         self._storage_version = simulation.world.storage.version
-        self._alarms: dict[Problem, tuple[float, int | None]] = {}
+        self._alarms: dict[Problem, tuple[float, int]] = {}
         self._overdue: set[Problem] = set()
+        self._punctual: set[Problem] = set()
         self._nested_ns = 0
         self.statistics: dict[Problem, DecisionStatistics] = {
             problem: DecisionStatistics(str(problem), choice.name)
@@ -89,6 +91,7 @@ class DecisionPhase:
         """Install another controller for a problem; it is asked in the phase of this instant."""
         problem = choice.problem
         self._panel.install(choice)
+        self._cancel_alarm(problem)
         self._connect()
         if problem in self.statistics:
             self.statistics[problem].name = choice.name
@@ -105,6 +108,11 @@ class DecisionPhase:
             mask |= (trigger in _SUPPLY_AFTER) << _SUPPLY
             mask |= (trigger in _LATE_BINDING_AFTER) << _LATE_BINDING
             self._masks.append(mask)
+        self._punctual = {
+            problem
+            for problem in step_of
+            if type(self._panel[problem]).next_event_s is not Controller.next_event_s
+        }
 
     # --- what is due ----------------------------------------------------------------------------
 
@@ -164,8 +172,10 @@ class DecisionPhase:
             start = perf_counter_ns()
         spent_ns += perf_counter_ns() - start - self._nested_ns
         self._record(problem, spent_ns, count)
-        self._overdue.discard(problem)
-        self._set_alarm(problem)
+        if self._overdue:
+            self._overdue.discard(problem)
+        if problem in self._punctual:
+            self._set_alarm(problem)
 
     def consulted(self, problem: Problem, wall_ns: int, decided: bool) -> None:
         """Take note that TA asked another controller."""
@@ -179,21 +189,24 @@ class DecisionPhase:
     # --- times at which controllers want to be asked ------------------------------------------
 
     def _set_alarm(self, problem: Problem) -> None:
+        """Enter, or change, the time at which a controller wants to be asked."""
         time_s = self._panel[problem].next_event_s()
         simulation = self._simulation
-        set_for_s, entry = self._alarms.get(problem, (inf, None))
-        if time_s == set_for_s:
+        if problem in self._alarms and self._alarms[problem][0] == time_s:
             return
-        if entry is not None:
-            simulation.agenda.cancel(entry)
-        entry = None
+        self._cancel_alarm(problem)
         if time_s < inf:
             # never at the present instant, or a controller could keep it from ending
             time_us = max(simulation.us_at(time_s), simulation.now_us + 1)
             entry = simulation.agenda.at(time_us, partial(self._alarm, problem))
-        self._alarms[problem] = (time_s, entry)
+            self._alarms[problem] = (time_s, entry)
+
+    def _cancel_alarm(self, problem: Problem) -> None:
+        if problem in self._alarms:
+            self._simulation.agenda.cancel(self._alarms.pop(problem)[1])
 
     def _alarm(self, problem: Problem) -> None:
+        """Let a controller be asked because its time has come."""
         del self._alarms[problem]
         self._overdue.add(problem)
         self._due |= 1 << self._step_of[problem]

@@ -134,8 +134,8 @@ class Simulation:
         agenda, phase, end_us = self.agenda, self.phase, self._end_us
         advance = self.traffic.advance
         while True:
-            until_us = min(agenda.next_us, end_us)
-            events = advance(min(until_us, self._pacing.limit_us(self.now_us)))
+            until_us = min(agenda.next_us, end_us, self._pacing.limit_us(self.now_us))
+            events = advance(until_us)
             if events:
                 self._set_now(events[0][0])
                 self._moved_us = self.now_us

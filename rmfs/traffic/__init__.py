@@ -14,8 +14,6 @@ import numpy as np
 from rmfs.traffic._core import Core, Motion
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
     from rmfs.layout.model import Layout

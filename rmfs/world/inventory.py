@@ -169,10 +169,6 @@ class Inventory:
         self._inbound[self._inbound_station[pod]] -= self._available[:, pod]
         self._inbound_station[pod] = -1
 
-    def inbound_station(self, pod: int) -> int:
-        """Pick station the pod is inbound to, or -1."""
-        return self._inbound_station[pod]
-
     def serves(self, pod: int, skus: list[int]) -> bool:
         """Whether a unit of any of these SKUs is available on the pod."""
         available = self._available.item

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from rmfs.layout.model import Layout
     from rmfs.scenario import SkuSet
-    from rmfs.world.orders import Bundle, Order, OrderLine
+    from rmfs.world.orders import Bundle, Order
 
 
 class World:
@@ -316,8 +316,3 @@ class World:
     def is_pick_station(self, station: int) -> bool:
         """Whether a station in the common numbering is a pick station."""
         return station < len(self.pick_stations)
-
-    def open_lines(self, station: int) -> list[OrderLine]:
-        """Lines with open requests at a pick station, by SKU in order of first request."""
-        lines = self.pick_stations[station].requests.lines
-        return [line for waiting in lines.values() for line in waiting]

@@ -153,7 +153,9 @@ def flags(field: str, value: ArrayLike, shape: Sequence[int | None]) -> NDArray[
     return checked
 
 
-def number(field: str, value: float, *, low: float | None = None, high: float | None = None) -> float:
+def number(
+    field: str, value: float, *, low: float | None = None, high: float | None = None
+) -> float:
     """Check one finite real parameter.
 
     Parameters

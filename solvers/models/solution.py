@@ -23,7 +23,7 @@ BOUND_TOLERANCE = 1e-6
 
 
 class WallGuardError(RuntimeError):
-    """A solver ran into its wall-clock guard; no result is returned, because it would not repeat."""
+    """A solver ran into its wall-clock guard: there is no result, because it would not repeat."""
 
 
 class Status(Enum):

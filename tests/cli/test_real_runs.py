@@ -138,10 +138,16 @@ def test_figures_can_be_worked_out_from_the_tables():
     assert footprint["distance_m"] == pytest.approx(series["distance_m"].sum())
     waiting = orders["assigned_s"].fillna(end).clip(begin, end) - orders["created_s"].clip(begin)
     assert footprint["backlog_orders_mean"] == pytest.approx(waiting.sum() / 300)
-    states = ["moving", "turning", "waiting", "served", "transfer", "riding", "idle"]
-    together = sum(robots[f"{state}_s"] for state in states)
+
+
+@pytest.mark.parametrize("warmup_s", [0, 100])
+def test_the_robots_times_add_up_to_the_measured_time(warmup_s):
+    assert main([*SHORT, "--set", f"scenario.warmup_s={warmup_s}", "--out", "run"]) == 0
+    run = load_run(Path("run"))
+    states = ("moving", "turning", "waiting", "served", "transfer", "riding", "idle")
+    together = sum(run.table("robots")[f"{state}_s"] for state in states)
     assert together.to_numpy() == pytest.approx(300.0)
-    assert (trips["distance_m"] >= 0).all()
+    assert (run.table("trips")["distance_m"] >= 0).all()
 
 
 def test_stock_at_the_end_is_what_the_world_holds():

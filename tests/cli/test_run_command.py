@@ -156,6 +156,14 @@ def test_without_a_command_help_is_shown(capsys):
     assert "Usage: rmfs" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("group", ["layout", "scenario", "controllers"])
+def test_a_group_without_a_command_shows_its_help(capsys, group):
+    assert main([group]) == 0
+    told = capsys.readouterr()
+    assert f"Usage: rmfs {group}" in told.out
+    assert told.err == ""
+
+
 def test_version(capsys):
     assert main(["--version"]) == 0
     assert capsys.readouterr().out.startswith("rmfs ")

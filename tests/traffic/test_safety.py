@@ -69,3 +69,17 @@ def test_totals_add_up():
     dy = layout.y_m[trace["to_wp"][runs]] - layout.y_m[trace["from_wp"][runs]]
     under_way = motion["distance_m"].sum() - (abs(dx) + abs(dy)).sum()
     assert 0 <= under_way < 60 * layout.robots
+
+
+@pytest.mark.parametrize("reset_s", [333, 457.25])
+def test_totals_after_a_reset(reset_s):
+    """Motion under way at the reset counts only with what comes after it."""
+    tasks = RandomTasks(load("default"), 1).run(reset_s)
+    before = tasks.traffic.motion()
+    tasks.traffic.reset_statistics()
+    assert all(abs(values).max() < 1e-9 for values in tasks.traffic.motion().values())
+    after = tasks.run(900).traffic.motion()
+    whole = RandomTasks(load("default"), 1).run(900).traffic.motion()
+    for name, values in whole.items():
+        assert abs(before[name] + after[name] - values).max() < 1e-6, name
+    assert (tasks.traffic.trips()["distance_m"] >= 0).all()

@@ -24,6 +24,8 @@ class _Visit:
 
     Attributes
     ----------
+    number
+        Which visit of the station it is.
     newest
         Index of the newest order looked at.
     fitting
@@ -31,7 +33,7 @@ class _Visit:
     """
 
     number: int
-    newest: int = -1
+    newest: int
     fitting: dict[int, Order] = field(default_factory=dict)
 
 
@@ -50,32 +52,41 @@ class FastLane:
     def __init__(self, view: View, rank: Callable[[Order], tuple[float, int]]) -> None:
         self._view = view
         self._rank = rank
-        self._visits = [_Visit(-1) for _ in view.pick_stations]
+        self._visits = [_Visit(-1, -1) for _ in view.pick_stations]
 
     def decide(self) -> Iterator[AssignOrder]:
         """Yield until no pod that is being served can complete an order."""
+        newest = next(reversed(self._view.orders.orders), -1)
         for station in self._view.pick_stations:
-            while station.active and station.robot >= 0 and station.free_slots > 0:
-                order = self._best(station)
+            if station.robot < 0 or not station.active:
+                continue
+            while station.free_slots > 0:
+                order = self._best(station, newest)
                 if order is None:
                     break
                 yield AssignOrder(order, station.index)
 
-    def _best(self, station: PickStation) -> Order | None:
+    def _best(self, station: PickStation, newest: int) -> Order | None:
         pod = self._view.robots[station.robot].pod
         visit = self._visits[station.index]
         if visit.number != station.visits:
-            visit = self._visits[station.index] = _Visit(station.visits)
+            visit = self._visits[station.index] = _Visit(station.visits, newest)
             self._look_at_all(visit, pod)
-        else:
+        elif visit.newest < newest:
             self._look_at_new(visit, pod)
+            visit.newest = newest
+        if not visit.fitting:
+            return None
+        self._forget_lost(visit, station.index, pod)
+        return min(visit.fitting.values(), key=self._rank, default=None)
+
+    def _forget_lost(self, visit: _Visit, station: int, pod: int) -> None:
+        """Forget orders that have gone elsewhere or that the pod can complete no more."""
         backlog = self._view.orders.orders
-        need = self._view.need[station.index].item
-        for index in list(visit.fitting):
-            order = visit.fitting[index]
+        need = self._view.need[station].item
+        for index, order in list(visit.fitting.items()):
             if index not in backlog or not self._completes(pod, order, need):
                 del visit.fitting[index]
-        return min(visit.fitting.values(), key=self._rank, default=None)
 
     def _look_at_all(self, visit: _Visit, pod: int) -> None:
         orders = self._view.orders
@@ -85,13 +96,11 @@ class FastLane:
         for row in fits.nonzero()[0].tolist():
             order = orders.at_row[row]
             visit.fitting[order.index] = order
-        visit.newest = next(reversed(orders.orders))
 
     def _look_at_new(self, visit: _Visit, pod: int) -> None:
         for order in self._view.orders.after(visit.newest):
             if self._completes(pod, order, None):
                 visit.fitting[order.index] = order
-            visit.newest = max(visit.newest, order.index)
 
     def _completes(self, pod: int, order: Order, need: Callable[[int], int] | None) -> bool:
         """Whether the pod has all units of the order to spare."""

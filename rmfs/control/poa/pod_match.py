@@ -59,7 +59,9 @@ class PodMatch(PickOrderAssignment[PodMatchParameters]):
     ) -> None:
         super().__init__(parameters, view, rng)
         self._lane = FastLane(view, self._order_key) if parameters.fast_lane else None
-        self._kept_slots = 1 if parameters.fast_lane else 0
+        self._kept_slots = [
+            int(parameters.fast_lane and station.slots > 1) for station in view.pick_stations
+        ]
 
     def decide(self) -> Iterator[AssignOrder]:
         """Yield orders for the fast lane first, then the best pairs while slots are free."""
@@ -69,7 +71,7 @@ class PodMatch(PickOrderAssignment[PodMatchParameters]):
             stations = [
                 station
                 for station in self.view.pick_stations
-                if station.active and station.free_slots > min(self._kept_slots, station.slots - 1)
+                if station.active and station.free_slots > self._kept_slots[station.index]
             ]
             best = self._best_pair(stations) if stations and len(self.view.orders) else None
             if best is None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING
 
 from rmfs.control.base import Parameters
@@ -42,22 +43,28 @@ class RandomStation(ReplenishmentOrderAssignment[RandomStationParameters]):
     def decide(self) -> Iterator[SendBundle]:
         """Yield until no bundle fits anywhere."""
         stations = [station for station in self.view.replenishment_stations if station.active]
-        room = max((station.free_space for station in stations), default=0.0)
+        # free space only shrinks meanwhile: what did not fit once need not be tried again
+        too_large = inf
         for bundle in list(self.view.bundles.without_station.values()):
-            if bundle.space > room:
+            if bundle.space >= too_large:
                 continue
-            yield SendBundle(bundle, self._station(bundle, stations).index)
-            room = max(station.free_space for station in stations)
-            if room <= 0:
-                return
+            station = self._station(bundle, stations)
+            if station is None:
+                too_large = bundle.space
+            else:
+                yield SendBundle(bundle, station.index)
 
     def _station(
         self, bundle: Bundle, stations: list[ReplenishmentStation]
-    ) -> ReplenishmentStation:
-        last = self._last
-        keep = self.parameters.stick_to_station and last is not None
-        if keep and last in stations and bundle.space <= last.free_space:
+    ) -> ReplenishmentStation | None:
+        """Draw a station with room for a bundle, or take the last one again; None if none has."""
+        space, last = bundle.space, self._last
+        if last is not None and last.active and space <= last.free_space:
             return last
-        fitting = [station for station in stations if bundle.space <= station.free_space]
-        self._last = fitting[self.draw(len(fitting))]
-        return self._last
+        fitting = [station for station in stations if space <= station.free_space]
+        if not fitting:
+            return None
+        drawn = fitting[self.draw(len(fitting))]
+        if self.parameters.stick_to_station:
+            self._last = drawn
+        return drawn

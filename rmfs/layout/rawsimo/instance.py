@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rmfs.layout.rawsimo.fields import Fields, Problems
-from rmfs.layout.rawsimo.xml import Unknown
+from rmfs.xml import Unknown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,7 +12,7 @@ from rmfs.layout.explicit import build
 from rmfs.layout.explicit.schema import FORMAT
 from rmfs.layout.rawsimo import bodies, stations, waypoints
 from rmfs.layout.rawsimo.instance import Instance
-from rmfs.layout.rawsimo.xml import read_root
+from rmfs.xml import read_root
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -11,8 +11,8 @@ use crate::costs;
 use crate::fleet::Fleet;
 use crate::kinematics::{Kind, Profile};
 use crate::network::{Lift, Network, Plan};
-use crate::record::{Totals, partly};
-use crate::robot::{Phase, Step};
+use crate::record::Totals;
+use crate::robot::Step;
 use crate::units::{Us, from_radians, to_radians};
 
 /// A robot kind as it comes from Python: acceleration, deceleration, top speed, full turn (µs),
@@ -200,36 +200,7 @@ impl Core {
 
     /// Totals per robot since the last reset, at the current time.
     fn motion<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.fleet.settle_all();
-        let now = self.fleet.now;
-        let totals: Vec<Totals> = self
-            .fleet
-            .robots
-            .iter()
-            .enumerate()
-            .map(|(id, robot)| {
-                let mut totals = self.fleet.record.totals[id].clone();
-                if let Some(step) = robot.moves.front()
-                    && robot.phase != Phase::Transferring
-                {
-                    let kind = &self.fleet.kinds[robot.kind as usize];
-                    let (turning, driving, metres) = partly(&self.fleet.network, kind, step, now);
-                    totals.turning += turning;
-                    totals.distance += metres;
-                    if step.ride {
-                        totals.riding += driving
-                    } else {
-                        totals.moving += driving
-                    }
-                    if robot.pod.is_some() {
-                        totals.loaded_distance += metres;
-                    }
-                } else if robot.phase == Phase::Transferring {
-                    totals.transferring += now - self.fleet.record.recorded(id as u32);
-                }
-                totals
-            })
-            .collect();
+        let totals = self.fleet.totals();
         let result = PyDict::new(py);
         let metres = |pick: fn(&Totals) -> f64| totals.iter().map(pick).collect::<Vec<f64>>();
         let seconds = |pick: fn(&Totals) -> Us| {
@@ -356,10 +327,7 @@ impl Core {
     }
 
     fn reset_statistics(&mut self) {
-        self.fleet.settle_all();
-        self.fleet.record.reset();
-        self.fleet.counters = crate::fleet::Counters::default();
-        self.fleet.planner.expansions = 0;
+        self.fleet.reset_statistics();
     }
 
     /// One line per robot, for reports on traffic that stands still.

@@ -1,7 +1,7 @@
 //! What is remembered of the motion: totals per robot, heat per waypoint, trips and the trace.
 
 use crate::kinematics::Kind;
-use crate::network::Network;
+use crate::network::{NONE, Network};
 use crate::search::Move;
 use crate::units::{Us, floor_us};
 
@@ -55,6 +55,25 @@ pub struct Totals {
     pub queueing: Us,
 }
 
+impl Totals {
+    /// The sum, or with a factor of -1 the difference, of two totals.
+    pub fn plus(&self, other: &Self, factor: Us) -> Self {
+        let metres = |a: f64, b: f64| a + factor as f64 * b;
+        Self {
+            distance: metres(self.distance, other.distance),
+            loaded_distance: metres(self.loaded_distance, other.loaded_distance),
+            moving: self.moving + factor * other.moving,
+            turning: self.turning + factor * other.turning,
+            waiting: self.waiting + factor * other.waiting,
+            served: self.served + factor * other.served,
+            idle: self.idle + factor * other.idle,
+            transferring: self.transferring + factor * other.transferring,
+            riding: self.riding + factor * other.riding,
+            queueing: self.queueing + factor * other.queueing,
+        }
+    }
+}
+
 /// One leg, from the decision to drive to the arrival (for a station: at the queue zone).
 #[derive(Clone, Debug)]
 pub struct Trip {
@@ -88,6 +107,8 @@ pub struct Record {
     pub waiting: Vec<Us>,
     pub trips: Vec<Trip>,
     pub trace: Option<Vec<Row>>,
+    /// When totals, heat and trips begin.
+    pub since: Us,
     /// Until when each robot's motion is recorded.
     recorded: Vec<Us>,
 }
@@ -102,13 +123,18 @@ impl Record {
             waiting: vec![0; nodes],
             trips: Vec::new(),
             trace: with_trace.then(Vec::new),
+            since: 0,
             recorded: vec![0; robots],
         }
     }
 
-    /// Forgets all totals, heat and trips; the trace stays.
-    pub fn reset(&mut self) {
-        self.totals.fill(Totals::default());
+    /// Forgets totals, heat and trips at `now`; the trace stays. What each robot has done of the
+    /// motion it is in the middle of, which is recorded when it ends, is taken off in advance.
+    pub fn reset(&mut self, now: Us, in_progress: &[Totals]) {
+        self.since = now;
+        for (totals, done) in self.totals.iter_mut().zip(in_progress) {
+            *totals = Totals::default().plus(done, -1);
+        }
         self.visits.fill(0);
         self.loaded_visits.fill(0);
         self.waiting.fill(0);
@@ -263,24 +289,27 @@ pub fn move_rows(
     turning.into_iter().chain(std::iter::once(driving))
 }
 
-/// Distance and time of a move in progress at `now`: `(turning, driving, metres)`.
-pub fn partly(network: &Network, kind: &Kind, step: &Move, now: Us) -> (Us, Us, f64) {
+/// What a robot has done at `now` of a move it has begun.
+pub fn partly(network: &Network, kind: &Kind, step: &Move, pod: Option<u32>, now: Us) -> Totals {
     let turn = kind.turn(
         network.headings[step.heading_before as usize],
         network.headings[step.heading as usize],
     );
     let turning = (now - (step.start - turn)).clamp(0, turn);
     let driving = (now - step.start).clamp(0, step.end - step.start);
-    if step.ride || driving == 0 {
-        return (turning, driving, 0.0);
+    if step.ride {
+        return Totals { turning, riding: driving, ..Totals::default() };
     }
     let length = network.line(step.from, step.to, step.heading).last().map_or(0.0, |end| end.1);
-    (turning, driving, kind.run(length).position_at(driving as f64 / 1e6))
+    let distance = kind.run(length).position_at(driving as f64 / 1e6);
+    let loaded_distance = if pod.is_some() { distance } else { 0.0 };
+    Totals { turning, moving: driving, distance, loaded_distance, ..Totals::default() }
 }
 
 /// When a run enters a zone: the time at which its first waypoint there is reached.
+/// `None` if it does not, or starts inside.
 pub fn enters_zone(network: &Network, kind: &Kind, step: &Move, zone: u32) -> Option<Us> {
-    if network.zone[step.from as usize] == zone {
+    if zone == NONE || network.zone[step.from as usize] == zone {
         return None;
     }
     if step.ride {

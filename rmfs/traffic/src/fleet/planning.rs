@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::time::Instant;
 
 use crate::kinematics::Kind;
-use crate::network::{NONE, Network};
+use crate::network::Network;
 use crate::postpone::postpone;
 use crate::record::enters_zone;
 use crate::reservations::Interval;
@@ -157,9 +157,6 @@ impl Fleet {
 
 /// How long a plan that ends in a queue zone takes from entering it to its end.
 fn time_in_zone(network: &Network, kind: &Kind, moves: &[Move], zone: u32) -> Us {
-    if zone == NONE {
-        return 0;
-    }
     let entered = moves.iter().find_map(|step| enters_zone(network, kind, step, zone));
     entered.map_or(0, |at| moves[moves.len() - 1].end - at)
 }

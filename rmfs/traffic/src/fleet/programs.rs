@@ -143,7 +143,7 @@ impl Fleet {
         }
         let entered =
             self.legs[robot as usize].as_ref().and_then(|leg| leg.zone_entered).unwrap_or(self.now);
-        self.record.totals[robot as usize].queueing += self.now - entered;
+        self.record.totals[robot as usize].queueing += self.now - entered.max(self.record.since);
         self.finish_trip(robot, TripKind::ToStation, entered);
         self.at_head(robot, station);
     }

@@ -1,13 +1,13 @@
 //! Bringing robots and their record up to the present.
 
 use crate::kinematics::Kind;
-use crate::network::{NONE, Network};
-use crate::record::{Piece, Row, Standing, enters_zone, move_rows};
+use crate::network::Network;
+use crate::record::{Piece, Row, Standing, Totals, enters_zone, move_rows, partly};
 use crate::robot::{Phase, Step};
 use crate::search::Move;
 use crate::units::{Us, floor_us};
 
-use super::Fleet;
+use super::{Counters, Fleet};
 
 impl Fleet {
     /// Brings a robot's state and record up to now.
@@ -39,7 +39,6 @@ impl Fleet {
             self.record.drive(&self.network, kind, robot, &step, state.pod);
             let station = state.station();
             if let Some(leg) = &mut self.legs[robot as usize]
-                && station != NONE
                 && leg.zone_entered.is_none()
             {
                 leg.zone_entered = enters_zone(&self.network, kind, &step, station);
@@ -72,6 +71,60 @@ impl Fleet {
         for robot in 0..self.robots.len() as u32 {
             self.settle(robot);
         }
+    }
+
+    /// What a robot has done of the motion it is in the middle of.
+    fn in_progress(&self, robot: usize) -> Totals {
+        let state = &self.robots[robot];
+        if state.phase == Phase::Transferring {
+            let transferring = self.now - self.record.recorded(robot as u32);
+            return Totals { transferring, ..Totals::default() };
+        }
+        let kind = &self.kinds[state.kind as usize];
+        state.moves.front().map_or_else(Totals::default, |step| {
+            partly(&self.network, kind, step, state.pod, self.now)
+        })
+    }
+
+    /// When the robot entered the queue zone in which it is, on its way to the station.
+    fn queueing_since(&self, robot: usize) -> Option<Us> {
+        let state = &self.robots[robot];
+        let leg = self.legs[robot].as_ref()?;
+        let entering = || {
+            let kind = &self.kinds[state.kind as usize];
+            enters_zone(&self.network, kind, state.moves.front()?, state.station())
+        };
+        leg.zone_entered.or_else(entering).filter(|&entered| entered <= self.now)
+    }
+
+    /// Totals of each robot since the last reset, up to now.
+    pub fn totals(&mut self) -> Vec<Totals> {
+        self.settle_all();
+        let totals = self.record.totals.iter().enumerate();
+        totals
+            .map(|(robot, done)| {
+                let mut totals = done.plus(&self.in_progress(robot), 1);
+                if let Some(entered) = self.queueing_since(robot) {
+                    totals.queueing += self.now - entered.max(self.record.since);
+                }
+                totals
+            })
+            .collect()
+    }
+
+    /// Starts totals, heat, trips and counters anew.
+    pub fn reset_statistics(&mut self) {
+        let until_now = self.totals();
+        for (leg, totals) in self.legs.iter_mut().zip(&until_now) {
+            if let Some(leg) = leg {
+                leg.distance_before -= totals.distance;
+            }
+        }
+        let in_progress: Vec<Totals> =
+            (0..self.robots.len()).map(|r| self.in_progress(r)).collect();
+        self.record.reset(self.now, &in_progress);
+        self.counters = Counters::default();
+        self.planner.expansions = 0;
     }
 
     /// The trace up to now, by robot and time; the motion each robot is in the middle of is whole.

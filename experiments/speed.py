@@ -1,0 +1,134 @@
+"""How fast a run is, and where its time goes: `python -m experiments.speed`.
+
+Each case is run several times in this process on one core, checker and trace off. Beside it stands
+a fixed reference loop, timed in between, so that machines can be compared: the figure to quote is
+simulated seconds per wall second, the figure to compare is that times the loop's seconds.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+import rmfs
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+RUNS = 5
+REFERENCE_STEPS = 2_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One thing to time.
+
+    Attributes
+    ----------
+    duration_s
+        Simulated seconds; the warm-up is 0, so building the first heuristic tables counts.
+    """
+
+    layout: str
+    scenario: str
+    controllers: str
+    duration_s: float
+
+
+CASES = [
+    Case(layout, scenario, controllers, duration_s)
+    for layout, scenario, controllers in [
+        ("study-32", "pp-minimal", "random"),
+        ("study-128", "pp-minimal", "random"),
+        ("study-tiers", "pp-minimal", "random"),
+        ("default", "default", "default"),
+    ]
+    for duration_s in (7_200.0, 28_800.0)
+]
+
+
+def reference_loop() -> float:
+    """Seconds of a fixed piece of plain Python: a linear congruential generator."""
+    begun = time.perf_counter()
+    state = 1
+    for _ in range(REFERENCE_STEPS):
+        state = (state * 1_103_515_245 + 12_345) & 0x7FFF_FFFF
+    return time.perf_counter() - begun
+
+
+def measure(case: Case, seed: int) -> dict[str, float]:
+    """Run a case once.
+
+    Returns
+    -------
+    Wall seconds of the simulation loop (`wall_s`), of planning (`planning_s`) and of decisions
+    (`decisions_s`), orders and units, and the seconds of the reference loop.
+    """
+    loop_s = reference_loop()
+    overrides = [(["scenario", "duration_s"], case.duration_s), (["scenario", "warmup_s"], 0.0)]
+    run = rmfs.simulate(
+        case.layout, case.scenario, case.controllers, seed=seed, overrides=overrides
+    )
+    footprint = run.footprint
+    return {
+        "wall_s": run.wall_s,
+        "planning_s": run.traffic.counters()["planning_s"],
+        "decisions_s": float(footprint["decision_wall_s"]),
+        "orders": float(footprint["orders_completed"]),
+        "peak_rss_mb": float(footprint["peak_rss_mb"]),
+        "reference_loop_s": loop_s,
+    }
+
+
+def table(
+    cases: Iterable[Case] = CASES, runs: int = RUNS, tell: Callable[[str], None] = print
+) -> pd.DataFrame:
+    """Time the cases: medians over `runs` seeds, one row a case."""
+    rows = []
+    for case in cases:
+        measured = [measure(case, seed) for seed in range(runs)]
+        middle = {key: statistics.median(row[key] for row in measured) for key in measured[0]}
+        wall_s = middle["wall_s"]
+        rows.append(
+            {
+                "layout": case.layout,
+                "controllers": case.controllers,
+                "simulated_s": case.duration_s,
+                "sim_per_wall": case.duration_s / wall_s,
+                "planning_share": middle["planning_s"] / wall_s,
+                "decisions_share": middle["decisions_s"] / wall_s,
+                "rest_share": 1 - (middle["planning_s"] + middle["decisions_s"]) / wall_s,
+                "orders": middle["orders"],
+                "peak_rss_mb": middle["peak_rss_mb"],
+                "reference_loop_s": middle["reference_loop_s"],
+            }
+        )
+        tell(f"{case.layout}, {case.duration_s:.0f} s: {rows[-1]['sim_per_wall']:,.0f}")
+    return pd.DataFrame(rows)
+
+
+def main() -> None:
+    """Print the table as Markdown."""
+    print(to_markdown(table()))
+
+
+def to_markdown(frame: pd.DataFrame) -> str:
+    """Format the table for the documentation."""
+    lines = ["| " + " | ".join(frame.columns) + " |", "|" + "---|" * len(frame.columns)]
+    for row in frame.itertuples(index=False):
+        lines.append("| " + " | ".join(_shown(value) for value in row) + " |")
+    return "\n".join(lines)
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.2f}" if abs(value) < 10 else f"{value:,.0f}"
+    return str(value)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,89 @@
+import importlib.util
+from types import ModuleType
+
+import pytest
+from project_files import ROOT, toml, tracked
+
+from rmfs import instances
+
+PROJECT = toml("pyproject.toml")
+MATURIN = PROJECT["tool"]["maturin"]
+
+
+@pytest.fixture
+def backend() -> ModuleType:
+    pytest.importorskip("maturin")
+    spec = importlib.util.spec_from_file_location("backend", ROOT / "tools" / "build_backend.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_wheel_carries_the_instances() -> None:
+    (included,) = [entry for entry in MATURIN["include"] if entry["path"].startswith("instances/")]
+    assert included == {"path": "instances/**/*", "format": ["sdist", "wheel"]}
+
+
+def test_instances_are_found_and_of_known_kinds() -> None:
+    assert ROOT / "instances" == instances.ROOT
+    for kind, suffixes in {
+        "layouts": {".toml", ".json"},
+        "scenarios": {".toml"},
+        "controllers": {".toml"},
+    }.items():
+        found = {path.suffix for path in (instances.ROOT / kind).iterdir()}
+        assert found
+        assert found <= suffixes
+
+
+def test_the_wheel_carries_all_packages() -> None:
+    packages = {path.parent for path in tracked("*/__init__.py")}
+    top = {path.relative_to(ROOT).parts[0] for path in packages} - {"tests"}
+    assert top == set(MATURIN["python-packages"])
+
+
+def test_the_wheel_leaves_the_crate_out() -> None:
+    excluded = [entry["path"] for entry in MATURIN["exclude"]]
+    for path in tracked("rmfs/traffic/*"):
+        name = path.relative_to(ROOT).as_posix()
+        if path.suffix in (".rs", ".toml", ".lock"):
+            assert any(
+                name.startswith(pattern.split("*")[0]) and name.endswith(pattern.split("*")[-1])
+                for pattern in excluded
+            ), name
+
+
+def test_the_source_distribution_carries_its_build_back_end() -> None:
+    assert PROJECT["build-system"]["backend-path"] == ["tools"]
+    assert {"path": "tools/build_backend.py", "format": "sdist"} in MATURIN["include"]
+
+
+@pytest.mark.parametrize(
+    ("present", "state"), [(None, "none is on PATH"), ("1.9.0", "the one on PATH is 1.9.0")]
+)
+def test_a_build_without_rust_ends_in_one_line(
+    backend: ModuleType, monkeypatch: pytest.MonkeyPatch, present: str | None, state: str
+) -> None:
+    monkeypatch.setattr(backend, "found", lambda: present)
+    with pytest.raises(SystemExit) as ended:
+        backend.get_requires_for_build_wheel()
+    message = str(ended.value)
+    assert f"Rust {backend.required()} or newer" in message
+    assert state in message
+    assert "\n" not in message
+
+
+@pytest.mark.parametrize("later", ["", ".0", ".17"])
+def test_a_build_with_rust_asks_for_no_package(
+    backend: ModuleType, monkeypatch: pytest.MonkeyPatch, later: str
+) -> None:
+    monkeypatch.setattr(backend, "found", lambda: backend.required() + later)
+    assert backend.get_requires_for_build_wheel() == []
+    assert backend.get_requires_for_build_editable() == []
+
+
+def test_the_rust_on_path_is_recognised(backend: ModuleType) -> None:
+    found = backend.found()
+    assert found is None or backend.numbers(found) > [1]

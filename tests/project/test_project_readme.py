@@ -1,0 +1,82 @@
+"""What the texts tell a reader to type works, and what they point to is there."""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from project_files import ROOT, make_targets, text, tracked
+
+README = text("README.md")
+TEXTS = ["README.md", "CHANGELOG.md", "docs/index.md", "docs/development.md"]
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_targets_named_can_be_made(name: str) -> None:
+    named = re.findall(r"(?:`|^    )make(?: [A-Z]+=\S+)* ([a-z]+)", text(name), re.MULTILINE)
+    assert set(named) <= make_targets()
+
+
+def test_the_two_commands_are_named() -> None:
+    assert "    make demo\n    make test\n" in README
+
+
+def test_commands_work_as_written(tmp_path: Path) -> None:
+    commands = [line for block in blocks("sh") for line in block.splitlines()]
+    assert commands
+    for command in commands:
+        name, *arguments = shlex.split(command)
+        assert name == "rmfs"
+        told = subprocess.run(
+            [sys.executable, "-m", "rmfs", *arguments],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert told.returncode == 0, f"{command}\n{told.stderr}"
+    assert (tmp_path / "results" / "sixteen" / "run.json").is_file()
+
+
+@pytest.mark.parametrize("code", blocks("python"))
+def test_python_works_as_written(code: str, tmp_path: Path) -> None:
+    told = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert told.returncode == 0, told.stderr
+    assert "units_per_h" in told.stdout
+
+
+def test_the_python_experiment_is_the_one_on_the_command_line() -> None:
+    (command,) = [line for block in blocks("sh") for line in block.splitlines() if " run " in line]
+    (code,) = blocks("python")
+    settings = re.findall(r"--set (\S+)=(\S+)", command)
+    assert settings == [
+        (f"{part}.{key}", value)
+        for part, key, value in re.findall(r'\["(\w+)", "(\w+)"\], (\d+)\)', code)
+    ]
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_links_lead_somewhere(name: str) -> None:
+    for link in re.findall(r"\]\(([^)]+)\)", text(name)):
+        if "://" not in link:
+            assert (ROOT / name).parent.joinpath(link.split("#")[0]).exists(), link
+
+
+def test_folders_named_exist() -> None:
+    listed = re.findall(r"^\| `([a-z]+)/` \|", README, re.MULTILINE)
+    assert {path.relative_to(ROOT).parts[0] for path in tracked("*/*.py")} - {"tools"} <= set(
+        listed
+    )
+
+
+def test_pictures_are_small() -> None:
+    for path in tracked("docs/images/*"):
+        assert path.stat().st_size < 300_000
