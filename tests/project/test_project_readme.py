@@ -10,7 +10,7 @@ import pytest
 from project_files import ROOT, make_targets, text, tracked
 
 README = text("README.md")
-TEXTS = ["README.md", "CHANGELOG.md", "docs/index.md", "docs/development.md"]
+TEXTS = ["README.md", "CHANGELOG.md", *sorted(f"docs/{p.name}" for p in ROOT.glob("docs/*.md"))]
 
 
 def blocks(language: str) -> list[str]:

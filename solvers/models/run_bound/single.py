@@ -34,7 +34,7 @@ def single_bounds(data: RunBound) -> dict[str, float]:
     largest = data.visit_units
     worth_it = largest > 0
     if not worth_it.any():
-        return {"stations": stations / data.hours, "robots": 0.0, "demand": 0.0}
+        return {"stations": 0.0, "robots": 0.0, "demand": data.orders.units / data.hours}
     full = cadence + (visit_s - cadence) / np.maximum(largest, 1.0)
     # a visit of one unit can cost less robot time per unit than a long one
     per_unit_s = float(np.minimum(full, visit_s)[worth_it].min())
