@@ -214,23 +214,11 @@ def _idle(data: PileOn, values: Assignment, called: Integers) -> Flags:
     """Which of the pods are called without stock for a served line or a shortage there."""
     asked = data.shortage > 0
     at = np.flatnonzero(values.line_station >= 0)
-    asked = asked.copy()
     asked[values.line_station[at], data.line_sku[at]] = True
-    if data.variant is Variant.LATER:
-        return _flag(called, ~_useful(data, asked, values, called), data.pods)
-    return _flag(called, ~_useful(data, asked, values, called), data.pods)
-
-
-def _useful(data: PileOn, asked: Flags, values: Assignment, called: Integers) -> Flags:
-    """Whether each called pod holds a SKU that its station asks for."""
-    return ((data.stock[called] > 0) & asked[values.pod_station[called]]).any(axis=1)
-
-
-def _flag(index: Integers, true: Flags, size: int) -> Flags:
-    """Spread flags over all pods."""
-    flags = np.zeros(size, dtype=np.bool_)
-    flags[index] = true
-    return flags
+    useful = ((data.stock[called] > 0) & asked[values.pod_station[called]]).any(axis=1)
+    idle = np.zeros(data.pods, dtype=np.bool_)
+    idle[called] = ~useful
+    return idle
 
 
 def _robot_checks(data: PileOn, values: Assignment) -> dict[str, Flags]:

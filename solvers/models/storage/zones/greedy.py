@@ -6,9 +6,10 @@ import math
 from time import perf_counter
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
-from solvers.models.storage.zones.data import ZonePlan, Zones, objective
+from solvers.models.storage.zones.data import ZonePlan, Zones, objective, traffic_per_h
 from solvers.models.storage.zones.prices import price_bound
 
 _PORTIONS = 16
@@ -20,8 +21,8 @@ def solve(
 ) -> Solution[ZonePlan]:
     """Put portions of the classes, most visited first, where a visit takes least time then.
 
-    The time includes the delay that its traffic causes. The price of a zone is what its places
-    save against the best zone with room that is left over.
+    The time includes the delay that its traffic causes. The price of a zone is what a pod there
+    saves, at least, against the best zone with room left over; 0 if there is no such zone.
 
     Parameters
     ----------
@@ -61,3 +62,18 @@ def solve(
     return Solution(
         plan, value, bound, Status.FEASIBLE, "rule", perf_counter() - begin, 0.0, float(steps)
     )
+
+
+def _prices(
+    data: Zones, standing: NDArray[np.float64], room: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Rate the places of each zone by the pods that stand there."""
+    free = np.flatnonzero(room > 0)
+    if not free.size or not data.pods.size:
+        return np.zeros(len(room))
+    delay_s = 2.0 * data.congestion_s_h * traffic_per_h(data, standing)
+    each = data.rate_per_h[:, np.newaxis] * (data.visit_s + delay_s)
+    saved = each[:, free].min(axis=1)[:, np.newaxis] - each
+    least = np.where(standing > 0, saved, math.inf).min(axis=0)
+    prices: NDArray[np.float64] = np.where(np.isfinite(least), np.maximum(least, 0.0), 0.0)
+    return prices
