@@ -52,6 +52,7 @@ format: setup ## Format the Python and Rust sources
 
 .PHONY: bench
 bench: setup ## Measure speed
+	$(BIN)/rmfs bench
 	$(BIN)/python -m pytest -m benchmark
 
 .PHONY: soak

@@ -1,4 +1,4 @@
-"""How fast a run is, and where its time goes: `python -m experiments.speed`.
+"""How fast a run is, and where its time goes: `rmfs bench`.
 
 Each case is run several times in this process on one core, checker and trace off. Beside it stands
 a fixed reference loop, timed in between, so that machines can be compared: the figure to quote is
@@ -7,6 +7,7 @@ simulated seconds per wall second, the figure to compare is that times the loop'
 
 from __future__ import annotations
 
+import platform
 import statistics
 import time
 from dataclasses import dataclass
@@ -15,9 +16,11 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 import rmfs
+from rmfs.files import write_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
+    from pathlib import Path
 
 RUNS = 5
 REFERENCE_STEPS = 2_000_000
@@ -111,9 +114,10 @@ def table(
     return pd.DataFrame(rows)
 
 
-def main() -> None:
-    """Print the table as Markdown."""
-    print(to_markdown(table()))
+def save(frame: pd.DataFrame, folder: Path) -> None:
+    """Write the table as CSV and Markdown, with the machine it was measured on."""
+    write_text(folder / "speed.csv", frame.to_csv(index=False))
+    write_text(folder / "speed.md", f"{to_markdown(frame)}\n\n{platform.platform()}\n")
 
 
 def to_markdown(frame: pd.DataFrame) -> str:
@@ -128,7 +132,3 @@ def _shown(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.2f}" if abs(value) < 10 else f"{value:,.0f}"
     return str(value)
-
-
-if __name__ == "__main__":
-    main()

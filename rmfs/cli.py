@@ -185,6 +185,19 @@ def run(
     conclude(target, report)
 
 
+@app.command()
+def bench(
+    runs: Annotated[int, typer.Option(min=1, help="Runs of each case; the median counts.")] = 5,
+    out: Annotated[Path, typer.Option(help="Folder of the tables.")] = Path("results/bench"),
+) -> None:
+    """Measure how fast runs are and where their time goes."""
+    from experiments import speed
+
+    frame = speed.table(runs=runs, tell=step)
+    speed.save(frame, out)
+    typer.echo(speed.to_markdown(frame))
+
+
 def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
     """Simulate and show progress; a run in which nothing can move any more ends with a report.
 
