@@ -43,6 +43,22 @@ class Candidates:
         object.__setattr__(self, "fetches", flags("fetches", self.fetches, (None, None)))
 
 
+    def including(self, values: Assignment) -> Candidates:
+        """Add the pairs that a decision uses, so that it can start a solver.
+
+        Parameters
+        ----------
+        values
+            The decision.
+        """
+        calls, fetches = self.calls.copy(), self.fetches.copy()
+        called = np.flatnonzero(values.pod_station >= 0)
+        calls[called, values.pod_station[called]] = True
+        fetched = np.flatnonzero(values.pod_robot >= 0)
+        fetches[values.pod_robot[fetched], fetched] = True
+        return Candidates(calls, fetches)
+
+
 def everything(data: PileOn) -> Candidates:
     """All pairs that can be of use: no loss.
 
@@ -69,7 +85,6 @@ def prune(
     data: PileOn,
     per_sku: int = 4,
     robots_per_pod: int = 4,
-    keep: Assignment | None = None,
 ) -> Candidates:
     """Keep the best few pods per SKU and station, and the nearest few robots per pod.
 
@@ -81,8 +96,6 @@ def prune(
         Pods kept per wanted SKU and station, at least 1. Default 4.
     robots_per_pod
         Robots kept per pod, at least 1. Default 4.
-    keep
-        A decision whose pairs are kept as well, so that it can start a solver. Default: none.
 
     Returns
     -------
@@ -109,11 +122,6 @@ def prune(
     if data.fetch is not None and data.free_robots.size > robots_per_pod:
         rank = np.argsort(np.argsort(data.fetch[data.free_robots], axis=0, kind="stable"), axis=0)
         fetches[data.free_robots] &= rank < robots_per_pod
-    if keep is not None:
-        called = np.flatnonzero(keep.pod_station >= 0)
-        calls[called, keep.pod_station[called]] = True
-        fetched = np.flatnonzero(keep.pod_robot >= 0)
-        fetches[keep.pod_robot[fetched], fetched] = True
     return Candidates(calls, fetches)
 
 

@@ -82,7 +82,7 @@ def formulate(data: PileOn, candidates: Candidates, *, strengthen: bool = True) 
     if strengthen:
         _strong_line_rows(builder, data, columns, held)
         _strong_shortage_rows(builder, data, columns, held)
-    return Formulation(data, columns, builder.build(data.weights.empty_slot * data.slots.sum()))
+    return Formulation(data, columns, builder.build(data.weights.empty_slot * int(data.slots.sum())))
 
 
 @dataclass(frozen=True)

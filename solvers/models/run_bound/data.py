@@ -214,8 +214,8 @@ class RunBound:
         largest = np.full(len(self.picking.order_slots), float(self.stock.largest_pod_units))
         if self.orders.join_visits or math.isinf(self.orders.largest_order_units):
             return largest
-        asked: NDArray[np.float64] = self.picking.order_slots * self.orders.largest_order_units
-        return np.minimum(largest, asked)
+        asked = self.picking.order_slots * self.orders.largest_order_units
+        return np.minimum(largest, asked.astype(np.float64)).astype(np.float64)
 
     @property
     def end_effect_s(self) -> float:

@@ -53,6 +53,8 @@ from solvers.models.program import LinearProgram, ProgramBuilder
 from solvers.models.run_bound.data import RunBound, Throughput, objective
 from solvers.models.solution import NO_LIMITS, Limits, Sense, Solution, Status
 
+_ENDLESS = 2**31 - 1
+
 _ROUNDING = 1e-9
 """Relative error of a quotient of times, taken to the safe side before it is cut to a whole."""
 
@@ -100,7 +102,7 @@ def solve(
         b_ub=linear.row_upper,
         bounds=np.stack([linear.lower, linear.upper], axis=1),
         method="highs-ds",
-        options={} if limits.iterations is None else {"maxiter": limits.iterations},
+        options={"maxiter": _ENDLESS if limits.iterations is None else limits.iterations},
     )
     multipliers = np.zeros(linear.rows)
     if result.success:

@@ -33,7 +33,7 @@ def solve(
     Returns
     -------
     The place of each pod, shape (P,); ties go to the lowest index. Status LIMIT if a pod is left
-    without a place: the rule does not take back what it gave.
+    without a place, as the rule does not take back what it gave; INFEASIBLE if none is allowed.
     """
     begin = perf_counter()
     cost_s = data.cost_s
@@ -43,9 +43,9 @@ def solve(
     for pod in np.argsort(-data.visits, kind="stable").tolist():
         best = int(free[pod].argmin()) if free.shape[1] else -1
         if best < 0 or math.isinf(free[pod, best]):
-            return Solution(
-                None, math.inf, bound, Status.LIMIT, "rule", perf_counter() - begin, 0.0, free.size
-            )
+            status = Status.LIMIT if math.isfinite(bound) else Status.INFEASIBLE
+            wall_s = perf_counter() - begin
+            return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, float(free.size))
         place[pod] = best
         free[:, best] = math.inf
     value = objective(data, place)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from solvers.models.backends import Outcome
 from solvers.models.checks import require
 from solvers.models.program import LinearProgram
-from solvers.models.solution import Limits, Solution, Status
+from solvers.models.solution import Limits, Solution
 from solvers.models.storage.stays.data import Stays, objective, violations
 from solvers.models.storage.stays.program import columns_of, program, zones_of
 
@@ -61,8 +61,6 @@ def solve_by(
     if start is not None:
         broken = violations(data, start)
         require(not broken, "start", "; ".join(broken))
-    if not data.cost_s.size:
-        return _without_choice(data, begin)
     linear = program(data)
     columns = None if start is None else columns_of(data, start)
     built_s = perf_counter() - begin

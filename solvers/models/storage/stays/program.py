@@ -2,8 +2,8 @@ r"""The integer programme, with the pods of each zone carried over from period t
 
 .. math::
 
-    y_{zt} = y_{z,t-1} + \sum_{s \text{ begins in } t} x_{sz} - \sum_{s \text{ is over in } t} x_{sz},
-    \qquad 0 \le y_{zt} \le k_z
+    y_{zt} = y_{z,t-1} + \sum_{s \text{ begins in } t} x_{sz}
+    - \sum_{s \text{ is over in } t} x_{sz}, \qquad 0 \le y_{zt} \le k_z
 
 says the same as one row per maximal set of stays, with a number of entries that grows with the
 stays and not with the square of them. For each zone alone the matrix is one of a network, so that
@@ -78,6 +78,8 @@ def zones_of(data: Stays, x: NDArray[np.float64]) -> NDArray[np.int64]:
     x
         The columns.
     """
+    if not data.cost_s.size:
+        return np.zeros(0, np.int64)
     chosen = x[: data.cost_s.size].reshape(data.cost_s.shape)
     zone: NDArray[np.int64] = chosen.argmax(axis=1)
     return zone

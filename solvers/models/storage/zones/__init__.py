@@ -1,8 +1,8 @@
 """Classes of pods to zones of places in the steady state; the prices of zones rate places."""
 
 from solvers.models.storage.zones.convex import solve as solve
-from solvers.models.storage.zones.data import Zones as Zones
 from solvers.models.storage.zones.data import ZonePlan as ZonePlan
+from solvers.models.storage.zones.data import Zones as Zones
 from solvers.models.storage.zones.data import objective as objective
 from solvers.models.storage.zones.data import violations as violations
 from solvers.models.storage.zones.greedy import solve as solve_greedily

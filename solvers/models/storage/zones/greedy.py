@@ -37,9 +37,7 @@ def solve(
     """
     begin = perf_counter()
     if not data.fits:
-        return Solution(
-            None, math.inf, math.inf, Status.INFEASIBLE, "rule", perf_counter() - begin
-        )
+        return Solution(None, math.inf, math.inf, Status.INFEASIBLE, "rule", perf_counter() - begin)
     standing = np.zeros(data.visit_s.shape)
     room = data.places.copy()
     traffic = np.zeros(len(room))

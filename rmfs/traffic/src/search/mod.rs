@@ -1,0 +1,350 @@
+//! Safe-interval search over stop states with whole straight runs, in continuous time.
+//!
+//! A state is (waypoint, heading, free interval) with the robot at rest, labelled with its earliest
+//! arrival; waiting is free inside the interval. Successors are straight runs that start and end at
+//! rest, and elevator rides. The set of possible departures of a run is exact: for each waypoint on
+//! the way the reservations of others, shifted by the time the robot needs to get there.
+//!
+//! The search is led by exact unhindered times and expands labels in part: of a label's many stops
+//! only those that can lie on a way not much longer than the best are looked at, the others when
+//! the search comes back to it.
+//!
+//! Related: SIPP (Phillips, Likhachev 2011), stationary SIPP in MASS (Yan, Li 2025), free time
+//! windows (ter Mors 2010).
+
+mod runs;
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use crate::backward::Backward;
+use crate::costs::{Model, UNREACHABLE};
+use crate::kinematics::Kind;
+use crate::network::{NONE, Network};
+use crate::reservations::{Table, Windows};
+use crate::units::{FOREVER, Us};
+
+/// One piece of a plan, from rest to rest.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Move {
+    pub from: u32,
+    pub to: u32,
+    /// Direction driven; for a ride the heading kept.
+    pub heading: u8,
+    /// Heading before, at rest at `from`.
+    pub heading_before: u8,
+    pub start: Us,
+    pub end: Us,
+    pub ride: bool,
+}
+
+/// What a robot wants.
+#[derive(Clone, Debug)]
+pub struct Query<'a> {
+    pub start: u32,
+    pub heading: u8,
+    /// Earliest departure; the robot is at rest at `start` then.
+    pub ready: Us,
+    /// Where to go; `NONE`: to the nearest storage place that nobody holds.
+    pub goal: u32,
+    pub loaded: bool,
+    pub kind: &'a Kind,
+    pub model: &'a Model,
+    /// Labels that may be looked at.
+    pub budget: u64,
+}
+
+/// How a search ended.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Outcome {
+    Found(Vec<Move>),
+    NoWay,
+    OutOfBudget,
+}
+
+#[derive(Clone, Debug)]
+struct Label {
+    node: u32,
+    heading: u8,
+    ride: bool,
+    dead: bool,
+    /// The free interval.
+    from: Us,
+    until: Us,
+    arrival: Us,
+    departure: Us,
+    parent: u32,
+    /// Next label of the same (waypoint, heading).
+    sibling: u32,
+    /// Successors with a total time up to this have been offered.
+    scanned: Us,
+    scans: u32,
+}
+
+/// Weights (in quarters) and how many labels may be looked at with each: from optimal to greedy.
+const STAGES: [(Us, u64); 3] = [(4, 400), (6, 2_000), (16, u64::MAX)];
+
+/// By how much the unhindered search goes on at a time, in microseconds.
+const GUIDE_STEP: u32 = 1 << 19;
+
+/// How much later than the label's own estimate successors may arrive in its first scan.
+const SLACK: Us = 500_000;
+
+/// Reusable memory of searches, and what they have cost.
+#[derive(Debug)]
+pub struct Planner {
+    labels: Vec<Label>,
+    /// Labels by least total time, then by least time to go.
+    open: BinaryHeap<Reverse<(Us, Us, u32)>>,
+    /// Newest label of each (waypoint, heading), and in which search it was made.
+    newest: Vec<(u32, u32)>,
+    stamp: u32,
+    guide: Backward,
+    stable: Windows,
+    windows: Windows,
+    line: Vec<(u32, f64)>,
+    /// Labels looked at so far, over all searches.
+    pub expansions: u64,
+}
+
+impl Planner {
+    /// Memory for searches on `network`.
+    pub fn new(network: &Network) -> Self {
+        Self {
+            labels: Vec::new(),
+            open: BinaryHeap::new(),
+            newest: vec![(0, NONE); network.nodes * network.heading_count()],
+            stamp: 0,
+            guide: Backward::new(network),
+            stable: Vec::new(),
+            windows: Vec::new(),
+            line: Vec::new(),
+            expansions: 0,
+        }
+    }
+
+    /// Finds the earliest arrival at the goal that can be held forever; when that takes more than a
+    /// few hundred labels, one that is early enough.
+    ///
+    /// The robot's own reservations must not be in `table`.
+    pub fn search(&mut self, network: &Network, table: &Table, query: &Query) -> Outcome {
+        for (weight, labels) in STAGES {
+            let budget = query.budget.min(labels);
+            let outcome = Search::new(self, network, table, query, weight).run(budget);
+            if outcome != Outcome::OutOfBudget || budget == query.budget {
+                return outcome;
+            }
+        }
+        Outcome::OutOfBudget
+    }
+
+    /// Time of the way just searched for if nobody else were there.
+    pub fn unhindered(&self, network: &Network, query: &Query) -> Us {
+        Us::from(self.guide.to_go(network, query.start, query.heading))
+    }
+}
+
+/// One search.
+struct Search<'a> {
+    memory: &'a mut Planner,
+    network: &'a Network,
+    table: &'a Table,
+    query: &'a Query<'a>,
+    /// Quarters by which the time to go is weighted: 4 finds the earliest arrival.
+    weight: Us,
+    /// Nobody reaches the goal for good before this.
+    goal_free: Us,
+}
+
+impl<'a> Search<'a> {
+    fn new(
+        memory: &'a mut Planner,
+        network: &'a Network,
+        table: &'a Table,
+        query: &'a Query<'a>,
+        weight: Us,
+    ) -> Self {
+        memory.labels.clear();
+        memory.open.clear();
+        memory.stamp += 1;
+        let goal_free = if query.goal == NONE {
+            0
+        } else {
+            table.row(network.resource[query.goal as usize]).last().map_or(0, |last| last.end)
+        };
+        Self { memory, network, table, query, weight, goal_free }
+    }
+
+    fn run(&mut self, budget: u64) -> Outcome {
+        let query = self.query;
+        let start = self.network.resource[query.start as usize];
+        let Some((from, until)) = self.table.gap_at(start, query.ready) else {
+            return Outcome::NoWay;
+        };
+        if query.goal != NONE && (self.goal_free == FOREVER || !self.guide_from_start()) {
+            return Outcome::NoWay;
+        }
+        self.offer(Label {
+            node: query.start,
+            heading: query.heading,
+            ride: false,
+            dead: false,
+            from,
+            until,
+            arrival: query.ready,
+            departure: query.ready,
+            parent: NONE,
+            sibling: NONE,
+            scanned: -1,
+            scans: 0,
+        });
+        for _ in 0..budget {
+            match self.next_label() {
+                None => return Outcome::NoWay,
+                Some((_, index)) if self.is_end(index) => {
+                    return Outcome::Found(self.trace_back(index));
+                }
+                Some((estimate, index)) => self.look_at(index, estimate),
+            }
+        }
+        Outcome::OutOfBudget
+    }
+
+    /// The most promising label and its estimate.
+    fn next_label(&mut self) -> Option<(Us, u32)> {
+        while let Some(Reverse((estimate, _, index))) = self.memory.open.pop() {
+            if !self.memory.labels[index as usize].dead {
+                return (estimate < FOREVER).then_some((estimate, index));
+            }
+        }
+        None
+    }
+
+    fn is_end(&self, index: u32) -> bool {
+        let label = &self.memory.labels[index as usize];
+        label.until == FOREVER && self.is_goal(label.node)
+    }
+
+    fn is_goal(&self, node: u32) -> bool {
+        if self.query.goal == NONE {
+            self.network.storage[node as usize]
+        } else {
+            node == self.query.goal
+        }
+    }
+
+    /// Scans a label's successors in part, or finds out that others are more promising.
+    fn look_at(&mut self, index: u32, estimate: Us) {
+        self.memory.expansions += 1;
+        let label = self.memory.labels[index as usize].clone();
+        if let Some(sharper) = self.sharpen(&label, estimate) {
+            self.memory.open.push(Reverse((sharper, sharper - label.arrival, index)));
+            return;
+        }
+        let upto = estimate + (SLACK << label.scans.min(8));
+        let scanned = &mut self.memory.labels[index as usize];
+        scanned.scanned = upto;
+        scanned.scans += 1;
+        let mut beyond = FOREVER;
+        for heading in 0..self.network.heading_count() as u8 {
+            beyond = beyond.min(self.drive(index, &label, heading, upto));
+        }
+        if label.scans == 0 {
+            self.ride(index, &label);
+        }
+        if beyond < FOREVER {
+            self.memory.open.push(Reverse((beyond, beyond - label.arrival, index)));
+        }
+    }
+
+    /// Starts the unhindered search back from the goal. Returns whether there is a way at all.
+    fn guide_from_start(&mut self) -> bool {
+        let Query { start, heading, goal, loaded, model, .. } = *self.query;
+        let guide = &mut self.memory.guide;
+        guide.begin(self.network, model, goal, loaded, Some(start));
+        while !guide.knows(self.network, start, heading) {
+            let reach = guide.reach().saturating_add(GUIDE_STEP);
+            guide.advance(self.network, model, reach);
+        }
+        self.to_go(start, heading).is_some()
+    }
+
+    /// Lower bound of the time from rest to the goal, or `None` if there is no way.
+    fn to_go(&self, node: u32, heading: u8) -> Option<Us> {
+        if self.query.goal == NONE {
+            return Some(0);
+        }
+        let time = self.memory.guide.to_go(self.network, node, heading);
+        (time != UNREACHABLE).then_some(Us::from(time))
+    }
+
+    /// Total time over a label: when it is reached, and a (weighted) bound of the rest.
+    fn estimate(&self, arrival: Us, to_go: Us) -> Us {
+        (arrival + to_go * self.weight / 4).max(self.goal_free)
+    }
+
+    /// Where the guide has not been yet, lets it search on until the label is known or can wait; a
+    /// larger estimate comes back.
+    fn sharpen(&mut self, label: &Label, estimate: Us) -> Option<Us> {
+        if self.query.goal == NONE {
+            return None;
+        }
+        while !self.memory.guide.knows(self.network, label.node, label.heading) {
+            let reach = self.memory.guide.reach().saturating_add(GUIDE_STEP);
+            self.memory.guide.advance(self.network, self.query.model, reach);
+            let to_go = self.to_go(label.node, label.heading);
+            let sharper = to_go.map_or(FOREVER, |time| self.estimate(label.arrival, time));
+            if sharper > estimate {
+                return Some(sharper);
+            }
+        }
+        None
+    }
+
+    /// Adds a label unless a known one is at least as good.
+    fn offer(&mut self, mut label: Label) {
+        let Some(to_go) = self.to_go(label.node, label.heading) else { return };
+        let estimate = self.estimate(label.arrival, to_go);
+        let memory = &mut *self.memory;
+        let newest = &mut memory.newest[self.network.index(label.node, label.heading)];
+        if newest.0 != memory.stamp {
+            *newest = (memory.stamp, NONE);
+        }
+        let mut other = newest.1;
+        while other != NONE {
+            let known = &mut memory.labels[other as usize];
+            if known.from == label.from {
+                if known.arrival <= label.arrival {
+                    return;
+                }
+                known.dead = true;
+            }
+            other = known.sibling;
+        }
+        label.sibling = newest.1;
+        newest.1 = memory.labels.len() as u32;
+        memory.open.push(Reverse((estimate, to_go, newest.1)));
+        memory.labels.push(label);
+    }
+
+    fn trace_back(&self, goal: u32) -> Vec<Move> {
+        let labels = &self.memory.labels;
+        let mut moves = Vec::new();
+        let mut label = &labels[goal as usize];
+        while label.parent != NONE {
+            let before = &labels[label.parent as usize];
+            moves.push(Move {
+                from: before.node,
+                to: label.node,
+                heading: label.heading,
+                heading_before: before.heading,
+                start: label.departure,
+                end: label.arrival,
+                ride: label.ride,
+            });
+            label = before;
+        }
+        moves.reverse();
+        moves
+    }
+}

@@ -1,0 +1,176 @@
+//! Successors of a label: straight runs with exact departure times, and elevator rides.
+
+use crate::network::NONE;
+use crate::units::{FOREVER, Us, ceil_us, floor_us};
+
+use super::{Label, Search};
+
+impl Search<'_> {
+    /// Offers the useful stops of a straight run in one direction whose total time lies between
+    /// what was scanned before and `upto`. Returns the least total time beyond.
+    pub(super) fn drive(&mut self, parent: u32, label: &Label, heading: u8, upto: Us) -> Us {
+        let network = self.network;
+        let mut beyond = FOREVER;
+        let ready = label.arrival + Us::from(self.query.model.turning(label.heading, heading));
+        if ready > label.until {
+            return beyond;
+        }
+        self.memory.stable.clear();
+        self.memory.stable.push((ready, label.until));
+        self.memory.line.clear();
+        self.memory.line.push((label.node, 0.0));
+        let mut settled = 0;
+        let mut here = (label.node, 0.0);
+        while let Some((next, length)) = network.ahead(here.0, heading) {
+            if !self.may_enter(here.0, next) {
+                break;
+            }
+            here = (next, here.1 + length);
+            self.memory.line.push(here);
+            if let Some(to_go) = self.to_go(next, heading) {
+                let estimate = self.estimate(ready + Us::from(self.query.model.run(here.1)), to_go);
+                if estimate > upto {
+                    beyond = beyond.min(estimate);
+                } else if estimate > label.scanned
+                    && (label.until < FOREVER || self.is_useful_stop(next, heading))
+                {
+                    settled = self.settle(settled, label.until);
+                    if self.memory.stable.is_empty() {
+                        break;
+                    }
+                    self.stop(parent, label, heading, settled);
+                }
+            }
+            if self.query.loaded && network.storage[next as usize] {
+                break;
+            }
+        }
+        beyond
+    }
+
+    fn may_enter(&self, from: u32, to: u32) -> bool {
+        self.network.may_enter(from, to, self.query.goal, self.query.loaded) || self.is_goal(to)
+    }
+
+    /// Whether stopping at a waypoint can pay: it is the goal, it lets the robot turn towards
+    /// somewhere, it is an elevator, or traffic ahead makes it a waiting place. (Where the robot
+    /// cannot stay before the run for good, every stop can pay.)
+    fn is_useful_stop(&self, node: u32, heading: u8) -> bool {
+        let network = self.network;
+        let leads_on = |other: u8| {
+            let Some((next, _)) = network.ahead(node, other) else { return false };
+            if other == heading {
+                !self.table.row(network.resource[next as usize]).is_empty()
+            } else {
+                self.may_enter(node, next)
+            }
+        };
+        self.is_goal(node)
+            || !network.lifts_from(node).is_empty()
+            || (0..network.heading_count() as u8).any(leads_on)
+    }
+
+    /// Restricts the departures by the reservations of those waypoints of the line that a robot
+    /// stopping at its end passes before it brakes: they bind all longer runs too. `settled` of
+    /// them have been applied before; returns how many have been now.
+    fn settle(&mut self, mut settled: usize, until: Us) -> usize {
+        let (network, kind) = (self.network, self.query.kind);
+        let memory = &mut *self.memory;
+        let last = memory.line.len() - 1;
+        let total = memory.line[last].1;
+        if total < kind.run_up() + kind.braking() {
+            return settled;
+        }
+        let brakes_at = total - kind.braking();
+        while settled < last && memory.line[settled + 1].1 <= brakes_at {
+            let leave = ceil_us(kind.unbraked(memory.line[settled + 1].1));
+            if settled == 0 {
+                leave_by(&mut memory.stable, until - leave);
+            } else {
+                let enter = floor_us(kind.unbraked(memory.line[settled - 1].1));
+                let resource = network.resource[memory.line[settled].0 as usize];
+                self.table.restrict(resource, enter, leave, &mut memory.stable);
+            }
+            if memory.stable.is_empty() {
+                break;
+            }
+            settled += 1;
+        }
+        settled
+    }
+
+    /// Offers a stop at the end of the line, one label per free interval there.
+    fn stop(&mut self, parent: u32, label: &Label, heading: u8, settled: usize) {
+        let network = self.network;
+        let memory = &mut *self.memory;
+        let last = memory.line.len() - 1;
+        let (node, total) = memory.line[last];
+        let profile = self.query.kind.run(total);
+        memory.windows.clone_from(&memory.stable);
+        for i in settled..last {
+            let leave = ceil_us(profile.time_at(memory.line[i + 1].1));
+            let resource = network.resource[memory.line[i].0 as usize];
+            if i == 0 {
+                leave_by(&mut memory.windows, label.until - leave);
+            } else if !self.table.row(resource).is_empty() {
+                let enter = floor_us(profile.time_at(memory.line[i - 1].1));
+                self.table.restrict(resource, enter, leave, &mut memory.windows);
+            }
+            if memory.windows.is_empty() {
+                return;
+            }
+        }
+        let enter = floor_us(profile.time_at(memory.line[last - 1].1));
+        let duration = ceil_us(profile.duration());
+        for (from, until) in self.table.gaps(network.resource[node as usize]) {
+            let fits = self.memory.windows.iter().find_map(|&(low, high)| {
+                let departure = low.max(from - enter);
+                (departure <= high && departure + duration <= until).then_some(departure)
+            });
+            if let Some(departure) = fits {
+                self.offer(Label {
+                    node,
+                    heading,
+                    ride: false,
+                    dead: false,
+                    from,
+                    until,
+                    arrival: departure + duration,
+                    departure,
+                    parent,
+                    sibling: NONE,
+                    scanned: -1,
+                    scans: 0,
+                });
+            }
+        }
+    }
+
+    /// Offers the elevator rides from a label; the shaft stays the robot's, so the interval stays.
+    pub(super) fn ride(&mut self, parent: u32, label: &Label) {
+        for lift in self.network.lifts_from(label.node) {
+            let arrival = label.arrival + lift.travel;
+            if arrival <= label.until {
+                self.offer(Label {
+                    node: lift.to,
+                    ride: true,
+                    arrival,
+                    departure: label.arrival,
+                    parent,
+                    sibling: NONE,
+                    scanned: -1,
+                    scans: 0,
+                    ..label.clone()
+                });
+            }
+        }
+    }
+}
+
+/// Keeps the departures up to `latest`.
+fn leave_by(windows: &mut Vec<(Us, Us)>, latest: Us) {
+    windows.retain_mut(|window| {
+        window.1 = window.1.min(latest);
+        window.0 <= window.1
+    });
+}
