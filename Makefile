@@ -33,7 +33,7 @@ setup: $(VENV)/.built ## Install the pinned packages and build the Rust crate
 .PHONY: test
 test: setup ## Run the tests of the Rust crate and of the Python packages
 	$(CARGO) test $(MANIFEST) --no-default-features
-	$(BIN)/python -m pytest -n $(JOBS)
+	$(BIN)/python -m pytest -n $(JOBS) --benchmark-disable
 
 .PHONY: lint
 lint: setup ## Check style, types, import rules and the Rust crate
@@ -73,11 +73,11 @@ lock: $(VENV)/.installed ## Pin the newest packages that pyproject.toml allows: 
 clean: ## Remove what was installed and built; results/ stays
 	rm -rf $(VENV) .rust $(CRATE)/target $(CRATE)/_core*.so $(CRATE)/_core*.pyd dist
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache
-	find rmfs solvers experiments tests tools -name __pycache__ -prune -exec rm -rf {} +
+	find rmfs solvers experiments tests .ci -name __pycache__ -prune -exec rm -rf {} +
 
 .PHONY: rust
 rust:
-	@tools/rust
+	@.ci/rust
 
 $(VENV)/.installed: requirements.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is \

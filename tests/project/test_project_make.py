@@ -43,7 +43,7 @@ def make(*arguments: str) -> "subprocess.CompletedProcess[str]":
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
     """A checkout with as much as the tool reads, and an own folder of programs, without Rust."""
-    for name in ("tools/rust", "rmfs/traffic/Cargo.toml"):
+    for name in (".ci/rust", "rmfs/traffic/Cargo.toml"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, tmp_path / name)
     (tmp_path / "bin").mkdir()
@@ -69,7 +69,7 @@ def rust(checkout: Path, version: str) -> None:
 
 def bring_rust(checkout: Path) -> "subprocess.CompletedProcess[str]":
     return subprocess.run(
-        [checkout / "tools" / "rust"],
+        [checkout / ".ci" / "rust"],
         env={"PATH": str(checkout / "bin")},
         capture_output=True,
         text=True,
@@ -129,7 +129,7 @@ def test_rustup_brings_the_pinned_version(checkout: Path) -> None:
     program(checkout, "curl", f'for last; do :; done; cat "{checkout}/installer" >"$last"')
     told = bring_rust(checkout)
     assert told.returncode == 0, told.stderr
-    pinned = re.search(r"^PINNED=(.+)$", text("tools/rust"), re.MULTILINE)
+    pinned = re.search(r"^PINNED=(.+)$", text(".ci/rust"), re.MULTILINE)
     assert pinned is not None
     assert told.stderr == f"rust: installing Rust {pinned[1]} with rustup into .rust\n"
     version = subprocess.run(

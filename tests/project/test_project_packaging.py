@@ -13,7 +13,7 @@ MATURIN = PROJECT["tool"]["maturin"]
 @pytest.fixture
 def backend() -> ModuleType:
     pytest.importorskip("maturin")
-    spec = importlib.util.spec_from_file_location("backend", ROOT / "tools" / "build_backend.py")
+    spec = importlib.util.spec_from_file_location("backend", ROOT / ".ci" / "build_backend.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -56,8 +56,8 @@ def test_the_wheel_leaves_the_crate_out() -> None:
 
 
 def test_the_source_distribution_carries_its_build_back_end() -> None:
-    assert PROJECT["build-system"]["backend-path"] == ["tools"]
-    assert {"path": "tools/build_backend.py", "format": "sdist"} in MATURIN["include"]
+    assert PROJECT["build-system"]["backend-path"] == [".ci"]
+    assert {"path": ".ci/build_backend.py", "format": "sdist"} in MATURIN["include"]
 
 
 @pytest.mark.parametrize(

@@ -44,7 +44,7 @@ def test_all_files_state_the_same_oldest_python() -> None:
 
 
 def test_the_pinned_rust_is_new_enough() -> None:
-    pinned = re.search(r"^PINNED=([\d.]+)$", text("tools/rust"), re.MULTILINE)
+    pinned = re.search(r"^PINNED=([\d.]+)$", text(".ci/rust"), re.MULTILINE)
     assert pinned is not None
 
     def numbers(version: str) -> list[int]:
