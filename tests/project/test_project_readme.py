@@ -72,9 +72,7 @@ def test_links_lead_somewhere(name: str) -> None:
 
 def test_folders_named_exist() -> None:
     listed = re.findall(r"^\| `([a-z]+)/` \|", README, re.MULTILINE)
-    assert {path.relative_to(ROOT).parts[0] for path in tracked("*/*.py")} - {".ci"} <= set(
-        listed
-    )
+    assert {path.relative_to(ROOT).parts[0] for path in tracked("*/*.py")} - {".ci"} <= set(listed)
 
 
 def test_pictures_are_small() -> None:

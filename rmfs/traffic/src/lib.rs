@@ -4,7 +4,6 @@ pub mod backward;
 pub mod buckets;
 pub mod costs;
 pub mod fleet;
-pub mod heat;
 pub mod kinematics;
 pub mod network;
 pub mod postpone;

@@ -15,11 +15,10 @@ impl Fleet {
         let now = self.now;
         let state = &mut self.robots[robot as usize];
         let kind = &self.kinds[state.kind as usize];
-        let purpose = state.purpose(self.network.stations.len());
         let why = if state.phase != Phase::Idle {
-            Standing::Waiting(purpose)
+            Standing::Waiting
         } else if state.place.is_some() {
-            Standing::Served(purpose)
+            Standing::Served
         } else {
             Standing::Idle
         };
@@ -37,7 +36,7 @@ impl Fleet {
                 state.pod,
                 why,
             );
-            self.record.drive(&self.network, kind, robot, &step, state.pod, purpose);
+            self.record.drive(&self.network, kind, robot, &step, state.pod);
             let station = state.station();
             if let Some(leg) = &mut self.legs[robot as usize]
                 && leg.zone_entered.is_none()
