@@ -28,6 +28,7 @@ SUB_COMMANDS = {
     "layout": ("rmfs.layout.commands", "Make, draw, check and import layouts."),
     "scenario": ("rmfs.scenario.commands", "List, show and check scenarios."),
     "controllers": ("rmfs.control.commands", "List, show and check sets of controllers."),
+    "experiment": ("experiments.commands", "Plan and run experiments; tables and figures."),
 }
 """Module and help of each group of commands; its module is imported when it is called."""
 
@@ -196,6 +197,95 @@ def bench(
     frame = speed.table(runs=runs, tell=step)
     speed.save(frame, out)
     typer.echo(speed.to_markdown(frame))
+
+
+@app.command()
+def plot(
+    run: Annotated[Path, typer.Argument(help="Run folder.")],
+    what: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Picture: progression, heat, backlog, turnover, stations, robots, pile-on, "
+            "warmup; may be repeated. [default: all]",
+            show_default=False,
+        ),
+    ] = None,
+    format_: Annotated[str, typer.Option("--format", help="png, svg or pdf.")] = "png",
+    out: Annotated[
+        Path | None, typer.Option(help="Folder. [default: the run folder]", show_default=False)
+    ] = None,
+) -> None:
+    """Draw pictures of a run."""
+    from rmfs.measure import load_run
+    from rmfs.measure.pictures import PICTURES, save
+
+    folder = load_run(run)
+    for name in what or PICTURES:
+        path = (out or run) / f"{name}.{format_}"
+        save(folder, name, path)
+        print(path)
+
+
+@app.command()
+def report(
+    run: Annotated[Path, typer.Argument(help="Run folder.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="HTML file. [default: report.html in the run folder]", show_default=False
+        ),
+    ] = None,
+    csv: Annotated[
+        bool, typer.Option("--csv", help="Write every table as CSV, too, into the run folder.")
+    ] = False,
+) -> None:
+    """Write a report of a run: one HTML file."""
+    from rmfs.measure import load_run
+    from rmfs.measure.folder import write_csv
+    from rmfs.measure.report import write_report
+
+    folder = load_run(run)
+    path = out or run / "report.html"
+    write_report(folder, path)
+    for file in [path, *(write_csv(folder) if csv else [])]:
+        print(file)
+
+
+@app.command(hidden=True)
+def docs(
+    folder: Annotated[Path, typer.Argument(help="Folder of the pages.")] = Path("docs"),
+) -> None:
+    """Write the pages of the documentation that are generated."""
+    from rmfs.measure.pages import write_pages
+
+    write_pages(folder)
+
+
+@app.command()
+def compare(
+    sources: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="A B ...",
+            help="Run folders, folders of experiments, their arms (FOLDER#ARM), or tables.",
+        ),
+    ],
+    columns: Annotated[
+        list[str] | None,
+        typer.Option("--column", "-c", help="Column of the footprint; may be repeated."),
+    ] = None,
+    everything: Annotated[
+        bool, typer.Option("--all", help="Show every column that differs.")
+    ] = False,
+    confidence: Annotated[float, typer.Option(min=0.5, max=0.999, help="Of the intervals.")] = 0.95,
+) -> None:
+    """Say in what runs, arms or tables differ: input and output, paired by seed."""
+    from experiments.commands import print_comparisons
+    from experiments.compare import compare as compared
+
+    print_comparisons(
+        compared(sources, confidence=confidence), columns or [], everything=everything
+    )
 
 
 def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:

@@ -9,223 +9,13 @@ otherwise, counts, means and rates cover the measured time only.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-INTEGER = "int64"
-COUNT_OR_EMPTY = "Int64"
-REAL = "float64"
-TEXT = "str"
-FLAG = "bool"
-
-
-@dataclass(frozen=True, slots=True)
-class Column:
-    """One column of a table.
-
-    Attributes
-    ----------
-    name
-        Ends with the unit where there is one: `_s`, `_m`, `_h` (per hour), `_share` (0 to 1).
-    dtype
-        The pandas type it is written in.
-    unit
-        Unit in words, or empty for names and identifiers.
-    meaning
-        Definition; empty cells are explained where they can occur.
-    measured
-        Whether it depends on the machine and the moment, and so does not repeat.
-    """
-
-    name: str
-    dtype: str
-    unit: str
-    meaning: str
-    measured: bool = False
-
-
-def _shares_of_robots() -> tuple[Column, ...]:
-    told = {
-        "waiting": "standing with a way to go, or in a queue",
-        "turning": "turning on the spot",
-        "served": "standing at a station",
-        "transfer": "lifting or setting down a pod",
-        "riding": "in an elevator",
-        "idle": "standing without anything to do",
-    }
-    return tuple(
-        Column(f"robot_{name}_share", REAL, "share", f"Robot time {what}")
-        for name, what in told.items()
-    )
-
-
-FOOTPRINT = (
-    Column("layout", TEXT, "", "Name of the layout"),
-    Column("scenario", TEXT, "", "Name of the scenario"),
-    Column("controllers", TEXT, "", "Name of the set of controllers"),
-    Column("seed", INTEGER, "", "Seed of all random streams of the run"),
-    Column("warmup_s", REAL, "s", "Simulated time before the measured time"),
-    Column("duration_s", REAL, "s", "Measured time"),
-    Column("tiers", INTEGER, "tiers", "Floors of the layout"),
-    Column("robots", INTEGER, "robots", "Robots"),
-    Column("pods", INTEGER, "pods", "Pods"),
-    Column("pick_stations", INTEGER, "stations", "Pick stations"),
-    Column("replenishment_stations", INTEGER, "stations", "Replenishment stations"),
-    Column("skus", INTEGER, "SKUs", "SKUs of the scenario"),
-    Column("orders_completed", INTEGER, "orders", "Pick orders whose last unit was picked"),
-    Column("lines_picked", INTEGER, "lines", "Order lines whose last unit was picked"),
-    Column("units_picked", INTEGER, "units", "Units picked from pods into orders"),
-    Column("bundles_stored", INTEGER, "bundles", "Replenishment bundles put into pods"),
-    Column("orders_per_h", REAL, "1/h", "orders_completed / duration"),
-    Column("lines_per_h", REAL, "1/h", "lines_picked / duration"),
-    Column("units_per_h", REAL, "1/h", "units_picked / duration"),
-    Column("bundles_per_h", REAL, "1/h", "bundles_stored / duration"),
-    Column(
-        "units_per_h_bound",
-        REAL,
-        "1/h",
-        "What the pick stations could pick at most, never waiting for a pod: sum over stations of "
-        "3600 / max(unit_transfer_s, unit_pick_s)",
-    ),
-    Column("units_score", REAL, "share", "units_per_h / units_per_h_bound"),
-    Column(
-        "pick_visits",
-        INTEGER,
-        "visits",
-        "Stays of a pod at a pick station in which at least one unit was picked; a pod that keeps "
-        "its place for further requests makes one visit",
-    ),
-    Column("units_per_visit", REAL, "units", "Pile-on: units_picked / pick_visits"),
-    Column("lines_per_visit", REAL, "lines", "lines_picked / pick_visits"),
-    Column("orders_per_visit", REAL, "orders", "orders_completed / pick_visits"),
-    Column("bundles_per_visit", REAL, "bundles", "bundles_stored / replenishment_visits"),
-    Column("distance_m", REAL, "m", "Distance driven by all robots"),
-    Column("distance_per_robot_m", REAL, "m", "distance_m / robots"),
-    Column("distance_per_unit_m", REAL, "m", "distance_m / units_picked"),
-    Column(
-        "trips",
-        INTEGER,
-        "trips",
-        "Trips that ended: to a pod, to a station (ending at its queue zone), to a storage place, "
-        "or to a resting place",
-    ),
-    Column("trip_time_mean_s", REAL, "s", "Mean time from the start to the end of a trip"),
-    Column(
-        "pick_station_idle_share",
-        REAL,
-        "share",
-        "1 - time in which the stations handle a unit / (pick stations x duration)",
-    ),
-    Column(
-        "replenishment_station_idle_share",
-        REAL,
-        "share",
-        "1 - time in which the stations handle a bundle / (replenishment stations x duration)",
-    ),
-    Column(
-        "robot_busy_share",
-        REAL,
-        "share",
-        "Robot time with a task other than resting (pick, replenish, park, reposition)",
-    ),
-    Column("robot_moving_share", REAL, "share", "Robot time driving"),
-    Column(
-        "robot_queueing_share",
-        REAL,
-        "share",
-        "Robot time from entering a station's queue zone to standing at the station; overlaps with "
-        "the other shares",
-    ),
-    Column("order_turnover_mean_s", REAL, "s", "Mean time from arrival to completion of an order"),
-    Column("order_turnover_median_s", REAL, "s", "Median of the same"),
-    Column(
-        "order_throughput_time_median_s",
-        REAL,
-        "s",
-        "Median time from an order's assignment to a station to its completion",
-    ),
-    Column(
-        "late_share", REAL, "share", "Completed orders that were completed after their due time"
-    ),
-    Column(
-        "backlog_orders_mean",
-        REAL,
-        "orders",
-        "Time average of the number of orders that wait for a station",
-    ),
-    Column(
-        "inventory_share_mean",
-        REAL,
-        "share",
-        "Time average of the space that stored units use / capacity of all pods",
-    ),
-    Column("plans", INTEGER, "plans", "Paths planned and accepted"),
-    Column("plan_failures", INTEGER, "plans", "Searches that found no path yet"),
-    Column("replans", INTEGER, "plans", "Paths changed before they were driven to the end"),
-    Column(
-        "collisions",
-        COUNT_OR_EMPTY,
-        "events",
-        "Overlaps of two bodies found by the independent trace checker, warm-up included; empty "
-        "where it did not run",
-    ),
-    Column("decisions", INTEGER, "decisions", "Decisions given by all controllers"),
-    Column(
-        "decision_wall_s",
-        REAL,
-        "s",
-        "Wall time spent in controllers, also where they came to no decision",
-        measured=True,
-    ),
-    Column("optimiser_calls", INTEGER, "calls", "Decision problems handed to an optimiser"),
-    Column(
-        "optimiser_gap_mean",
-        REAL,
-        "share",
-        "Mean relative gap between value and bound of the optimisers' solutions; empty without",
-    ),
-    Column("paced_s", REAL, "s", "Simulated time that decisions took (see pacing)"),
-    Column(
-        "wall_s", REAL, "s", "Wall time of the whole simulation, loading excluded", measured=True
-    ),
-    Column("sim_per_wall", REAL, "s/s", "(warmup_s + duration_s) / wall_s", measured=True),
-    Column("peak_rss_mb", REAL, "MB", "Largest memory the process has used", measured=True),
-    # from here on: further columns, in no promised order
-    Column("orders_created", INTEGER, "orders", "Orders that arrived"),
-    Column("order_redraws", INTEGER, "draws", "Drawn orders that the stock could not serve"),
-    Column("backlog_orders_end", INTEGER, "orders", "Orders that wait for a station at the end"),
-    Column("open_orders_mean", REAL, "orders", "Time average of the orders open at stations"),
-    Column("bundles_created", INTEGER, "bundles", "Bundles that arrived"),
-    Column("units_stored", INTEGER, "units", "Units in the stored bundles"),
-    Column(
-        "replenishment_visits",
-        INTEGER,
-        "visits",
-        "Stays of a pod at a replenishment station in which at least one bundle was stored",
-    ),
-    Column(
-        "late_bound_units_per_visit",
-        REAL,
-        "units",
-        "Units picked that were bound to the pod after its robot had got the task / pick_visits",
-    ),
-    Column("order_turnover_lower_quartile_s", REAL, "s", "First quartile of order turnover"),
-    Column("order_turnover_upper_quartile_s", REAL, "s", "Third quartile of order turnover"),
-    Column("order_throughput_time_mean_s", REAL, "s", "Mean time from assignment to completion"),
-    Column("bundle_turnover_mean_s", REAL, "s", "Mean time from a bundle's arrival to its storage"),
-    Column("bundle_turnover_median_s", REAL, "s", "Median of the same"),
-    Column("pods_lifted", INTEGER, "lifts", "Pods lifted"),
-    Column("loaded_distance_m", REAL, "m", "Distance driven with a pod"),
-    Column(
-        "trip_delay_mean_s",
-        REAL,
-        "s",
-        "Mean of trip time less a lower bound of the time the trip takes without other robots; "
-        "trips to stations are left out, as they end at the queue zone",
-    ),
-    *_shares_of_robots(),
-    Column("expansions", INTEGER, "labels", "Labels expanded by the path planner"),
-    Column("planning_wall_s", REAL, "s", "Wall time spent in path planning", measured=True),
-)
+from rmfs.measure.columns import COUNT_OR_EMPTY as COUNT_OR_EMPTY
+from rmfs.measure.columns import FLAG as FLAG
+from rmfs.measure.columns import INTEGER as INTEGER
+from rmfs.measure.columns import REAL as REAL
+from rmfs.measure.columns import TEXT as TEXT
+from rmfs.measure.columns import Column as Column
+from rmfs.measure.footprint_columns import FOOTPRINT as FOOTPRINT
 
 SERIES = (
     Column("time_s", REAL, "s", "End of the interval, since the start of the run"),
@@ -292,6 +82,17 @@ STATIONS = (
     Column("idle_share", REAL, "share", "1 - busy_s / duration"),
     Column("active_share", REAL, "share", "Time switched on / duration"),
     Column("units_per_h_bound", REAL, "1/h", "See footprint; empty for replenishment stations"),
+    Column("units_per_visit", REAL, "units", "Pile-on: units_picked / visits"),
+    Column("orders_per_visit", REAL, "orders", "orders_completed / visits"),
+    Column("bundles_per_visit", REAL, "bundles", "bundles_stored / visits"),
+    Column("order_slots", INTEGER, "orders", "Orders open at once; 0 for replenishment stations"),
+    Column("capacity", REAL, "space units", "Bundles assigned at once; empty for pick stations"),
+    Column(
+        "without_work_share",
+        REAL,
+        "share",
+        "Share of the time in which no order (bundle) was assigned to it",
+    ),
 )
 
 ORDERS = (
@@ -306,6 +107,41 @@ ORDERS = (
     Column("turnover_s", REAL, "s", "completed_s - created_s"),
     Column("throughput_time_s", REAL, "s", "completed_s - assigned_s"),
     Column("lateness_s", REAL, "s", "completed_s - due_s; negative if early"),
+    Column("pods", INTEGER, "pods", "Pods from which units were picked for it so far"),
+)
+
+PICKS = (
+    Column("time_s", REAL, "s", "When the unit left the pod"),
+    Column("order", INTEGER, "", "Order, as in the table of orders"),
+    Column("sku", INTEGER, "", "SKU"),
+    Column("pod", INTEGER, "", "Pod"),
+    Column("robot", INTEGER, "", "Robot that brought the pod"),
+    Column("station", INTEGER, "", "Pick station"),
+    Column("late_bound", FLAG, "", "Whether it was bound after the robot got its task"),
+)
+
+BUNDLES = (
+    Column("sku", INTEGER, "", "SKU"),
+    Column("units", INTEGER, "units", "Units"),
+    Column("space", REAL, "space units", "Space they need together"),
+    Column("created_s", REAL, "s", "Arrival"),
+    Column("assigned_s", REAL, "s", "When pod and station were both decided; empty if not yet"),
+    Column("stored_s", REAL, "s", "Storage; empty if not yet"),
+    Column("pod", INTEGER, "", "Pod, -1 while undecided"),
+    Column("station", INTEGER, "", "Replenishment station, -1 while undecided"),
+    Column("robot", INTEGER, "", "Robot that brought the pod, -1 before"),
+    Column("turnover_s", REAL, "s", "stored_s - created_s"),
+    Column("throughput_time_s", REAL, "s", "stored_s - assigned_s"),
+)
+
+VISITS = (
+    Column("station", INTEGER, "", "Station"),
+    Column("pod", INTEGER, "", "Pod"),
+    Column("robot", INTEGER, "", "Robot"),
+    Column("begin_s", REAL, "s", "When the robot stood at the station; may lie in the warm-up"),
+    Column("end_s", REAL, "s", "When it was told to leave; empty if not yet"),
+    Column("units", INTEGER, "units", "Units picked in the measured time"),
+    Column("bundles", INTEGER, "bundles", "Bundles stored in the measured time"),
 )
 
 TRIPS = (
@@ -315,14 +151,36 @@ TRIPS = (
     Column("to_waypoint", INTEGER, "", "Where it led"),
     Column("start_s", REAL, "s", "When the robot was told to drive"),
     Column("end_s", REAL, "s", "Arrival (for a station: at its queue zone)"),
+    Column("station", INTEGER, "", "Station it led to, -1 for another kind"),
     Column("loaded", FLAG, "", "Whether the robot carried a pod"),
     Column("distance_m", REAL, "m", "Distance driven"),
     Column(
         "unhindered_s",
         REAL,
         "s",
-        "Lower bound of the time without other robots (for a station: to the place in its queue)",
+        "Lower bound of the time without other robots (for a station: to its queue zone)",
     ),
+)
+
+CONNECTIONS = (
+    Column("from_waypoint", INTEGER, "", "Where trips began"),
+    Column("to_waypoint", INTEGER, "", "Where they led"),
+    Column("from_kind", TEXT, "", "pick, replenishment, storage, elevator, queue or road"),
+    Column("to_kind", TEXT, "", "Likewise"),
+    Column("trips", INTEGER, "trips", "Trips between the two, in this direction"),
+    Column("time_mean_s", REAL, "s", "Mean trip time"),
+    Column("time_variance_s2", REAL, "s²", "Population variance of the trip time"),
+    Column("time_min_s", REAL, "s", "Shortest trip time"),
+    Column("time_max_s", REAL, "s", "Longest trip time"),
+    Column("distance_mean_m", REAL, "m", "Mean distance driven"),
+)
+
+EDGES = (
+    Column("from_waypoint", INTEGER, "", "Where the edge begins"),
+    Column("to_waypoint", INTEGER, "", "Where it ends"),
+    Column("ride", FLAG, "", "Whether it is an elevator ride to another tier"),
+    Column("passages", INTEGER, "passages", "Robots that drove it"),
+    Column("loaded_passages", INTEGER, "passages", "Of these, with a pod"),
 )
 
 ROBOTS = (
@@ -379,14 +237,30 @@ SKUS = (
     Column("pods_end", INTEGER, "pods", "Pods that hold it at the end"),
 )
 
+_PURPOSES = {
+    "pick": "bound for a pick station (fetching its pod included), or at one",
+    "replenish": "bound for a replenishment station (fetching its pod included), or at one",
+    "store": "otherwise carrying a pod or fetching one",
+    "rest": "without a pod to care for",
+}
+
 HEAT = (
     Column("waypoint", INTEGER, "", "Waypoint"),
     Column("tier", INTEGER, "", "Floor"),
     Column("x_m", REAL, "m", "Position"),
     Column("y_m", REAL, "m", "Position"),
     Column("visits", INTEGER, "visits", "Robots that passed or stopped"),
-    Column("loaded_visits", INTEGER, "visits", "Of these, with a pod"),
+    Column("loaded_visits", INTEGER, "visits", "Robots that passed or stopped with a pod"),
+    *(
+        Column(f"{task}_visits", INTEGER, "visits", f"Robots that passed or stopped, {what}")
+        for task, what in _PURPOSES.items()
+    ),
     Column("waiting_s", REAL, "s", "Time that robots stood here, idle ones not counted"),
+    Column("loaded_waiting_s", REAL, "s", "Time that robots stood here with a pod"),
+    *(
+        Column(f"{task}_waiting_s", REAL, "s", f"Time that robots stood here, {what}")
+        for task, what in _PURPOSES.items()
+    ),
 )
 
 DECISIONS = (
@@ -401,17 +275,31 @@ DECISIONS = (
     Column("wall_s", REAL, "s", "Wall time it took", measured=True),
 )
 
+CONTROLLERS = (
+    Column("problem", TEXT, "", "Decision problem"),
+    Column("calls", INTEGER, "calls", "How often its controller was asked"),
+    Column("decisions", INTEGER, "decisions", "Decisions given"),
+    Column("wall_s", REAL, "s", "Wall time of all calls", measured=True),
+    Column("wall_mean_s", REAL, "s", "Mean wall time of a call", measured=True),
+)
+
 TABLES = {
     "footprint": FOOTPRINT,
     "series": SERIES,
     "stations": STATIONS,
     "orders": ORDERS,
+    "picks": PICKS,
+    "bundles": BUNDLES,
+    "visits": VISITS,
     "trips": TRIPS,
+    "connections": CONNECTIONS,
     "robots": ROBOTS,
     "pods": PODS,
     "skus": SKUS,
     "heat": HEAT,
+    "edges": EDGES,
     "decisions": DECISIONS,
+    "controllers": CONTROLLERS,
 }
 """Every table of a run folder, by the name of its file."""
 
@@ -428,7 +316,15 @@ def reproducible(table: str) -> list[str]:
 
 def markdown() -> str:
     """Return the dictionary as a page: one section per table."""
-    lines: list[str] = []
+    lines = [
+        "# Data dictionary",
+        "",
+        "Every table of a run folder (`NAME.parquet`) and every column of it. Generated by",
+        "`rmfs docs`. The *measured time* is the time after the warm-up;",
+        "counts, means and rates cover it only unless a meaning says otherwise. A *measured*",
+        "column depends on machine and moment, a *reproducible* one does not.",
+        "",
+    ]
     for table, columns in TABLES.items():
         lines += [f"## {table}", "", "| Column | Unit | Repeats | Meaning |", "|---|---|---|---|"]
         for column in columns:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rmfs.errors import InputError
+from rmfs.files import replacing
 from rmfs.measure.dictionary import TABLES, names
 
 if TYPE_CHECKING:
@@ -83,6 +84,24 @@ def fill(
         (folder / PARAMETERS).write_text(text + "\n", encoding="utf-8")
     except OSError as error:
         raise InputError(f"{folder}: cannot be written ({error.strerror or error})") from None
+
+
+def write_csv(run: RunFolder) -> list[Path]:
+    """Write every table of a run folder as CSV beside its Parquet file; return the files.
+
+    Raises
+    ------
+    InputError
+        If a table is missing, or the folder cannot be written.
+    """
+    written = []
+    for name in TABLES:
+        frame = run.table(name)
+        path = run.path / f"{name}.csv"
+        with replacing(path) as temporary:
+            frame.to_csv(temporary, index=False, lineterminator="\n")
+        written.append(path)
+    return written
 
 
 def plain(value: Any) -> Any:

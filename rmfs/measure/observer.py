@@ -76,6 +76,9 @@ class Observer:
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
         """A controller was asked (POA, PPS, ...) and gave this many decisions in this wall time."""
 
+    def controller_exchanged(self, time_s: float, problem: str, name: str) -> None:
+        """Another controller was installed for a problem."""
+
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
         """SA switched a station on or off."""
 

@@ -58,7 +58,7 @@ class Recorder(Observer):
     start_s, end_s
         The measured time.
     units
-        Picked units: time, sku, pod, robot, station, late bound.
+        Picked units: time, order, sku, pod, robot, station, late bound.
     lines
         Finished lines: time, sku, station.
     finished_orders
@@ -79,8 +79,8 @@ class Recorder(Observer):
         Pods lifted: time, pod, robot.
     calls
         Controllers asked that came to a decision.
-    idle_wall_s
-        Wall time of the calls since the warm-up that came to none.
+    asked
+        Per problem, number and wall time of all calls since the warm-up.
     activations
         Stations switched: time, station, active.
     samples
@@ -92,7 +92,7 @@ class Recorder(Observer):
         self.world: World
         self.start_s = 0.0
         self.end_s = nan
-        self.units: list[tuple[float, int, int, int, int, bool]] = []
+        self.units: list[tuple[float, int, int, int, int, int, bool]] = []
         self.lines: list[tuple[float, int, int]] = []
         self.finished_orders: list[tuple[Any, ...]] = []
         self.open_orders: dict[int, Order] = {}
@@ -103,13 +103,14 @@ class Recorder(Observer):
         self.tasks: list[tuple[float, int, str]] = []
         self.lifts: list[tuple[float, int, int]] = []
         self.calls = Calls()
-        self.idle_wall_s = 0.0
+        self.asked: dict[str, list[float]] = {}
         self.activations: list[tuple[float, int, bool]] = []
         self.samples: list[tuple[float, dict[str, float]]] = []
         self.stored_space_start = 0.0
         self.motion: dict[str, NDArray[Any]] = {}
         self.heat: dict[str, NDArray[Any]] = {}
         self.trips: dict[str, NDArray[Any]] = {}
+        self.edges: dict[str, NDArray[Any]] = {}
         self.counters: dict[str, float] = {}
         self._at_station: dict[int, tuple[float, int, int]] = {}
         self._redraws_before = 0
@@ -128,7 +129,7 @@ class Recorder(Observer):
     def warmup_ended(self, time_s: float) -> None:
         """Begin to measure."""
         self.start_s = time_s
-        self.idle_wall_s = 0.0
+        self.asked.clear()
         self._redraws_before = self.world.order_redraws
 
     def run_ended(self, time_s: float) -> None:
@@ -139,6 +140,7 @@ class Recorder(Observer):
         self.motion = self._traffic.motion()
         self.heat = self._traffic.heat()
         self.trips = self._traffic.trips()
+        self.edges = self._traffic.edges()
         self.counters = self._traffic.counters()
         self.counters["order_redraws"] = self.world.order_redraws - self._redraws_before
         for station, (since, pod, robot) in self._at_station.items():
@@ -169,7 +171,7 @@ class Recorder(Observer):
         late_bound: bool,
     ) -> None:
         """Write the unit down."""
-        self.units.append((time_s, sku, pod, robot, station, late_bound))
+        self.units.append((time_s, order.index, sku, pod, robot, station, late_bound))
 
     def line_picked(self, time_s: float, order: Order, sku: int, units: int) -> None:
         """Write the line down."""
@@ -207,10 +209,14 @@ class Recorder(Observer):
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
         """Write the call down."""
+        try:
+            asked = self.asked[problem]
+        except KeyError:
+            asked = self.asked[problem] = [0, 0.0]
+        asked[0] += 1
+        asked[1] += wall_s
         if decisions:
             self.calls.add(problem, time_s, wall_s, decisions)
-        else:
-            self.idle_wall_s += wall_s
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
         """Write the switch down."""

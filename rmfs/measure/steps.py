@@ -40,6 +40,11 @@ class Steps:
         sign = np.concatenate([np.ones(len(begins)), -np.ones(len(ends))])
         return cls(np.concatenate([begins, ends]), sign)
 
+    def positive(self) -> Steps:
+        """Return the function that is 1 where this one is above 0, and 0 elsewhere."""
+        above = (self._values > 0).astype(np.float64)
+        return Steps(self._times, np.diff(above), above[0])
+
     def at(self, time_s: ArrayLike) -> Floats:
         """Return the values just after each time."""
         return self._values[np.searchsorted(self._times, time_s, side="right")]

@@ -42,11 +42,12 @@ def summary(footprint: pd.Series) -> Group:
     table.add_column()
     table.add_column(justify="right")
     for label, column, form in FIGURES:
-        table.add_row(label, _shown(footprint[column], column, form))
+        table.add_row(label, shown(footprint[column], column, form))
     return Group(title, table)
 
 
-def _shown(value: Any, column: str, form: str) -> str:
+def shown(value: Any, column: str, form: str) -> str:
+    """Return a figure in its format, - for what was not measured."""
     import pandas as pd
 
     if pd.isna(value):

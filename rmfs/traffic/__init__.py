@@ -23,6 +23,8 @@ __all__ = ["EventKind", "Motion", "Piece", "Step", "Traffic", "TrafficEvent", "T
 COST_TABLE_BYTES = 200_000_000
 EXPANSION_BUDGET = 50_000
 
+_BY_PURPOSE = ("visits", "waiting_s")
+
 
 class Step(IntEnum):
     """What a robot can be told to do."""
@@ -210,11 +212,25 @@ class Traffic:
         return self._core.motion()
 
     def heat(self) -> dict[str, NDArray[Any]]:
-        """Per waypoint since the last reset, each of shape (N,).
+        """Count visits and standing time of robots that are not idle, since the last reset.
 
-        `visits`, `loaded_visits`, and `waiting_s` of robots that are not idle.
+        Per waypoint, shape (N,): `visits`, `waiting_s`, and of these with a pod `loaded_visits`,
+        `loaded_waiting_s`. Per waypoint and purpose, shape (N, S + 2): `purpose_visits`,
+        `purpose_waiting_s`. The purpose is the station a robot is bound for or stands at (on the
+        way to the pod, too), column S for storing or fetching a pod otherwise, S + 1 for the rest.
         """
-        return self._core.heat()
+        counted = self._core.heat()
+        waypoints = len(counted["loaded_visits"])
+        by_purpose = {name: counted.pop(name).reshape(waypoints, -1) for name in _BY_PURPOSE}
+        whole = {name: table.sum(axis=1) for name, table in by_purpose.items()}
+        return {**whole, **counted, **{f"purpose_{name}": by_purpose[name] for name in by_purpose}}
+
+    def edges(self) -> dict[str, NDArray[Any]]:
+        """Edges and elevator rides used since the last reset, by their ends.
+
+        `from_wp`, `to_wp`, `passages`, and of these `loaded_passages` with a pod.
+        """
+        return self._core.edges()
 
     def trips(self) -> dict[str, NDArray[Any]]:
         """Trips finished since the last reset, in order of their end.

@@ -50,6 +50,17 @@ class FakeTraffic:
             "visits": np.arange(12),
             "loaded_visits": np.arange(12) // 2,
             "waiting_s": np.linspace(0, 1, 12),
+            "loaded_waiting_s": np.zeros(12),
+            "purpose_visits": np.arange(12)[:, None] * np.array([1, 0, 0, 0, 0]),
+            "purpose_waiting_s": np.linspace(0, 1, 12)[:, None] * np.array([0, 0, 1, 0, 0]),
+        }
+
+    def edges(self) -> dict[str, np.ndarray]:
+        return {
+            "from_wp": np.array([0, 1]),
+            "to_wp": np.array([1, 2]),
+            "passages": np.array([5, 3]),
+            "loaded_passages": np.array([2, 3]),
         }
 
     def trips(self) -> dict[str, np.ndarray]:

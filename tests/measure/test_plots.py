@@ -61,5 +61,5 @@ def test_nothing_and_all_the_same(axes, visits):
 
 
 def test_an_unknown_count_is_named(axes):
-    with pytest.raises(InputError, match="valid: visits, loaded_visits, waiting_s"):
+    with pytest.raises(InputError, match="valid: visits, loaded_visits, pick_visits"):
         heat(counted([1]), axes, column="heat")

@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rmfs.measure.tables.connections import connections as connections
+from rmfs.measure.tables.connections import edges as edges
+from rmfs.measure.tables.decisions import controllers as controllers
 from rmfs.measure.tables.decisions import decisions as decisions
 from rmfs.measure.tables.footprint import Measured as Measured
 from rmfs.measure.tables.footprint import footprint as footprint
+from rmfs.measure.tables.handled import bundles as bundles
+from rmfs.measure.tables.handled import picks as picks
+from rmfs.measure.tables.handled import visits as visits
 from rmfs.measure.tables.logs import Logs as Logs
 from rmfs.measure.tables.motion import heat as heat
 from rmfs.measure.tables.motion import trips as trips
@@ -26,12 +32,18 @@ MAKERS = {
     "series": series,
     "stations": stations,
     "orders": orders,
+    "picks": picks,
+    "bundles": bundles,
+    "visits": visits,
     "trips": trips,
+    "connections": connections,
     "robots": robots,
     "pods": pods,
     "skus": skus,
     "heat": heat,
+    "edges": edges,
     "decisions": decisions,
+    "controllers": controllers,
 }
 """How each table but the footprint is made from what happened."""
 

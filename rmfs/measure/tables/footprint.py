@@ -9,7 +9,7 @@ import pandas as pd
 from rmfs.measure.memory import peak_rss_mb
 from rmfs.measure.steps import Steps
 from rmfs.measure.tables.orders import completed
-from rmfs.measure.tables.robots import STATES
+from rmfs.measure.tables.robots import STATES, TASKS
 from rmfs.measure.tables.series import inventory_share
 from rmfs.measure.tables.tidy import tidy
 
@@ -77,6 +77,8 @@ def footprint(
         **_per_distance(logs, counted),
         **_shares(logs, tables["stations"], tables["robots"]),
         **_times(logs, tables["orders"]),
+        **_spreads(logs, tables["orders"]),
+        **_tasks(tables["robots"]),
         **_levels(logs),
         **_planning(logs, report),
         **_decisions(logs, tables["decisions"]),
@@ -166,6 +168,7 @@ def _shares(logs: Logs, stations: pd.DataFrame, robots: pd.DataFrame) -> dict[st
     robot_time = logs.layout.robots * logs.duration_s
     busy = sum(robots[f"task_{task}_s"].sum() for task in BUSY)
     idle = {kind: own["idle_share"].mean() for kind, own in stations.groupby("kind")}
+    active = {kind: own["active_share"].mean() for kind, own in stations.groupby("kind")}
     bound = stations["units_per_h_bound"].sum()
     rate = ratio(stations["units_picked"].sum() * 3600.0, logs.duration_s)
     return {
@@ -173,6 +176,8 @@ def _shares(logs: Logs, stations: pd.DataFrame, robots: pd.DataFrame) -> dict[st
         "units_score": ratio(rate, bound),
         "pick_station_idle_share": idle.get("pick", NOTHING),
         "replenishment_station_idle_share": idle.get("replenishment", NOTHING),
+        "pick_station_active_share": active.get("pick", NOTHING),
+        "replenishment_station_active_share": active.get("replenishment", NOTHING),
         "robot_busy_share": ratio(busy, robot_time),
         **{f"robot_{one}_share": ratio(robots[f"{one}_s"].sum(), robot_time) for one in STATES},
     }
@@ -196,15 +201,48 @@ def _times(logs: Logs, orders: pd.DataFrame) -> dict[str, Any]:
     }
 
 
+def _spreads(logs: Logs, orders: pd.DataFrame) -> dict[str, Any]:
+    """Quartiles of what `_times` has no room for, and lateness."""
+    done, stored = completed(orders), logs.stored_now
+    lateness = done["lateness_s"]
+    late = lateness[lateness > 0]
+    told = {
+        "order_lateness": lateness,
+        "late_by": late,
+        "bundle_throughput_time": stored["time_s"] - stored["assigned_s"],
+    }
+    return {
+        "orders_late": len(late),
+        **{f"{name}_mean_s": values.mean() for name, values in told.items()},
+        **{f"{name}_median_s": values.median() for name, values in told.items()},
+        **{
+            f"{name}_{which}_quartile_s": values.quantile(share)
+            for name, values in {
+                **told,
+                "order_throughput_time": done["throughput_time_s"],
+                "bundle_turnover": stored["time_s"] - stored["created_s"],
+            }.items()
+            for which, share in (("lower", 0.25), ("upper", 0.75))
+        },
+    }
+
+
+def _tasks(robots: pd.DataFrame) -> dict[str, int]:
+    return {f"tasks_{task}": int(robots[f"tasks_{task}"].sum()) for task in TASKS}
+
+
 def _levels(logs: Logs) -> dict[str, Any]:
     """Time averages of what waits and what is in stock."""
     orders, measured = logs.orders, (logs.start_s, logs.end_s)
+    bundles = Steps.between(logs.bundles["created_s"], logs.bundles["assigned_s"])
     backlog = Steps.between(orders["created_s"], orders["assigned_s"])
     at_stations = Steps.between(orders["assigned_s"], orders["completed_s"])
     return {
         "backlog_orders_mean": backlog.mean(*measured),
         "backlog_orders_end": int(backlog.at(logs.end_s)),
         "open_orders_mean": at_stations.mean(*measured),
+        "backlog_bundles_mean": bundles.mean(*measured),
+        "backlog_bundles_end": int(bundles.at(logs.end_s)),
         "inventory_share_mean": inventory_share(logs).mean(*measured),
     }
 
@@ -222,7 +260,7 @@ def _planning(logs: Logs, report: CheckReport | None) -> dict[str, Any]:
 def _decisions(logs: Logs, decisions: pd.DataFrame) -> dict[str, Any]:
     return {
         "decisions": int(decisions["decisions"].sum()),
-        "decision_wall_s": float(decisions["wall_s"].sum()) + logs.recorder.idle_wall_s,
+        "decision_wall_s": sum(wall_s for _, wall_s in logs.recorder.asked.values()),
         "optimiser_calls": 0,
         "optimiser_gap_mean": NOTHING,
         "paced_s": 0.0,

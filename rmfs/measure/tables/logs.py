@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +22,7 @@ INTEGER, REAL, FLAG, TEXT = np.int64, np.float64, np.bool_, np.object_
 
 UNITS = {
     "time_s": REAL,
+    "order": INTEGER,
     "sku": INTEGER,
     "pod": INTEGER,
     "robot": INTEGER,
@@ -156,9 +158,13 @@ class Logs:
 
 def framed(rows: Sequence[tuple[Any, ...]], columns: dict[str, Any]) -> pd.DataFrame:
     """Turn rows into a frame with columns of given types, also if there are none."""
-    values = list(zip(*rows, strict=True)) if rows else [()] * len(columns)
-    arrays = zip(columns.items(), values, strict=True)
-    return pd.DataFrame({name: np.array(column, dtype) for (name, dtype), column in arrays})
+    # column by column: turning the rows over in one call would hold everything twice
+    return pd.DataFrame(
+        {
+            name: np.fromiter(map(itemgetter(place), rows), dtype, len(rows))
+            for place, (name, dtype) in enumerate(columns.items())
+        }
+    )
 
 
 def count(index: pd.Series[int], length: int) -> NDArray[np.int64]:

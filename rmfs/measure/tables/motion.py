@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,7 +10,9 @@ from rmfs.measure.tables.tidy import tidy
 
 if TYPE_CHECKING:
     import pandas as pd
+    from numpy.typing import NDArray
 
+    from rmfs.layout.model import Layout
     from rmfs.measure.tables.logs import Logs
 
 TRIP_KINDS = np.array(["to_pod", "to_station", "to_storage", "to_rest"])
@@ -19,6 +21,9 @@ TRIP_KINDS = np.array(["to_pod", "to_station", "to_storage", "to_rest"])
 def trips(logs: Logs) -> pd.DataFrame:
     """Trips that ended during the measured time, by their end."""
     told = logs.recorder.trips
+    station = np.full(logs.layout.waypoints, -1)
+    station[[one.waypoint for one in logs.layout.stations]] = np.arange(len(logs.layout.stations))
+    to_station = TRIP_KINDS[told["kind"]] == "to_station"
     return tidy(
         "trips",
         {
@@ -28,6 +33,7 @@ def trips(logs: Logs) -> pd.DataFrame:
             "to_waypoint": told["to_wp"],
             "start_s": told["t0_us"] / 1e6,
             "end_s": told["t1_us"] / 1e6,
+            "station": np.where(to_station, station[told["to_wp"]], -1),
             "loaded": told["loaded"],
             "distance_m": told["distance_m"],
             "unhindered_s": told["unhindered_s"],
@@ -37,7 +43,7 @@ def trips(logs: Logs) -> pd.DataFrame:
 
 def heat(logs: Logs) -> pd.DataFrame:
     """One row per waypoint."""
-    layout = logs.layout
+    layout, counted = logs.layout, logs.recorder.heat
     return tidy(
         "heat",
         {
@@ -45,6 +51,20 @@ def heat(logs: Logs) -> pd.DataFrame:
             "tier": layout.tier,
             "x_m": layout.x_m,
             "y_m": layout.y_m,
-            **logs.recorder.heat,
+            **{name: counted[name] for name in ("visits", "loaded_visits")},
+            **{name: counted[name] for name in ("waiting_s", "loaded_waiting_s")},
+            **_by_task(layout, counted["purpose_visits"], "visits"),
+            **_by_task(layout, counted["purpose_waiting_s"], "waiting_s"),
         },
     )
+
+
+def _by_task(layout: Layout, by_purpose: NDArray[Any], what: str) -> dict[str, NDArray[Any]]:
+    """Add up what was counted per station, which is what traffic knows, per kind of task."""
+    pick, stations = len(layout.pick_stations), len(layout.stations)
+    return {
+        f"pick_{what}": by_purpose[:, :pick].sum(axis=1),
+        f"replenish_{what}": by_purpose[:, pick:stations].sum(axis=1),
+        f"store_{what}": by_purpose[:, stations],
+        f"rest_{what}": by_purpose[:, stations + 1],
+    }

@@ -8,6 +8,7 @@ import numpy as np
 
 from rmfs.layout.model import PickStation
 from rmfs.measure.steps import Steps, covered
+from rmfs.measure.tables.bound import units_per_h
 from rmfs.measure.tables.logs import count
 from rmfs.measure.tables.tidy import tidy
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-    from rmfs.layout.model import ReplenishmentStation
+    from rmfs.layout.model import Layout, ReplenishmentStation
     from rmfs.measure.tables.logs import Logs
 
     Station = PickStation | ReplenishmentStation
@@ -28,6 +29,8 @@ def stations(logs: Logs) -> pd.DataFrame:
     place = np.array([station.waypoint for station in layout.stations], np.int64)
     visits = logs.visits[(logs.visits["units"] > 0) | (logs.visits["bundles"] > 0)]
     units, orders = logs.units_now, logs.orders
+    visited = count(visits["station"], number)
+    pile_on = _per(count(units["station"], number), visited)
     done = orders["completed_s"] >= logs.start_s
     edges = np.array([logs.start_s, logs.end_s])
     busy = np.array([np.diff(busy_until(logs, one, edges))[0] for one in range(number)])
@@ -41,7 +44,7 @@ def stations(logs: Logs) -> pd.DataFrame:
             "x_m": layout.x_m[place],
             "y_m": layout.y_m[place],
             "queue_places": [len(station.queue) for station in layout.stations],
-            "visits": count(visits["station"], number),
+            "visits": visited,
             "visit_time_mean_s": _mean_visit(visits, number),
             "units_picked": count(units["station"], number),
             "late_bound_units": count(units["station"][units["late_bound"]], number),
@@ -51,34 +54,47 @@ def stations(logs: Logs) -> pd.DataFrame:
             "busy_s": busy,
             "idle_share": 1.0 - busy / logs.duration_s,
             "active_share": [_active_share(logs, one) for one in range(number)],
-            "units_per_h_bound": [bound(station) for station in layout.stations],
+            "units_per_h_bound": [
+                _bound(layout, station, piled)
+                for station, piled in zip(layout.stations, pile_on, strict=True)
+            ],
+            "units_per_visit": pile_on,
+            "orders_per_visit": _per(count(orders["station"][done], number), visited),
+            "bundles_per_visit": _per(count(logs.stored_now["station"], number), visited),
+            "order_slots": [getattr(station, "order_slots", 0) for station in layout.stations],
+            "capacity": [getattr(station, "capacity", np.nan) for station in layout.stations],
+            "without_work_share": [_without_work(logs, one) for one in range(number)],
         },
     )
-
-
-def bound(station: Station) -> float:
-    """Return the units per hour a pick station handles if it never waits for a pod.
-
-    One unit keeps the station for `unit_transfer_s` and the robot for `unit_pick_s`, and the
-    station serves one robot at a time, so the longer of the two bounds the rate whatever the
-    pile-on is.
-
-    Returns
-    -------
-    float
-        3600 / max(unit_transfer_s, unit_pick_s); nan for a replenishment station, infinite if
-        handling takes no time.
-    """
-    if not isinstance(station, PickStation):
-        return float("nan")
-    slowest = max(station.unit_transfer_s, station.unit_pick_s)
-    return 3600.0 / slowest if slowest > 0 else float("inf")
 
 
 def busy_until(logs: Logs, station: int, at_s: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return how long a station has been busy up to each time, in s."""
     own = logs.busy[logs.busy["station"].to_numpy() == station]
     return covered(own["begin_s"].to_numpy(), own["end_s"].to_numpy(), at_s)
+
+
+def _bound(layout: Layout, station: Station, units_per_visit: float) -> float:
+    """Return the bound of a pick station; without any visit as if pods never changed."""
+    if not isinstance(station, PickStation):
+        return float("nan")
+    return units_per_h(layout, station, units_per_visit if units_per_visit > 0 else float("inf"))
+
+
+def _per(amount: NDArray[np.int64], visits: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Divide; empty where there was no visit."""
+    result = np.full(len(visits), np.nan)
+    np.divide(amount, visits, out=result, where=visits > 0)
+    return result
+
+
+def _without_work(logs: Logs, station: int) -> float:
+    """Return the share of the measured time in which nothing was assigned to a station."""
+    is_pick = isinstance(logs.layout.stations[station], PickStation)
+    work, done = (logs.orders, "completed_s") if is_pick else (logs.bundles, "time_s")
+    own = work["station"].to_numpy() == station
+    begin, end = work["assigned_s"].to_numpy()[own], work[done].to_numpy()[own]
+    return 1.0 - Steps.between(begin, end).positive().mean(logs.start_s, logs.end_s)
 
 
 def _kind(station: Station) -> str:

@@ -4,6 +4,7 @@ pub mod backward;
 pub mod buckets;
 pub mod costs;
 pub mod fleet;
+pub mod heat;
 pub mod kinematics;
 pub mod network;
 pub mod postpone;

@@ -9,6 +9,7 @@ use pyo3::types::PyDict;
 
 use crate::costs;
 use crate::fleet::Fleet;
+use crate::heat::Passages;
 use crate::kinematics::{Kind, Profile};
 use crate::network::{Lift, Network, Plan};
 use crate::record::Totals;
@@ -223,15 +224,34 @@ impl Core {
         Ok(result)
     }
 
-    /// Visits and standing time per waypoint since the last reset.
+    /// Visits and standing time since the last reset: per waypoint, and per waypoint and purpose
+    /// (each station, then storing pods, then neither), the latter row by row in one dimension.
     fn heat<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.fleet.settle_all();
-        let record = &self.fleet.record;
+        let heat = &self.fleet.record.heat;
+        let seconds = |times: &[Us]| times.iter().map(|&t| t as f64 / 1e6).collect::<Vec<f64>>();
         let result = PyDict::new(py);
-        result.set_item("visits", record.visits.clone().into_pyarray(py))?;
-        result.set_item("loaded_visits", record.loaded_visits.clone().into_pyarray(py))?;
-        let waiting: Vec<f64> = record.waiting.iter().map(|&t| t as f64 / 1e6).collect();
-        result.set_item("waiting_s", waiting.into_pyarray(py))?;
+        result.set_item("visits", heat.visits.clone().into_pyarray(py))?;
+        result.set_item("loaded_visits", heat.loaded_visits.clone().into_pyarray(py))?;
+        result.set_item("waiting_s", seconds(&heat.waiting).into_pyarray(py))?;
+        result.set_item("loaded_waiting_s", seconds(&heat.loaded_waiting).into_pyarray(py))?;
+        Ok(result)
+    }
+
+    /// Edges and elevator rides used since the last reset.
+    fn edges<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.fleet.settle_all();
+        let edges = self.fleet.record.heat.edges(&self.fleet.network);
+        let result = PyDict::new(py);
+        for (name, pick) in [
+            ("from_wp", (|e| e.0) as fn(&(u32, u32, Passages)) -> u32),
+            ("to_wp", |e| e.1),
+            ("passages", |e| e.2.all),
+            ("loaded_passages", |e| e.2.loaded),
+        ] {
+            let column: Vec<u32> = edges.iter().map(pick).collect();
+            result.set_item(name, column.into_pyarray(py))?;
+        }
         Ok(result)
     }
 

@@ -1,5 +1,6 @@
-//! What is remembered of the motion: totals per robot, heat per waypoint, trips and the trace.
+//! What is remembered of the motion: totals per robot, heat, trips and the trace.
 
+use crate::heat::Heat;
 use crate::kinematics::Kind;
 use crate::network::{NONE, Network};
 use crate::search::Move;
@@ -17,12 +18,12 @@ pub enum Piece {
     SetDown = 5,
 }
 
-/// Why a robot stands still.
+/// Why a robot stands still; with the purpose of its way, see [`Heat`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
     Idle,
-    Waiting,
-    Served,
+    Waiting(usize),
+    Served(usize),
 }
 
 /// One piece of motion of one robot.
@@ -102,9 +103,7 @@ pub enum TripKind {
 #[derive(Debug)]
 pub struct Record {
     pub totals: Vec<Totals>,
-    pub visits: Vec<u32>,
-    pub loaded_visits: Vec<u32>,
-    pub waiting: Vec<Us>,
+    pub heat: Heat,
     pub trips: Vec<Trip>,
     pub trace: Option<Vec<Row>>,
     /// When totals, heat and trips begin.
@@ -115,12 +114,10 @@ pub struct Record {
 
 impl Record {
     /// An empty record.
-    pub fn new(robots: usize, nodes: usize, with_trace: bool) -> Self {
+    pub fn new(robots: usize, network: &Network, with_trace: bool) -> Self {
         Self {
             totals: vec![Totals::default(); robots],
-            visits: vec![0; nodes],
-            loaded_visits: vec![0; nodes],
-            waiting: vec![0; nodes],
+            heat: Heat::new(network),
             trips: Vec::new(),
             trace: with_trace.then(Vec::new),
             since: 0,
@@ -135,9 +132,7 @@ impl Record {
         for (totals, done) in self.totals.iter_mut().zip(in_progress) {
             *totals = Totals::default().plus(done, -1);
         }
-        self.visits.fill(0);
-        self.loaded_visits.fill(0);
-        self.waiting.fill(0);
+        self.heat.reset();
         self.trips.clear();
     }
 
@@ -163,11 +158,11 @@ impl Record {
         let totals = &mut self.totals[robot as usize];
         match why {
             Standing::Idle => totals.idle += end - start,
-            Standing::Waiting => totals.waiting += end - start,
-            Standing::Served => totals.served += end - start,
+            Standing::Waiting(_) => totals.waiting += end - start,
+            Standing::Served(_) => totals.served += end - start,
         }
-        if why != Standing::Idle {
-            self.waiting[node as usize] += end - start;
+        if let Standing::Waiting(purpose) | Standing::Served(purpose) = why {
+            self.heat.wait(node, purpose, pod.is_some(), end - start);
         }
         self.push(Row {
             robot,
@@ -215,19 +210,24 @@ impl Record {
         robot: u32,
         step: &Move,
         pod: Option<u32>,
+        purpose: usize,
     ) {
         let mut length = 0.0;
+        let loaded = pod.is_some();
         if step.ride {
-            self.visit(step.to, pod);
+            self.heat.ride(step.from, step.to, loaded);
+            self.heat.visit(step.to, purpose, loaded);
         } else {
+            let mut here = step.from;
             for (node, distance) in network.line(step.from, step.to, step.heading) {
-                length = distance;
-                self.visit(node, pod);
+                self.heat.pass(network, here, step.heading, loaded);
+                self.heat.visit(node, purpose, loaded);
+                (here, length) = (node, distance);
             }
         }
         let totals = &mut self.totals[robot as usize];
         totals.distance += length;
-        if pod.is_some() {
+        if loaded {
             totals.loaded_distance += length;
         }
         for row in move_rows(network, kind, robot, step, pod) {
@@ -240,11 +240,6 @@ impl Record {
             }
             self.push(row);
         }
-    }
-
-    fn visit(&mut self, node: u32, pod: Option<u32>) {
-        self.visits[node as usize] += 1;
-        self.loaded_visits[node as usize] += u32::from(pod.is_some());
     }
 
     fn push(&mut self, row: Row) {

@@ -20,6 +20,12 @@ pub enum Step {
     Station(u32),
 }
 
+impl Step {
+    fn is_lift(&self) -> bool {
+        matches!(self, Step::Lift(_))
+    }
+}
+
 /// What a robot is doing with the first step of its program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
@@ -153,5 +159,19 @@ impl Robot {
             Some(Step::Station(station)) => *station,
             _ => NONE,
         }
+    }
+
+    /// What the robot drives or stands for, as counted by [`crate::heat::Heat`]: the station it is
+    /// bound for, or stands at; else `stations` with a pod or on the way to one; else one more.
+    pub fn purpose(&self, stations: usize) -> usize {
+        let bound = self.program.iter().find_map(|step| match step {
+            Step::Station(station) => Some(*station as usize),
+            _ => None,
+        });
+        let served = if self.program.is_empty() { self.place } else { None };
+        let for_pod = || self.pod.is_some() || self.program.iter().any(Step::is_lift);
+        bound
+            .or(served.map(|(station, _)| station as usize))
+            .unwrap_or_else(|| if for_pod() { stations } else { stations + 1 })
     }
 }

@@ -117,7 +117,7 @@ impl Fleet {
             planner: Planner::new(&network),
             costs: Cache::new(&network, &kinds, cost_bytes),
             table: Table::new(network.resources),
-            record: Record::new(robots.len(), network.nodes, with_trace),
+            record: Record::new(robots.len(), &network, with_trace),
             queues: vec![Vec::new(); network.stations.len()],
             robots: Vec::new(),
             legs: vec![None; robots.len()],

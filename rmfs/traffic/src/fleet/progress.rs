@@ -15,10 +15,11 @@ impl Fleet {
         let now = self.now;
         let state = &mut self.robots[robot as usize];
         let kind = &self.kinds[state.kind as usize];
+        let purpose = state.purpose(self.network.stations.len());
         let why = if state.phase != Phase::Idle {
-            Standing::Waiting
+            Standing::Waiting(purpose)
         } else if state.place.is_some() {
-            Standing::Served
+            Standing::Served(purpose)
         } else {
             Standing::Idle
         };
@@ -36,7 +37,7 @@ impl Fleet {
                 state.pod,
                 why,
             );
-            self.record.drive(&self.network, kind, robot, &step, state.pod);
+            self.record.drive(&self.network, kind, robot, &step, state.pod, purpose);
             let station = state.station();
             if let Some(leg) = &mut self.legs[robot as usize]
                 && leg.zone_entered.is_none()

@@ -1,0 +1,428 @@
+"""`rmfs experiment`: plan, run, status, table, plot; and what `rmfs compare` prints.
+
+The command line prints an `InputError` as one line and exits with code 2; these functions just
+raise it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from experiments.compare import Comparison
+    from experiments.design.planning import Plan
+    from experiments.store import Store
+    from experiments.tables import Table
+
+app = typer.Typer(help="Experiments: many arms, many seeds, one table.", no_args_is_help=True)
+
+RESULTS = Path("results")
+WIDE = 240
+"""Width of a table that goes to a file or a pipe."""
+
+FAILED = 1
+"""Exit code where runs failed."""
+
+Design = Annotated[
+    str, typer.Argument(metavar="DESIGN", help="A design file, or the name of a shipped design.")
+]
+Out = Annotated[
+    Path | None,
+    typer.Option(help="Folder of the results. [default: results/NAME]", show_default=False),
+]
+Jobs = Annotated[
+    int | None,
+    typer.Option(
+        "--jobs", "-j", min=1, help="Runs at a time. [default: one per core]", show_default=False
+    ),
+]
+Columns = Annotated[
+    list[str] | None,
+    typer.Option("--column", "-c", help="Column of the footprint; may be repeated."),
+]
+Confidence = Annotated[float, typer.Option(min=0.5, max=0.999, help="Of the intervals.")]
+Bootstrap = Annotated[
+    bool, typer.Option("--bootstrap", help="BCa bootstrap intervals instead of Student's t.")
+]
+
+
+@app.command()
+def plan(
+    design: Design,
+    out: Out = None,
+    jobs: Jobs = None,
+    arms: Annotated[bool, typer.Option("--arms", help="List all arms.")] = False,
+    pilot: Annotated[bool, typer.Option(help="Try out short runs to estimate the time.")] = True,
+) -> None:
+    """Check a design: number of runs, time, and everything that is wrong with it."""
+    from experiments.design.stages import schedule
+    from experiments.results import assigned
+    from experiments.running import cores
+    from experiments.running.pilot import estimate
+
+    made = _planned(design)
+    store = _store(made, out)
+    _refuse(made)
+    runs = schedule(made, assigned(made, store.rows()))
+    finished = store.finished(made.design.keep)
+    keys = _keys(made, runs.runs)
+    left = sum(key not in finished for key in keys)
+    at_least = "" if runs.complete or not _is_open(made) else " at least (stages may add some)"
+    typer.echo(f"{made.design.name}: {made.design.description}".rstrip(": "))
+    typer.echo(f"  hash     {made.hash}")
+    for factor, short in made.short_names.items():
+        levels = list(dict.fromkeys(str(arm.levels[factor]) for arm in made.arms))
+        typer.echo(f"  factor   {short} ({factor}): {', '.join(levels)}")
+    typer.echo(f"  arms     {len(made.arms)}")
+    typer.echo(f"  runs     {len(keys)}{at_least}, {len(keys) - left} finished")
+    if arms:
+        for arm in made.arms:
+            typer.echo(f"    {arm.name}")
+    if pilot and left:
+        processes = jobs or cores()
+        found = estimate(made, store)
+        _tell_time(found, left, processes)
+
+
+def _tell_time(found: Any, left: int, processes: int) -> None:
+    from experiments.running.progress import spoken
+
+    if found is None:
+        typer.echo("  time     unknown: no short run got through")
+        return
+    total = spoken(found.total_s(left, processes))
+    typer.echo(
+        f"  time     about {total} for {left} runs, {processes} at a time "
+        f"({found.run_s:.1f} s a run, up to {found.longest_s:.1f} s; from {found.source})"
+    )
+
+
+@app.command()
+def run(
+    design: Design,
+    out: Out = None,
+    jobs: Jobs = None,
+    dask: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Scheduler of a Dask cluster, or a cluster profile (.toml), instead of this "
+            "machine.",
+        ),
+    ] = None,
+) -> None:
+    """Do all runs of a design that are not finished yet; may be interrupted and called again.
+
+    Exit code 1 if runs failed: the others are done all the same.
+    """
+    from experiments.running import run as run_plan
+    from experiments.running.progress import watching
+
+    made = _planned(design)
+    _refuse(made)
+    store = _store(made, out)
+    with watching(made.design.name) as watcher:
+        done = run_plan(made, store.folder, processes=jobs, dask=dask, watcher=watcher)
+    typer.echo(f"{done.finished} of {done.wanted} runs finished, {len(done.failed)} failed")
+    typer.echo(store.folder)
+    if done.failed:
+        raise typer.Exit(FAILED)
+
+
+@app.command()
+def status(design: Design, out: Out = None) -> None:
+    """Say how far an experiment has come, and what failed."""
+    from experiments.results import assigned, failed
+    from experiments.running.driver import progress_of
+
+    made = _planned(design)
+    _refuse(made)
+    store = _store(made, out)
+    done = progress_of(made, store)
+    typer.echo(f"{made.design.name}: {done.finished} of {done.wanted} runs finished")
+    rows = store.rows(["arm_digest", "arm", "replication", "seed"])
+    digests = {arm.digest for arm in made.arms}
+    outdated = int((~rows["arm_digest"].isin(list(digests))).sum())
+    if outdated:
+        typer.echo(f"{outdated} stored runs belong to other inputs and do not count")
+    if len(rows):
+        mine = assigned(made, store.rows())
+        short = mine["arm"].value_counts()
+        lacking = [arm.name for arm in made.arms if short.get(arm.name, 0) < short.max()]
+        if lacking and done.finished < done.wanted:
+            typer.echo(f"arms with runs to do: {len(lacking)}")
+    lost = failed(made, store)
+    for row in lost.itertuples():
+        typer.echo(f"failed: {row.arm}, seed {row.seed}: {row.error}")
+    if len(lost):
+        typer.echo(f"tracebacks: {store.folder / 'failures'}")
+        raise typer.Exit(FAILED)
+
+
+@app.command()
+def table(
+    design: Design,
+    out: Out = None,
+    columns: Columns = None,
+    baseline: Annotated[
+        str | None, typer.Option(help="Arm that all others are compared with, seed by seed.")
+    ] = None,
+    anova: Annotated[
+        bool, typer.Option("--anova", help="Analysis of variance of the factors instead.")
+    ] = False,
+    confidence: Confidence = 0.95,
+    bootstrap: Bootstrap = False,
+    file: Annotated[
+        Path | None,
+        typer.Option("--file", "-f", help="Write a .tex, .md, .csv or .html file."),
+    ] = None,
+    rows: Annotated[
+        Path | None,
+        typer.Option(help="Write the rows themselves (reproducible columns) to a .csv file."),
+    ] = None,
+) -> None:
+    """Show means with confidence intervals, paired differences, or an analysis of variance."""
+    from experiments import tables
+    from experiments.provenance import write
+    from experiments.results import to_csv
+
+    made, frame = _results(design, out)
+    chosen = list(columns or tables.COLUMNS)
+    _require_columns(frame, chosen)
+    if rows is not None:
+        to_csv(frame, rows)
+        typer.echo(f"{rows}: {len(frame)} rows written")
+    shown = _tables(made, frame, chosen, baseline, confidence, anova=anova, bootstrap=bootstrap)
+    if file is None:
+        if rows is None:
+            for one in shown:
+                _console().print(one.rich())
+        return
+    if len(shown) > 1:
+        raise InputError("--anova: one column for one file")
+    shown[0].write(file)
+    beside = write(
+        file,
+        frame,
+        design=made.design.name,
+        design_hash=made.hash,
+        columns=chosen,
+        caption=shown[0].caption,
+    )
+    typer.echo(f"{file}: written, with {beside.name}")
+
+
+def _tables(
+    made: Plan,
+    frame: pd.DataFrame,
+    columns: list[str],
+    baseline: str | None,
+    confidence: float,
+    *,
+    anova: bool,
+    bootstrap: bool,
+) -> list[Table]:
+    from experiments import tables
+    from experiments.statistics import anova as analysis
+
+    if anova:
+        named = made.short_names
+        return [
+            tables.effects(analysis(frame, column, made.factors).rename(index=named), column)
+            for column in columns
+        ]
+    method: Any = "bootstrap" if bootstrap else "t"
+    if baseline is not None:
+        made.arm(baseline)
+        return [tables.differences(frame, columns, baseline, confidence=confidence, method=method)]
+    return [tables.means(frame, columns, confidence=confidence, method=method)]
+
+
+@app.command()
+def plot(
+    design: Design,
+    out: Out = None,
+    kind: Annotated[
+        str,
+        typer.Option(
+            help="intervals (each seed of each arm), effects (of factors), pareto (two columns), "
+            "progression (over time; the design must keep series)."
+        ),
+    ] = "intervals",
+    columns: Columns = None,
+    confidence: Confidence = 0.95,
+    file: Annotated[
+        Path | None,
+        typer.Option("--file", "-f", help="A .png, .pdf or .svg file. [default: in the folder]"),
+    ] = None,
+) -> None:
+    """Draw a picture of the results."""
+    from experiments.plotting import KINDS, draw
+    from experiments.provenance import write
+
+    if kind not in KINDS:
+        raise InputError(f"--kind {kind}: no such picture; valid: {', '.join(KINDS)}")
+    made, frame = _results(design, out)
+    chosen = list(columns or KINDS[kind])
+    if kind != "progression":
+        _require_columns(frame, chosen)
+    folder = _store(made, out).folder
+    target = file if file is not None else folder / f"{kind}-{'-'.join(chosen)}.png"
+    draw(kind, made, frame, folder, chosen, target, confidence=confidence)
+    beside = write(
+        target,
+        frame,
+        design=made.design.name,
+        design_hash=made.hash,
+        columns=chosen,
+        kind=kind,
+        confidence=confidence,
+    )
+    typer.echo(f"{target}: written, with {beside.name}")
+
+
+def print_comparisons(found: list[Comparison], columns: list[str], *, everything: bool) -> None:
+    """Print what `rmfs compare` found."""
+    from experiments.compare import chosen_columns
+
+    console = _console()
+    for number, one in enumerate(found):
+        if number:
+            console.print()
+        console.print(f"baseline  {one.baseline.name}", markup=False)
+        console.print(f"other     {one.other.name}", markup=False)
+        if one.identical:
+            console.print("identical: all reproducible columns are the same")
+        _print_inputs(console, one)
+        shown = chosen_columns(one, columns, everything=everything)
+        console.print(_outputs(one, shown))
+        console.print(_how(one))
+
+
+def _console() -> Any:
+    """Return what tables are printed to; elsewhere than on a terminal they are not folded."""
+    import sys
+
+    from rich.console import Console
+
+    return Console(highlight=False, width=None if sys.stdout.isatty() else WIDE)
+
+
+def _print_inputs(console: Any, one: Comparison) -> None:
+    from rich import box
+    from rich.table import Table
+
+    if one.inputs.empty:
+        known = bool(one.baseline.inputs) and bool(one.other.inputs)
+        console.print("input: the same" if known else "input: not known")
+        return
+    shown = Table("input", "baseline", "other", box=box.SIMPLE_HEAD)
+    for row in one.inputs.itertuples():
+        shown.add_row(str(row.key), str(row.baseline), str(row.other))
+    console.print(shown)
+
+
+def _outputs(one: Comparison, columns: list[str]) -> Any:
+    from rich import box
+    from rich.table import Table
+
+    from experiments.statistics.paired import holm
+
+    # over what is shown: a hundred columns nobody looks at prove nothing
+    corrected = holm(one.outputs.loc[columns, "p"])
+    shown = Table("output", box=box.SIMPLE_HEAD)
+    heads = ["baseline", "other", "difference", "relative"]
+    several = bool(one.outputs["low"].notna().any())
+    if several:
+        heads += ["interval", "p (Holm)"]
+    for head in heads:
+        shown.add_column(head, justify="right")
+    for column in columns:
+        row: dict[Any, Any] = one.outputs.loc[column].to_dict()
+        p = corrected[column]
+        cells = [_number(row["baseline"]), _number(row["other"]), _number(row["difference"])]
+        cells.append("-" if row["relative"] != row["relative"] else f"{row['relative']:+.1%}")
+        if several:
+            cells.append(f"{_number(row['low'])} to {_number(row['high'])}")
+            cells.append("-" if p != p else f"{p:.4f}")
+        shown.add_row(column, *cells)
+    return shown
+
+
+def _how(one: Comparison) -> str:
+    if one.pairs:
+        return f"paired by {one.pairs} common seed{'s' if one.pairs > 1 else ''}"
+    counts = f"{len(one.baseline.rows)} and {len(one.other.rows)}"
+    return f"no common seed: {counts} runs taken as independent (Welch)"
+
+
+def _number(value: float) -> str:
+    if value != value:
+        return "-"
+    size = abs(value)
+    return f"{value:,.0f}" if size >= 10_000 else f"{value:,.4g}"
+
+
+def _planned(design: str) -> Plan:
+    from experiments.design.planning import plan as make
+
+    return make(design)
+
+
+def _refuse(made: Plan) -> None:
+    """Print everything that is wrong with a plan, a line each, and end with code 2."""
+    if made.problems:
+        for problem in made.problems:
+            typer.echo(f"rmfs: {made.source}: {' '.join(problem.split())}", err=True)
+        raise typer.Exit(2)
+
+
+def _store(made: Plan, out: Path | None) -> Store:
+    from experiments.store import Store
+
+    return Store(out if out is not None else RESULTS / made.design.name)
+
+
+def _results(design: str, out: Path | None) -> tuple[Plan, pd.DataFrame]:
+    """Return the plan and the finished rows of an experiment."""
+    from experiments.results import assigned
+
+    made = _planned(design)
+    _refuse(made)
+    store = _store(made, out)
+    frame = assigned(made, store.rows())
+    if frame.empty:
+        raise InputError(f"{store.folder}: no finished runs yet; rmfs experiment run {design}")
+    return made, frame
+
+
+def _keys(made: Plan, runs: Any) -> list[str]:
+    arms = {arm.name: arm for arm in made.arms}
+    return [made.job(arms[run.arm], run.replication).key for run in runs]
+
+
+def _is_open(made: Plan) -> bool:
+    """Whether stages decide on the way what is run."""
+    return any(stage.until or stage.select or stage.arms for stage in made.design.stages)
+
+
+def _require_columns(frame: pd.DataFrame, columns: list[str]) -> None:
+    from experiments.statistics.intervals import require
+
+    require(frame, *columns)
+    words = [c for c in columns if not _is_number(frame[c])]
+    if words:
+        raise InputError(f"column {', '.join(words)}: holds no numbers")
+
+
+def _is_number(values: pd.Series) -> bool:
+    from pandas.api.types import is_numeric_dtype
+
+    return bool(is_numeric_dtype(values))

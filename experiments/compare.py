@@ -1,0 +1,280 @@
+"""Two runs, arms or tables: what differs in the input, and what in the output."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from experiments.design import planning as plans
+from experiments.results import load
+from experiments.statistics.paired import paired, unpaired
+from rmfs.errors import InputError
+from rmfs.measure.dictionary import FOOTPRINT, REAL, names, reproducible
+from rmfs.measure.folder import PARAMETERS, load_run
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+ARM_SIGN = "#"
+"""Between a folder and the name of one of its arms."""
+
+NUMBERS = [c.name for c in FOOTPRINT if c.dtype in (REAL, "int64", "Int64") and c.name != "seed"]
+NOT_INPUT = ("written", "machine", "check")
+"""Parts of run.json that say nothing about what was simulated."""
+
+
+@dataclass(frozen=True)
+class Side:
+    """One thing to compare.
+
+    Attributes
+    ----------
+    name
+        As the user named it.
+    rows
+        Footprints, one row per seed.
+    inputs
+        What is known of its input: dotted key and value.
+    """
+
+    name: str
+    rows: pd.DataFrame
+    inputs: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A side against the first one.
+
+    Attributes
+    ----------
+    inputs
+        What differs: `key`, `baseline`, `other`.
+    outputs
+        Per column of the footprint `baseline`, `other` (means), `difference`, `low`, `high`,
+        `relative`, `p`; an interval only where there are several seeds.
+    pairs
+        Seeds that both have; 0 if the samples were taken as independent.
+    identical
+        Whether all reproducible columns are the same.
+    """
+
+    baseline: Side
+    other: Side
+    inputs: pd.DataFrame
+    outputs: pd.DataFrame
+    pairs: int
+    identical: bool
+
+
+def compare(sources: Sequence[str | Path], *, confidence: float = 0.95) -> list[Comparison]:
+    """Compare every source with the first.
+
+    Parameters
+    ----------
+    sources
+        Run folders, folders of experiments, arms of these (`FOLDER#ARM`), or .csv and .parquet
+        tables of footprints. If one source alone has several arms, these are compared with the
+        first of them; if all have several, arms of the same name are compared.
+
+    Raises
+    ------
+    InputError
+        If a source cannot be read, or there is nothing to compare.
+    """
+    read = [_sides(str(source)) for source in sources]
+    if len(read) == 1:
+        first, *others = read[0]
+        pairs = [(first, other) for other in others]
+    elif all(len(sides) == 1 for sides in read):
+        pairs = [(read[0][0], sides[0]) for sides in read[1:]]
+    else:
+        pairs = _same_arms(read)
+    if not pairs:
+        raise InputError("nothing to compare: give two runs, arms or tables")
+    return [_compared(first, other, confidence) for first, other in pairs]
+
+
+def _same_arms(read: list[list[Side]]) -> list[tuple[Side, Side]]:
+    known = [{_arm_of(side): side for side in sides} for sides in read]
+    first = known[0]
+    return [(first[arm], others[arm]) for arm in first for others in known[1:] if arm in others]
+
+
+def _arm_of(side: Side) -> str:
+    return side.name.partition(ARM_SIGN)[2]
+
+
+def _compared(first: Side, other: Side, confidence: float) -> Comparison:
+    a, b = _by_seed(first), _by_seed(other)
+    common = a.index.intersection(b.index)
+    together = len(common) > 0
+    if together:
+        a, b = a.loc[common], b.loc[common]
+    rows = {}
+    for column in NUMBERS:
+        if column in a and column in b and (a[column].notna().any() or b[column].notna().any()):
+            told = (paired if together else unpaired)(b[column], a[column], confidence=confidence)
+            rows[column] = {"baseline": a[column].mean(), "other": b[column].mean(), **told}
+    outputs = pd.DataFrame.from_dict(rows, orient="index").drop(columns="pairs", errors="ignore")
+    outputs.index.name = "column"
+    shared = [c for c in reproducible("footprint") if c in first.rows and c in other.rows]
+    same = len(first.rows) == len(other.rows) and _text(first, shared) == _text(other, shared)
+    return Comparison(first, other, _input_differences(first, other), outputs, len(common), same)
+
+
+def _by_seed(side: Side) -> pd.DataFrame:
+    key = "replication" if "replication" in side.rows else "seed"
+    if key not in side.rows:
+        raise InputError(f"{side.name}: has no column seed")
+    rows = side.rows.drop_duplicates(key).set_index(key)
+    present = [column for column in NUMBERS if column in rows]
+    return rows[present].astype("Float64").astype(float)
+
+
+def _text(side: Side, columns: list[str]) -> str:
+    """Return the reproducible columns as CSV; names of inputs are not results."""
+    chosen = [c for c in columns if c not in ("layout", "scenario", "controllers")]
+    return side.rows.sort_values("seed")[chosen].to_csv(index=False)
+
+
+def _input_differences(first: Side, other: Side) -> pd.DataFrame:
+    keys = [*first.inputs, *(key for key in other.inputs if key not in first.inputs)]
+    rows = [
+        (key, first.inputs.get(key, "-"), other.inputs.get(key, "-"))
+        for key in keys
+        if _differs(first.inputs.get(key), other.inputs.get(key))
+    ]
+    return pd.DataFrame(rows, columns=pd.Index(["key", "baseline", "other"]))
+
+
+def _differs(first: Any, second: Any) -> bool:
+    both_numbers = all(isinstance(v, int | float) for v in (first, second))
+    return bool(first != second) if both_numbers else json.dumps(first) != json.dumps(second)
+
+
+def _sides(source: str) -> list[Side]:
+    """Read one source: one side for each of its arms."""
+    place, _, arm = source.partition(ARM_SIGN)
+    path = Path(place)
+    if (path / PARAMETERS).is_file():
+        return [_run_side(path)]
+    if (path / plans.FILE).is_file():
+        return _experiment_sides(path, arm)
+    if path.is_file() and path.suffix.lower() in (".csv", ".parquet"):
+        return _table_sides(path, arm)
+    raise InputError(
+        f"{source}: neither a run folder, nor an experiment, nor a .csv or .parquet table"
+    )
+
+
+def _run_side(path: Path) -> Side:
+    run = load_run(path)
+    told = {key: value for key, value in run.parameters.items() if key not in NOT_INPUT}
+    return Side(str(path), run.table("footprint"), dict(_flat(told)))
+
+
+def _experiment_sides(path: Path, arm: str) -> list[Side]:
+    plan = plans.load(path)
+    chosen = [plan.arm(arm)] if arm else plan.arms
+    frame = load(path)
+    return [
+        Side(
+            f"{path}{ARM_SIGN}{one.name}",
+            frame[frame["arm"] == one.name],
+            {
+                **one.inputs,
+                **{".".join(keys): value for keys, value in one.overrides},
+                "pacing": one.pacing,
+                "digest": one.digest[:12],
+            },
+        )
+        for one in chosen
+        if (frame["arm"] == one.name).any()
+    ]
+
+
+def _table_sides(path: Path, arm: str) -> list[Side]:
+    try:
+        frame = pd.read_csv(path) if path.suffix.lower() == ".csv" else pd.read_parquet(path)
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: cannot be read ({error})") from None
+    if not set(frame.columns) & set(NUMBERS):
+        raise InputError(f"{path}: has no column of a footprint")
+    if "arm" not in frame:
+        return [Side(str(path), frame, _constant(frame))]
+    groups = {str(name): group for name, group in frame.groupby("arm", sort=False)}
+    if arm and arm not in groups:
+        raise InputError(f"{path}: has no arm {arm}; arms: {', '.join(groups)}")
+    return [
+        Side(f"{path}{ARM_SIGN}{name}", group, _constant(group))
+        for name, group in groups.items()
+        if not arm or name == arm
+    ]
+
+
+def _constant(frame: pd.DataFrame) -> dict[str, Any]:
+    """Return what is the same in all rows and is no result: inputs and factors."""
+    inputs = ("layout", "scenario", "controllers", "warmup_s", "duration_s", "robots", "pods")
+    columns = [c for c in frame if c in inputs or "." in str(c)]
+    return {str(c): _plain(frame[c].iloc[0]) for c in columns if len(frame[c].unique()) == 1}
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _flat(value: Any, before: str = "") -> list[tuple[str, Any]]:
+    """Return nested tables as dotted keys."""
+    if not isinstance(value, dict):
+        return [(before, value)]
+    found = []
+    for key, item in value.items():
+        found += _flat(item, f"{before}.{key}" if before else str(key))
+    return found
+
+
+MAIN = (
+    "orders_completed",
+    "units_picked",
+    "units_per_h",
+    "orders_per_h",
+    "bundles_per_h",
+    "units_score",
+    "units_per_visit",
+    "distance_m",
+    "distance_per_unit_m",
+    "pick_station_idle_share",
+    "robot_queueing_share",
+    "order_turnover_median_s",
+    "late_share",
+    "wall_s",
+)
+"""Outputs shown unless all are asked for."""
+
+
+def chosen_columns(
+    comparison: Comparison, columns: Sequence[str], *, everything: bool
+) -> list[str]:
+    """Return the columns to show: those asked for, all that differ, or the main ones.
+
+    Raises
+    ------
+    InputError
+        If a column asked for is not there.
+    """
+    there = list(comparison.outputs.index)
+    wrong = [column for column in columns if column not in there]
+    if wrong:
+        valid = ", ".join(c for c in names("footprint") if c in there)
+        raise InputError(f"column {', '.join(wrong)}: not in both; valid: {valid}")
+    if columns:
+        return list(columns)
+    if everything:
+        return [c for c in there if comparison.outputs.loc[c, "difference"] != 0]
+    return [c for c in MAIN if c in there]

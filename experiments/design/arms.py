@@ -1,0 +1,329 @@
+"""From factors, lists and files to arms.
+
+A factor is a parameter (`layout.robots`, `controllers.psa`, or just `scenario` for the whole file)
+with its levels; or a name of its own, each of whose levels sets several parameters at once.
+"""
+
+from __future__ import annotations
+
+import csv
+import difflib
+import itertools
+import json
+import tomllib
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from rmfs.config import Table, read_toml
+from rmfs.errors import InputError
+from rmfs.measure.dictionary import FOOTPRINT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+    from pathlib import Path
+
+    from experiments.design.file import DesignFile
+
+PARTS = ("layout", "scenario", "controllers")
+"""The three inputs of a run."""
+
+RESERVED = {*(column.name for column in FOOTPRINT), "arm", "replication", "stage"}
+"""Columns of a result table that a factor's name must not take."""
+
+Overrides = list[tuple[list[str], Any]]
+
+
+@dataclass(frozen=True)
+class Arm:
+    """One way to run a warehouse.
+
+    Attributes
+    ----------
+    name
+        Unique in its design.
+    levels
+        Per factor what is shown of its level: a number, a text, a truth value, or nothing.
+    inputs
+        Name or path of layout, scenario and controllers.
+    overrides
+        Parameters on top of these files, as pairs of path and value.
+    pacing
+        What thinking costs.
+    digest
+        Hash of everything that decides about a run but its seed; empty until resolved.
+    """
+
+    name: str
+    levels: Mapping[str, Any]
+    inputs: Mapping[str, str]
+    overrides: Overrides
+    pacing: str = "instant"
+    digest: str = ""
+
+
+@dataclass(frozen=True)
+class Level:
+    """One level of one factor.
+
+    Attributes
+    ----------
+    shown
+        Its levels as columns of a result table.
+    settings
+        Parameters it sets, by dotted path.
+    name
+        Its part of the arm's name.
+    raw
+        Per column the values by which exclusions may name it.
+    """
+
+    shown: dict[str, Any]
+    settings: dict[str, Any]
+    name: str
+    raw: dict[str, list[Any]] = field(default_factory=dict)
+
+
+def arms(design: DesignFile, folder: Path) -> tuple[list[Arm], list[str]]:
+    """Return the arms of a design in the order of its factors, and what is wrong with them.
+
+    Parameters
+    ----------
+    folder
+        The design's folder: files are looked for there first.
+    """
+    problems: list[str] = []
+    factors = [_grid_factor(key, levels, problems) for key, levels in design.factors.items()]
+    listed = _listed(design, folder, problems)
+    if listed:
+        factors.insert(0, listed)
+    keys = list(dict.fromkeys(k for factor in factors for level in factor for k in level.shown))
+    problems += _key_problems(design, keys)
+    combinations = [
+        combination
+        for combination in itertools.product(*factors)
+        if not any(_matches(rule, combination) for rule in design.exclude)
+    ]
+    made = [_arm(design, combination, keys, folder, problems) for combination in combinations]
+    if not made:
+        problems.append("no arms are left: the exclusions leave out every combination")
+    return made, list(dict.fromkeys([*problems, *_name_problems(made)]))
+
+
+def factor_names(keys: Iterable[str]) -> dict[str, str]:
+    """Return a short name per factor: the last words of its path, as few as tell it apart.
+
+    A last `name` (of a rule) is left out: `controllers.psa.name` is called `psa`.
+    """
+    keys = list(keys)
+    words = {key: key.removesuffix(".name").split(".") for key in keys}
+    short = dict.fromkeys(keys, "")
+    for key in keys:
+        for count in range(1, len(words[key]) + 1):
+            short[key] = ".".join(words[key][-count:])
+            same = [k for k in keys if ".".join(words[k][-count:]) == short[key]]
+            if same == [key]:
+                break
+        else:
+            short[key] = key
+    return short
+
+
+def shown_value(value: Any) -> Any:
+    """Return what a table shows of a level."""
+    if isinstance(value, bool | int | float | str) or value is None:
+        return value
+    if isinstance(value, dict) and isinstance(value.get("name"), str):
+        more = [f"{key}={_compact(item)}" for key, item in value.items() if key != "name"]
+        return f"{value['name']}({', '.join(more)})" if more else value["name"]
+    return _compact(value)
+
+
+def is_parameter(key: str) -> bool:
+    """Whether a factor's key is a parameter rather than a name of its own."""
+    return key.split(".")[0] in (*PARTS, "pacing")
+
+
+def _compact(value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    return json.dumps(value, separators=(",", ":"), ensure_ascii=False, default=str)
+
+
+def _grid_factor(key: str, levels: list[Any], problems: list[str]) -> list[Level]:
+    made = [_level(key, level, problems) for level in levels]
+    names = [level.name for level in made]
+    doubles = sorted({name for name in names if names.count(name) > 1})
+    problems += [f"factor {key}: level {name} is there more than once" for name in doubles]
+    return made
+
+
+def _level(key: str, value: Any, problems: list[str]) -> Level:
+    if is_parameter(key):
+        label = None
+        if isinstance(value, dict) and set(value) == {"label", "value"}:
+            label, value = str(value["label"]), value["value"]
+        shown = shown_value(value) if label is None else label
+        return Level({key: shown}, {key: value}, _compact(shown), {key: [value, shown]})
+    if not isinstance(value, dict) or not isinstance(value.get("label"), str):
+        problems.append(
+            f"factor {key}: is no parameter (layout..., scenario..., controllers..., pacing), so "
+            "each of its levels must be a table with a label and the parameters it sets"
+        )
+        return Level({key: shown_value(value)}, {}, _compact(value))
+    settings = {path: item for path, item in value.items() if path != "label"}
+    return Level({key: value["label"]}, settings, value["label"], {key: [value["label"]]})
+
+
+def _listed(design: DesignFile, folder: Path, problems: list[str]) -> list[Level]:
+    tables = [dict(table) for table in design.arms]
+    if design.arms_file is not None:
+        try:
+            tables += _read_arms(folder / design.arms_file)
+        except InputError as error:
+            problems.append(str(error))
+    made = []
+    for table in tables:
+        name = table.pop("name", None)
+        shown = {key: shown_value(value) for key, value in table.items()}
+        short = factor_names(table)
+        spoken = ",".join(f"{short[key]}={_compact(shown[key])}" for key in table)
+        raw = {key: [value, shown[key]] for key, value in table.items()}
+        made.append(Level(shown, table, str(name) if name is not None else spoken, raw))
+    return made
+
+
+def _read_arms(path: Path) -> list[Table]:
+    """Read arms from a file.
+
+    Raises
+    ------
+    InputError
+        If it is missing or wrong.
+    """
+    if path.suffix.lower() == ".toml":
+        table = read_toml(path)
+        given = table.get("arms")
+        if set(table) - {"format"} != {"arms"} or not isinstance(given, list):
+            raise InputError(f"{path}: must hold nothing but [[arms]]")
+        return given
+    if path.suffix.lower() != ".csv":
+        raise InputError(f"{path}: expected a .csv or .toml file of arms")
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            reader = csv.DictReader(file, strict=True)
+            rows = list(reader)
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file") from None
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{path}: cannot be read ({error})") from None
+    for number, row in enumerate(rows, 2):
+        if None in row or None in row.values():
+            raise InputError(f"{path}: line {number} has not as many cells as the first line")
+    # an empty cell leaves the parameter as it is in the base
+    return [{key: _cell(value) for key, value in row.items() if value != ""} for row in rows]
+
+
+def _cell(text: str) -> Any:
+    """Read a cell as TOML; a bare word is a text."""
+    try:
+        return tomllib.loads(f"value = {text.strip()}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text.strip()
+
+
+def _key_problems(design: DesignFile, keys: list[str]) -> Iterator[str]:
+    for key in keys:
+        if key in RESERVED and key not in PARTS:
+            yield f"factor {key}: a column of the results has this name already"
+    for number, rule in enumerate(design.exclude, 1):
+        if not rule:
+            yield f"exclude {number}: names no factor"
+        for key in rule:
+            if key not in keys:
+                near = difflib.get_close_matches(key, keys, n=1)
+                hint = f"did you mean {near[0]}?" if near else f"factors: {', '.join(keys)}"
+                yield f"exclude {number}: {key} is not a factor; {hint}"
+    for key in design.seeded:
+        if "." not in key or key.split(".")[0] not in PARTS:
+            yield f"seeded: {key}: must begin with layout., scenario. or controllers."
+
+
+def _matches(rule: Table, combination: tuple[Level, ...]) -> bool:
+    """Whether each condition of an exclusion holds; it may name one level or a list of them."""
+    raw = {key: values for level in combination for key, values in level.raw.items()}
+    return bool(rule) and all(
+        any(_same(one, known) for one in _as_list(wanted) for known in raw.get(key, []))
+        for key, wanted in rule.items()
+    )
+
+
+def _as_list(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [value]
+
+
+def _same(first: Any, second: Any) -> bool:
+    """Compare two levels; true is not 1."""
+    return isinstance(first, bool) == isinstance(second, bool) and first == second
+
+
+def _arm(
+    design: DesignFile,
+    combination: tuple[Level, ...],
+    keys: list[str],
+    folder: Path,
+    problems: list[str],
+) -> Arm:
+    settings: dict[str, Any] = dict(design.base)
+    for level in combination:
+        settings |= level.settings
+    levels = dict.fromkeys(keys) | {k: v for level in combination for k, v in level.shown.items()}
+    # a parameter that an arm of a list leaves alone has the level of the base
+    levels |= {
+        key: shown_value(design.base[key])
+        for key, value in levels.items()
+        if value is None and key in design.base
+    }
+    inputs = {part: settings.pop(part, None) for part in PARTS}
+    for part, given in inputs.items():
+        if not isinstance(given, str):
+            problems.append(f"base: {part} is missing (a name or a file)")
+    pacing = settings.pop("pacing", design.pacing)
+    overrides: Overrides = []
+    for key, value in settings.items():
+        path = key.split(".")
+        if path[0] not in PARTS or "" in path or len(path) < 2:
+            problems.append(
+                f"{key}: not a parameter; must begin with layout., scenario. or controllers."
+            )
+        else:
+            overrides.append((path, value))
+    return Arm(
+        name=_arm_name(combination, keys),
+        levels=levels,
+        inputs={part: anchored(str(given), folder) for part, given in inputs.items()},
+        overrides=overrides,
+        pacing=str(pacing),
+    )
+
+
+def _arm_name(combination: tuple[Level, ...], keys: list[str]) -> str:
+    short = factor_names(keys)
+    parts = []
+    for level in combination:
+        (key, *more) = level.shown or ("",)
+        # an arm of a list carries its name, a level of the grid is told with its factor
+        named = more or level.name != _compact(level.shown.get(key))
+        parts.append(level.name if named else f"{short[key]}={level.name}")
+    return ",".join(parts) or "base"
+
+
+def anchored(given: str, folder: Path) -> str:
+    """Return a path for a file beside the design; a name or another path stays as it is."""
+    beside = folder / given
+    return str(beside) if beside.is_file() else given
+
+
+def _name_problems(made: list[Arm]) -> list[str]:
+    names = [arm.name for arm in made]
+    doubles = sorted({name for name in names if names.count(name) > 1})
+    return [f"arm {name}: the name is there more than once" for name in doubles]

@@ -1,0 +1,227 @@
+"""What a design file may say (`rmfs-design/1`)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import pydantic
+from pydantic import Field
+
+from rmfs import config
+from rmfs.config import Model, Table
+from rmfs.errors import InputError
+from rmfs.measure.dictionary import FOOTPRINT, REAL, TABLES
+
+SHIPPED = Path(__file__).resolve().parent.parent / "designs"
+"""The folder of shipped designs."""
+
+Seed = Annotated[int, Field(ge=0)]
+Share = Annotated[float, Field(gt=0, lt=1)]
+Goal = Literal["max", "min"]
+
+NUMBERS = tuple(column.name for column in FOOTPRINT if column.dtype in (REAL, "int64", "Int64"))
+REPRODUCIBLE = tuple(column.name for column in FOOTPRINT if not column.measured)
+
+
+def _measure(name: str) -> str:
+    if name not in NUMBERS:
+        raise ValueError("is not a number of the footprint")
+    if name not in REPRODUCIBLE:
+        raise ValueError("is measured by the clock: what is run next would not repeat")
+    return name
+
+
+Measure = Annotated[str, pydantic.AfterValidator(_measure)]
+
+
+class Strict(Model):
+    """Numbers must be written as numbers."""
+
+    model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)
+
+
+class Best(Strict):
+    """The arms that go on to a stage: the best ones of the stage before."""
+
+    best: int = Field(ge=1, description="how many arms")
+    by: Measure = Field(description="column of the footprint whose means are compared")
+    goal: Goal = "max"
+
+
+class Until(Strict):
+    """Sequential stopping: each arm gets seeds until its confidence interval is narrow enough."""
+
+    column: Measure
+    relative_half_width: Share = 0.02
+    confidence: Share = 0.95
+    step: int = Field(1, ge=1, description="seeds added at a time")
+    max_seeds: int = Field(50, ge=2, description="where an arm stops in any case")
+
+
+class Select(Strict):
+    """Selection of the best arm with a stated error: procedure KN of Kim and Nelson (2001)."""
+
+    procedure: Literal["kim-nelson"] = "kim-nelson"
+    column: Measure
+    goal: Goal = "max"
+    indifference: float = Field(
+        gt=0, description="smallest difference worth detecting, in units of the column"
+    )
+    error: Share = Field(0.05, description="probability of a wrong choice, at most")
+    max_seeds: int = Field(200, ge=2, description="where the procedure stops in any case")
+
+
+class Stage(Strict):
+    """One part of an experiment; the next begins when it is over.
+
+    All arms of a stage get its seeds. `until` and `select` then add further ones.
+    """
+
+    name: str = Field(min_length=1)
+    seeds: list[Seed] | None = None
+    replications: int | None = Field(None, ge=1)
+    arms: Best | None = Field(None, description="default: all arms")
+    until: Until | None = None
+    select: Select | None = None
+
+    @pydantic.model_validator(mode="after")
+    def _one_rule(self) -> Stage:
+        if self.until is not None and self.select is not None:
+            raise ValueError(f"stage {self.name}: until and select exclude each other")
+        return self
+
+
+class DesignFile(Strict):
+    """The keys of a design file."""
+
+    format: Literal["rmfs-design/1"]
+    name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")
+    description: str = ""
+
+    seeds: list[Seed] | None = Field(None, description="seeds of the runs of every arm")
+    replications: int | None = Field(
+        None, ge=1, description="number of seeds, counted from first_seed; instead of seeds"
+    )
+    first_seed: Seed = 1
+    common_random_numbers: bool = Field(
+        True, description="the same seed means the same demand for every arm"
+    )
+    seeded: list[str] = Field(
+        [], description='parameters that take the seed of the run, for example "layout.seed"'
+    )
+
+    pacing: str = Field("instant", description="what thinking costs in simulated time")
+    check: bool = Field(False, description="prove every run safe; fills `collisions`")
+    allow_not_well_formed: bool = False
+    keep: list[str] = Field([], description="tables kept of every run beside its footprint")
+
+    base: Table = Field(
+        description="layout, scenario, controllers, and parameters that all arms share"
+    )
+    factors: dict[str, list[Any]] = Field({}, description="levels of each factor: a grid of arms")
+    arms: list[Table] = Field([], description="arms one by one, each combined with the grid")
+    arms_file: str | None = Field(
+        None, description=".csv (a column per parameter) or .toml ([[arms]]) with more arms"
+    )
+    exclude: list[Table] = Field([], description="combinations of levels that are left out")
+    stages: list[Stage] = Field([], description="default: one stage with the seeds above")
+
+    @pydantic.model_validator(mode="after")
+    def _consistent(self) -> DesignFile:
+        wrong = [
+            *_seed_problems("", self.seeds, self.replications, needed=not self.stages),
+            *(
+                problem
+                for stage in self.stages
+                for problem in _seed_problems(
+                    f"stage {stage.name}: ",
+                    stage.seeds,
+                    stage.replications,
+                    needed=self.seeds is None and self.replications is None,
+                )
+            ),
+            *_stage_problems(self.stages),
+            *(
+                f"stage {stage.name}: {rule} needs from 2 to max_seeds seeds to begin with"
+                for stage in self.stages
+                for rule, wanted in (("until", stage.until), ("select", stage.select))
+                if wanted is not None and not 2 <= len(self.seeds_of(stage)) <= wanted.max_seeds
+            ),
+            *(f"factor {key}: has no levels" for key, levels in self.factors.items() if not levels),
+            *(
+                f"keep: no table {table}; valid: {', '.join(list(TABLES)[1:])}"
+                for table in self.keep
+                if table not in TABLES or table == "footprint"
+            ),
+        ]
+        if wrong:
+            raise ValueError("; ".join(wrong))
+        return self
+
+    def seeds_of(self, stage: Stage | None = None) -> list[int]:
+        """Seeds that every arm gets, in a stage or by default."""
+        for given in (stage, self):
+            if given is not None and given.seeds is not None:
+                return given.seeds
+            if given is not None and given.replications is not None:
+                return list(range(self.first_seed, self.first_seed + given.replications))
+        return []
+
+    def all_stages(self) -> list[Stage]:
+        """The stages; a design without has one that holds everything."""
+        return self.stages or [Stage(name="all")]
+
+
+def _seed_problems(
+    where: str, seeds: list[int] | None, replications: int | None, *, needed: bool
+) -> list[str]:
+    if seeds is not None and replications is not None:
+        return [f"{where}seeds and replications exclude each other"]
+    if seeds is None and replications is None:
+        return [f"{where}seeds: missing (a list of seeds, or replications = N)"] if needed else []
+    if seeds is not None and (not seeds or len(set(seeds)) < len(seeds)):
+        return [f"{where}seeds: must be different, and at least one"]
+    return []
+
+
+def _stage_problems(stages: list[Stage]) -> list[str]:
+    names = [stage.name for stage in stages]
+    problems = [f"two stages are called {name}" for name in set(names) if names.count(name) > 1]
+    if stages and stages[0].arms is not None:
+        problems.append(f"stage {names[0]}: arms.best needs a stage before")
+    return problems
+
+
+def locate(name_or_path: str | Path) -> Path:
+    """Find the file for a path or for the name of a shipped design.
+
+    Raises
+    ------
+    InputError
+        If neither exists; the message lists the shipped names.
+    """
+    path = Path(name_or_path)
+    if path.is_file():
+        return path
+    shipped = SHIPPED / f"{name_or_path}.toml"
+    if shipped.is_file():
+        return shipped
+    known = ", ".join(sorted(file.stem for file in SHIPPED.glob("*.toml")))
+    raise InputError(f"{name_or_path}: no such file, and no shipped design; shipped: {known}")
+
+
+def read(path: Path) -> tuple[DesignFile, Table]:
+    """Read a design file.
+
+    Returns
+    -------
+    The design, and the table as written.
+
+    Raises
+    ------
+    InputError
+        One line that lists every problem with its key.
+    """
+    table = config.read_toml(path)
+    return config.validate(DesignFile, table, str(path)), table

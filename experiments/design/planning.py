@@ -1,0 +1,232 @@
+"""A design with everything resolved: arms with digests, input files with hashes, problems."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from experiments.design import file as design_file
+from experiments.design.arms import Arm, arms, factor_names
+from experiments.design.file import DesignFile
+from experiments.design.resolve import Resolver
+from experiments.running.job import Job
+from rmfs import config
+from rmfs.errors import InputError
+from rmfs.files import write_text
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rmfs.config import Table
+
+FORMAT = "rmfs-plan/1"
+FILE = "plan.json"
+
+
+class PlanError(InputError):
+    """A plan that cannot be run.
+
+    Parameters
+    ----------
+    problems
+        Every problem found, each naming arm and key.
+    """
+
+    def __init__(self, source: str, problems: list[str]) -> None:
+        self.source = source
+        self.problems = problems
+        super().__init__(f"{source}: {'; '.join(problems)}")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What an experiment consists of.
+
+    Attributes
+    ----------
+    table
+        The design file as written.
+    arms
+        In the order of the design.
+    files
+        Hash of every input file.
+    problems
+        What is wrong; a plan with problems is not run.
+    source
+        The file it came from.
+    """
+
+    design: DesignFile
+    table: Table
+    arms: list[Arm]
+    files: dict[str, str]
+    problems: list[str] = field(default_factory=list)
+    source: str = ""
+
+    @cached_property
+    def hash(self) -> str:
+        """Hash of the design: of its content and of all its input files."""
+        told = {"design": self.table, "files": self.files, "arms": [a.digest for a in self.arms]}
+        text = json.dumps(told, sort_keys=True, separators=(",", ":"), default=str)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    @property
+    def factors(self) -> list[str]:
+        """Keys of the factors, in order."""
+        return list(self.arms[0].levels) if self.arms else []
+
+    @property
+    def short_names(self) -> dict[str, str]:
+        """A short name per factor."""
+        return factor_names(self.factors)
+
+    def arm(self, name: str) -> Arm:
+        """Return the arm of a name.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        for arm in self.arms:
+            if arm.name == name:
+                return arm
+        shown = ", ".join(arm.name for arm in self.arms[:10])
+        more = ", ..." if len(self.arms) > 10 else ""
+        raise InputError(f"{name}: no such arm; arms: {shown}{more}")
+
+    def seed(self, arm: Arm, replication: int) -> int:
+        """Return the seed of a run: with common random numbers that of the design itself."""
+        if self.design.common_random_numbers:
+            return replication
+        entropy = [replication, int(arm.digest[:16], 16)]
+        return int(np.random.SeedSequence(entropy).generate_state(1, np.uint32)[0])
+
+    def job(self, arm: Arm, replication: int) -> Job:
+        """Return all that a worker has to know of one run."""
+        seed = self.seed(arm, replication)
+        seeded = [(key.split("."), seed) for key in self.design.seeded]
+        return Job(
+            design=self.design.name,
+            design_hash=self.hash,
+            arm=arm.name,
+            arm_digest=arm.digest,
+            replication=replication,
+            seed=seed,
+            inputs={part: _absolute(given) for part, given in arm.inputs.items()},
+            overrides=[*arm.overrides, *seeded],
+            pacing=arm.pacing,
+            check=self.design.check,
+            allow_not_well_formed=self.design.allow_not_well_formed,
+            keep=tuple(self.design.keep),
+            files=self.files,
+        )
+
+    def require_sound(self) -> None:
+        """Refuse a plan with problems.
+
+        Raises
+        ------
+        PlanError
+            With all of them.
+        """
+        if self.problems:
+            raise PlanError(self.source, self.problems)
+
+    def save(self, folder: Path) -> None:
+        """Write the plan beside the results, which are read with it."""
+        told = {
+            "format": FORMAT,
+            "hash": self.hash,
+            "source": self.source,
+            "design": self.table,
+            "files": self.files,
+            "arms": [asdict(arm) for arm in self.arms],
+        }
+        write_text(folder / FILE, json.dumps(told, indent=1, ensure_ascii=False, default=str))
+
+
+def plan(name_or_path: str | Path, told: Callable[[int, int], None] | None = None) -> Plan:
+    """Read a design and resolve all of its arms.
+
+    Parameters
+    ----------
+    name_or_path
+        A design file, or the name of a shipped one.
+    told
+        Called with the number of arms resolved so far and in all.
+
+    Raises
+    ------
+    InputError
+        If the file itself is wrong. What is wrong with arms is listed in `problems`.
+    """
+    path = design_file.locate(name_or_path)
+    design, table = design_file.read(path)
+    made, problems = arms(design, path.parent)
+    if any(problem.startswith("base: ") for problem in problems):
+        return Plan(design, table, made, {}, problems, str(path))
+    resolver = Resolver(design.allow_not_well_formed)
+    resolved: list[Arm] = []
+    wrong: dict[str, list[str]] = {}
+    for count, arm in enumerate(made):
+        if told is not None:
+            told(count, len(made))
+        digest, found = resolver.digest(arm, check=design.check, seeded=design.seeded)
+        resolved.append(replace(arm, digest=digest))
+        for problem in found:
+            wrong.setdefault(problem, []).append(arm.name)
+    problems += [f"{_named(names)}: {problem}" for problem, names in wrong.items()]
+    problems += [] if wrong else _twins(resolved)
+    return Plan(design, table, resolved, dict(sorted(resolver.files.items())), problems, str(path))
+
+
+def load(folder: Path) -> Plan:
+    """Read the plan that results were made with.
+
+    Raises
+    ------
+    InputError
+        If there is none or it is corrupted.
+    """
+    path = folder / FILE
+    try:
+        told = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError(f"{folder}: holds no experiment ({FILE} is missing)") from None
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: cannot be read ({error})") from None
+    if not isinstance(told, dict) or told.get("format") != FORMAT:
+        raise InputError(f"{path}: expected format {FORMAT!r}")
+    design = config.validate(DesignFile, told["design"], str(path))
+    made = [
+        Arm(**(arm | {"overrides": [(list(keys), value) for keys, value in arm["overrides"]]}))
+        for arm in told["arms"]
+    ]
+    return Plan(design, told["design"], made, told["files"], source=told["source"])
+
+
+def _absolute(given: str) -> str:
+    """Name a file so that it is found from everywhere; leave names of shipped inputs alone."""
+    return str(Path(given).absolute()) if Path(given).is_file() else given
+
+
+def _named(names: list[str]) -> str:
+    if len(names) == 1:
+        return f"arm {names[0]}"
+    shown = " | ".join(names[:3])
+    return f"arms {shown}" + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+
+
+def _twins(made: list[Arm]) -> list[str]:
+    """Tell arms that are the same warehouse under two names: their runs would count twice."""
+    groups: dict[str, list[str]] = {}
+    for arm in made:
+        groups.setdefault(arm.digest, []).append(arm.name)
+    return [f"{_named(names)}: are the same" for names in groups.values() if len(names) > 1]

@@ -1,0 +1,194 @@
+"""Loading what an arm names, and a digest of everything that decides about its runs.
+
+The digest is of meaning, not of text: a comment added to a file, or the same layout under another
+name, leaves it as it is; one more robot, another rule or a changed SKU file does not. Runs are
+stored under it, so that finished ones are found again and outdated ones are noticed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import json
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rmfs import control, instances
+from rmfs import layout as layouts
+from rmfs import scenario as scenarios
+from rmfs.errors import InputError
+from rmfs.measure.provenance import KINDS
+from rmfs.measure.provenance import digest as digest_of
+from rmfs.simulation.pacing import pacing as pacing_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from experiments.design.arms import Arm, Overrides
+    from rmfs.control.settings import ControllerSettings
+    from rmfs.layout.model import Layout
+    from rmfs.scenario import Scenario
+
+OWN_PACKAGES = ("rmfs", "solvers")
+"""Rules in these packages are told by the version of the code, others by a hash of their file."""
+
+_SHIPPED = "instances/"
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What a run simulates."""
+
+    layout: Layout
+    scenario: Scenario
+    controllers: ControllerSettings
+
+
+@dataclass
+class Resolver:
+    """Loads the inputs of many arms, each different file and set of parameters once.
+
+    Attributes
+    ----------
+    files
+        Hash of every file read so far, by the name under which it was given.
+    """
+
+    allow_not_well_formed: bool = False
+    files: dict[str, str] = field(default_factory=dict)
+    _parts: dict[str, tuple[str, str]] = field(default_factory=dict)
+
+    def digest(self, arm: Arm, *, check: bool, seeded: list[str]) -> tuple[str, list[str]]:
+        """Return the digest of an arm, and what is wrong with it.
+
+        Parameters
+        ----------
+        check
+            Whether its runs are proven safe.
+        seeded
+            Parameters that take the seed of the run.
+        """
+        found: dict[str, Any] = {}
+        problems: list[str] = []
+        for part, load in _LOADERS.items():
+            own = [(path[1:], value) for path, value in arm.overrides if path[0] == part]
+            # a parameter that takes the seed is tried with one
+            own += [(key.split(".")[1:], 0) for key in seeded if key.split(".")[0] == part]
+            found[part], problem = self._part(part, arm.inputs[part], own, load)
+            if problem:
+                problems.append(problem)
+        try:
+            pacing_of(arm.pacing)
+        except InputError as error:
+            problems.append(str(error))
+        told = {**found, "pacing": arm.pacing, "check": check, "seeded": sorted(seeded)}
+        return _hash(told), problems
+
+    def _part(
+        self, part: str, given: str, overrides: Overrides, load: Callable[..., Any]
+    ) -> tuple[str, str]:
+        """Return digest and problem of one input."""
+        known = json.dumps([part, given, overrides], default=str)
+        if known not in self._parts:
+            try:
+                path = instances.locate(KINDS[part], given)
+                self.files[file_name(path)] = file_hash(path)
+                loaded = load(given, overrides)
+                if part == "layout":
+                    layouts.refuse(loaded, given, allow_not_well_formed=self.allow_not_well_formed)
+                self._parts[known] = (self._meaning(loaded), "")
+            except InputError as error:
+                self._parts[known] = ("", str(error))
+        return self._parts[known]
+
+    def _meaning(self, loaded: Any) -> str:
+        """Return the digest of a loaded input, whatever its name and description."""
+        if isinstance(loaded, control.ControllerSettings):
+            table = loaded.to_table() | {"sources": [*_rule_files(loaded)]}
+        elif isinstance(loaded, scenarios.Scenario):
+            table = loaded.model_dump(mode="json")
+        else:
+            return digest_of(replace(loaded, name=""))
+        table = {key: value for key, value in table.items() if key not in ("name", "description")}
+        return _hash(self._with_files(table))
+
+    def _with_files(self, value: Any) -> Any:
+        """Replace the name of every file by the hash of its content."""
+        if isinstance(value, dict):
+            return {key: self._with_files(item) for key, item in value.items()}
+        if isinstance(value, list | tuple):
+            return [self._with_files(item) for item in value]
+        if isinstance(value, str) and _is_file(value):
+            self.files[file_name(Path(value))] = file_hash(Path(value))
+            return file_hash(Path(value))
+        return value
+
+
+_LOADERS: dict[str, Callable[..., Any]] = {
+    "layout": layouts.load,
+    "scenario": scenarios.load,
+    "controllers": control.load,
+}
+
+
+def load(inputs: dict[str, str], overrides: Overrides) -> Inputs:
+    """Load the inputs of one run.
+
+    Raises
+    ------
+    InputError
+        If one of them is wrong.
+    """
+    loaded = {
+        part: loader(
+            inputs[part], [(path[1:], value) for path, value in overrides if path[0] == part]
+        )
+        for part, loader in _LOADERS.items()
+    }
+    return Inputs(**loaded)
+
+
+def file_hash(path: Path) -> str:
+    """Return the SHA-256 of a file."""
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+
+
+def file_name(path: Path) -> str:
+    """Return how an input file is named in a plan: shipped ones the same on every machine."""
+    if path.is_relative_to(instances.ROOT):
+        return f"{_SHIPPED}{path.relative_to(instances.ROOT).as_posix()}"
+    return str(path.absolute())
+
+
+def present_hash(name: str) -> str:
+    """Return the hash of an input file as it is now; empty if it is not there."""
+    shipped = name.startswith(_SHIPPED)
+    path = instances.ROOT / name.removeprefix(_SHIPPED) if shipped else Path(name)
+    return file_hash(path) if path.is_file() else ""
+
+
+def _is_file(text: str) -> bool:
+    try:
+        return Path(text).is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def _rule_files(settings: ControllerSettings) -> Iterator[str]:
+    """Yield the source files of rules that are not part of rmfs."""
+    for choice in settings.choices.values():
+        module = choice.controller.__module__
+        if module.split(".")[0] not in OWN_PACKAGES:
+            try:
+                yield inspect.getfile(choice.controller)
+            except (OSError, TypeError):  # a class of the interpreter's own input
+                continue
+
+
+def _hash(value: Any) -> str:
+    text = json.dumps(value, sort_keys=True, separators=(",", ":"), default=str)
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -1,0 +1,213 @@
+"""Which runs are wanted, given the results so far.
+
+Everything here depends on the design and on reproducible results alone, never on when they came
+in: an experiment that was interrupted wants the same runs as one that was not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from experiments.statistics.selection import kim_nelson
+from experiments.statistics.sequential import narrow_enough
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from experiments.design.file import Best, Select, Stage, Until
+    from experiments.design.planning import Plan
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A run that the design asks for.
+
+    Attributes
+    ----------
+    arm
+        Name of the arm.
+    replication
+        Its seed as the design counts.
+    """
+
+    stage: str
+    arm: str
+    replication: int
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """The runs wanted so far.
+
+    Attributes
+    ----------
+    runs
+        In the order in which they should be done, each (arm, replication) once.
+    complete
+        Whether nothing will be added once these are done.
+    remarks
+        What the rules of the stages decided, a line each.
+    """
+
+    runs: list[Wanted]
+    complete: bool
+    remarks: list[str]
+
+
+def columns(plan: Plan) -> list[str]:
+    """Columns of the results that the stages look at."""
+    named: dict[str, None] = {}
+    for stage in plan.design.stages:
+        for rule in (stage.until, stage.select):
+            if rule is not None:
+                named[rule.column] = None
+        if stage.arms is not None:
+            named[stage.arms.by] = None
+    return list(named)
+
+
+def schedule(
+    plan: Plan, results: pd.DataFrame, failed: Collection[tuple[str, int]] = ()
+) -> Schedule:
+    """Return the runs wanted so far.
+
+    Parameters
+    ----------
+    results
+        Finished runs: columns `arm`, `replication` and those of `columns`.
+    failed
+        Runs, as arm and replication, that failed: nothing waits for them.
+    """
+    known = _Known(results, frozenset(failed))
+    runs: dict[tuple[str, int], Wanted] = {}
+    remarks: list[str] = []
+    present = [arm.name for arm in plan.arms]
+    before: list[int] = []
+    for stage in plan.design.all_stages():
+        if stage.arms is not None:
+            present = _best(stage.arms, present, before, known)
+            remarks.append(f"stage {stage.name}: {len(present)} arms go on: {' | '.join(present)}")
+        before = plan.design.seeds_of(stage)
+        wanted, over = _of_stage(stage, present, before, known, remarks)
+        for arm, replication in wanted:
+            runs.setdefault((arm, replication), Wanted(stage.name, arm, replication))
+        if not over:
+            return Schedule(list(runs.values()), False, remarks)
+    return Schedule(list(runs.values()), True, remarks)
+
+
+class _Known:
+    """Results by arm and replication."""
+
+    def __init__(self, results: pd.DataFrame, failed: frozenset[tuple[str, int]]) -> None:
+        self.failed = failed
+        keys = zip(results["arm"], results["replication"].astype(int), strict=True)
+        self.row = {key: number for number, key in enumerate(keys)}
+        self.results = results
+
+    def settled(self, arm: str, replications: list[int]) -> bool:
+        """Whether all these runs are finished or have failed."""
+        return all((arm, r) in self.row or (arm, r) in self.failed for r in replications)
+
+    def values(self, arm: str, replications: list[int], column: str) -> list[float]:
+        """Return the values of the runs that are finished; empty cells are left out."""
+        rows = [self.row[arm, r] for r in replications if (arm, r) in self.row]
+        return [float(value) for value in self.results[column].iloc[rows].dropna()]
+
+    def without_value(self, arm: str, replication: int, column: str) -> bool:
+        """Whether this run will never tell a value."""
+        settled = self.settled(arm, [replication])
+        return settled and not self.values(arm, [replication], column)
+
+
+def _of_stage(
+    stage: Stage, arms: list[str], seeds: list[int], known: _Known, remarks: list[str]
+) -> tuple[list[tuple[str, int]], bool]:
+    """Return the runs of a stage so far, and whether it is over."""
+    # seed by seed: whatever is finished so far can be compared
+    wanted = [(arm, seed) for seed in seeds for arm in arms]
+    if not all(known.settled(arm, seeds) for arm in arms):
+        return wanted, False
+    if stage.until is not None:
+        return _until(stage.until, stage.name, arms, seeds, known, remarks)
+    if stage.select is not None:
+        return _select(stage.select, stage.name, arms, seeds, known, remarks)
+    return wanted, True
+
+
+def _until(
+    rule: Until, name: str, arms: list[str], seeds: list[int], known: _Known, remarks: list[str]
+) -> tuple[list[tuple[str, int]], bool]:
+    """Give every arm seeds until its interval is narrow enough."""
+    wanted = [(arm, seed) for seed in seeds for arm in arms]
+    over = True
+    for arm in arms:
+        used = list(seeds)
+        while len(used) < rule.max_seeds and known.settled(arm, used):
+            values = known.values(arm, used, rule.column)
+            if len(values) < len(used) or narrow_enough(
+                values, rule.relative_half_width, rule.confidence
+            ):
+                break
+            count = min(rule.step, rule.max_seeds - len(used))
+            used += range(max(used) + 1, max(used) + 1 + count)
+        wanted += [(arm, seed) for seed in used[len(seeds) :]]
+        if not known.settled(arm, used):
+            over = False
+        else:
+            remarks.append(f"stage {name}: {arm}: {len(used)} seeds")
+    return wanted, over
+
+
+def _select(
+    rule: Select, name: str, arms: list[str], seeds: list[int], known: _Known, remarks: list[str]
+) -> tuple[list[tuple[str, int]], bool]:
+    """Give the arms that may be the best one further seeds until one is left."""
+    sound = [arm for arm in arms if len(known.values(arm, seeds, rule.column)) == len(seeds)]
+    if not sound:
+        remarks.append(f"stage {name}: nothing to select from, as all arms have failed runs")
+        return [(arm, seed) for seed in seeds for arm in arms], True
+    more = range(max(seeds) + 1, max(seeds) + 1 + rule.max_seeds - len(seeds))
+    samples: dict[str, list[float]] = {}
+    wanted = [(arm, seed) for seed in seeds for arm in arms]
+    for arm in sound:
+        samples[arm] = known.values(arm, seeds, rule.column)
+        for seed in more:
+            value = known.values(arm, [seed], rule.column)
+            if not value:
+                break
+            samples[arm] += value
+    found = kim_nelson(
+        samples,
+        first=len(seeds),
+        indifference=rule.indifference,
+        error=rule.error,
+        goal=rule.goal,
+        most=rule.max_seeds,
+    )
+    for arm in sound:
+        wanted += [(arm, seed) for seed in more[: found.used[arm] - len(seeds)]]
+    if not found.over:
+        seed = [*seeds, *more][found.observations]
+        wanted += [(arm, seed) for arm in found.left]
+        if not any(known.without_value(arm, seed, rule.column) for arm in found.left):
+            return wanted, False
+        remarks.append(f"stage {name}: given up, as runs of arms that may be the best failed")
+        return wanted, True
+    remarks.append(f"stage {name}: {found.verdict()}")
+    return wanted, True
+
+
+def _best(rule: Best, arms: list[str], seeds: list[int], known: _Known) -> list[str]:
+    """Return the arms with the best means over the seeds of the stage before, in design order."""
+    means: dict[str, Any] = {
+        arm: pd.Series(known.values(arm, seeds, rule.by), dtype=float).mean() for arm in arms
+    }
+    order = pd.Series(means).sort_values(
+        ascending=rule.goal == "min", kind="stable", na_position="last"
+    )
+    chosen = set(order.dropna().index[: rule.best])
+    return [arm for arm in arms if arm in chosen]

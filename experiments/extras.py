@@ -1,0 +1,37 @@
+"""Packages that only some experiments need: imported when needed, with a clear error if absent."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+from rmfs.errors import InputError
+
+
+def optional(module: str, extra: str, purpose: str) -> Any:
+    """Import a module of an optional package.
+
+    Parameters
+    ----------
+    extra
+        The extra of rmfs that brings it.
+    purpose
+        What it is needed for.
+
+    Raises
+    ------
+    InputError
+        If it is not installed.
+    """
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise InputError(
+            f"{purpose} needs {module.split('.')[0]}, which is not installed ({error}); "
+            f"pip install 'rmfs[{extra}]'"
+        ) from None
+
+
+def statsmodels(module: str) -> Any:
+    """Import a module of statsmodels, named without the package."""
+    return optional(f"statsmodels.{module}", "experiments", "this statistic")

@@ -1,0 +1,53 @@
+"""What each factor does: means over its levels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from experiments.figures.style import COLOURS, axis_label
+from experiments.statistics import interval
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+
+def effects(
+    frame: pd.DataFrame,
+    column: str,
+    factors: Sequence[str],
+    axes: Sequence[Axes],
+    *,
+    names: Sequence[str] | None = None,
+    confidence: float = 0.95,
+) -> None:
+    """Draw the main effect of every factor, one after another, on one scale.
+
+    The interval of a level is that of the means over all arms with this level, seed by seed: it
+    holds for these arms, not for others that one might have thought of.
+
+    Parameters
+    ----------
+    axes
+        One for each factor; they should share their y axis.
+    names
+        What the factors are called. Default as in the frame.
+    """
+    for number, (factor, ax) in enumerate(zip(factors, axes, strict=True)):
+        levels = list(dict.fromkeys(frame[factor]))
+        found = [
+            interval(
+                frame[frame[factor] == level].groupby("replication")[column].mean(), confidence
+            )
+            for level in levels
+        ]
+        means = [one.mean for one in found]
+        halves = [0.0 if one.half_width != one.half_width else one.half_width for one in found]
+        ax.errorbar(range(len(levels)), means, yerr=halves, fmt="o-", color=COLOURS[0], capsize=3)
+        ax.axhline(float(frame[column].mean()), color="0.6", linewidth=0.8, zorder=0)
+        ax.set_xticks(range(len(levels)), [str(level) for level in levels], rotation=45, ha="right")
+        ax.set_xlim(-0.5, len(levels) - 0.5)
+        ax.set_title(names[number] if names is not None else factor, fontsize=9)
+    axes[0].set_ylabel(axis_label(column))

@@ -1,0 +1,80 @@
+"""What all figures have in common."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from rmfs.errors import InputError
+from rmfs.files import replacing
+from rmfs.measure.dictionary import TABLES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from matplotlib.figure import Figure
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+"""Told apart by people who see colours differently (Okabe and Ito)."""
+
+FORMATS = ("png", "pdf", "svg")
+
+
+def axis_label(column: str, table: str = "footprint", *, per: str = "") -> str:
+    """Return a label with the unit of a column.
+
+    Parameters
+    ----------
+    per
+        What a count is divided by, for example "hour".
+    """
+    unit = {one.name: one.unit for one in TABLES[table]}.get(column, "")
+    if column.endswith("_per_h"):
+        return f"{_words(column.removesuffix('_per_h'))} per hour"
+    for suffix in ("_s", "_m", "_share"):
+        column = column.removesuffix(suffix)
+    words = _words(column)
+    if unit and unit not in words:
+        return f"{words} ({unit} per {per})" if per else f"{words} ({unit})"
+    return f"{words} per {per}" if per else words
+
+
+def _words(column: str) -> str:
+    return column.replace("_", " ")
+
+
+@contextmanager
+def saving(path: Path, width: float = 7.0, height: float = 4.3, **layout: Any) -> Iterator[Figure]:
+    """Yield a figure and save it.
+
+    Parameters
+    ----------
+    path
+        A .png, .pdf or .svg file; the same content gives the same bytes.
+    width, height
+        Inches.
+
+    Raises
+    ------
+    InputError
+        If the file has another ending.
+    """
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from matplotlib import pyplot as plt
+
+    form = path.suffix.lower().removeprefix(".")
+    if form not in FORMATS:
+        raise InputError(f"{path}: unknown kind of picture; valid: .{', .'.join(FORMATS)}")
+    with mpl.rc_context({"svg.hashsalt": "rmfs", "axes.grid": True, "grid.alpha": 0.3}):
+        figure = plt.figure(figsize=(width, height), layout="constrained", **layout)
+        try:
+            yield figure
+            # no date in the file: it would be another one each time
+            metadata = {"png": {}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}[form]
+            with replacing(path) as temporary:
+                figure.savefig(temporary, format=form, dpi=150, metadata=metadata)
+        finally:
+            plt.close(figure)

@@ -1,0 +1,80 @@
+"""A file beside every table and picture that says where its numbers come from."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sys
+from typing import TYPE_CHECKING, Any
+
+from experiments.running.code import code
+from rmfs.files import write_text
+from rmfs.measure.provenance import commit
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    import pandas as pd
+
+FORMAT = "rmfs-provenance/1"
+SUFFIX = ".provenance.json"
+
+
+def write(
+    path: Path,
+    frame: pd.DataFrame,
+    *,
+    design: str,
+    design_hash: str,
+    columns: Sequence[str],
+    **more: Any,
+) -> Path:
+    """Write the provenance file of a table or picture.
+
+    Parameters
+    ----------
+    path
+        The table or picture; its file gets the suffix `.provenance.json`.
+    frame
+        The rows it was made of, as `experiments.load` returns them.
+    design, design_hash
+        Name and hash of the design.
+    columns
+        Columns it shows.
+    more
+        Whatever else decides about it, such as the confidence.
+
+    Returns
+    -------
+    The file written.
+    """
+    made_by = sorted({(row.code, row.git_commit) for row in frame.itertuples()})
+    told = {
+        "format": FORMAT,
+        "file": path.name,
+        "design": design,
+        "design_hash": design_hash,
+        "columns": list(columns),
+        **more,
+        "rows": {
+            "count": len(frame),
+            "arms": int(frame["arm"].nunique()),
+            "seeds": sorted({int(seed) for seed in frame["replication"]}),
+            "sha256": rows_hash(frame, columns),
+            "runs": sorted(frame["run"]),
+        },
+        "runs_made_by": [{"code": made, "git_commit": told} for made, told in made_by],
+        "written_by": {**code(), **commit()},
+        "command": " ".join(["rmfs" if "rmfs" in sys.argv[0] else "python", *sys.argv[1:]]),
+    }
+    target = path.with_name(path.name + SUFFIX)
+    write_text(target, json.dumps(told, indent=1, ensure_ascii=False, default=str) + "\n")
+    return target
+
+
+def rows_hash(frame: pd.DataFrame, columns: Sequence[str]) -> str:
+    """Return a hash of the values shown: equal for equal results, whatever computed them."""
+    chosen = [*dict.fromkeys(["arm", "replication", *(c for c in columns if c in frame)])]
+    text = frame.sort_values(["arm", "replication"], kind="stable")[chosen].to_csv(index=False)
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -1,0 +1,59 @@
+"""Running an experiment: jobs, the processes that do them, and the driver that hands them out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from experiments.design.planning import Plan
+    from experiments.running.driver import Tally, Watcher
+    from experiments.running.local import Engine
+
+
+def run(
+    plan: Plan,
+    folder: str | Path,
+    *,
+    processes: int | None = None,
+    dask: str | None = None,
+    watcher: Watcher | None = None,
+) -> Tally:
+    """Do the runs of a plan that are not finished yet.
+
+    Parameters
+    ----------
+    folder
+        Where results go; made if absent.
+    processes
+        Runs at a time on this machine. Default: one per core that this process may use.
+    dask
+        Address of a Dask scheduler or a cluster profile, in place of this machine.
+    watcher
+        Told of progress.
+
+    Raises
+    ------
+    PlanError
+        If the plan has problems.
+    InputError
+        If the folder cannot be written, or there is no cluster.
+    """
+    from experiments.running.cluster import DaskWorkers
+    from experiments.running.driver import drive
+    from experiments.running.local import LocalProcesses
+    from experiments.store import Store
+
+    plan.require_sound()
+    engine: Engine = DaskWorkers(dask) if dask is not None else LocalProcesses(processes or cores())
+    return drive(plan, Store(Path(folder)), engine, watcher)
+
+
+def cores() -> int:
+    """Return how many cores this process may use."""
+    import os
+
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # not Linux
+        return os.cpu_count() or 1

@@ -1,0 +1,157 @@
+"""Runs on a Dask cluster: one that exists, or one that a batch system starts.
+
+The workers need the same version of rmfs, and input files of your own under the same path (a shared
+file system); every worker compares the hashes of the inputs. Start workers with one thread each
+(`dask worker ADDRESS --nworkers N --nthreads 1`): a run is a process.
+"""
+
+from __future__ import annotations
+
+import queue
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import pydantic
+
+from experiments.extras import optional
+from experiments.running.job import Job, Outcome
+from rmfs.config import Model, read_toml, validate
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+EXTRA = "dask"
+CONNECT_S = 30.0
+
+CLUSTERS = {
+    "slurm": "SLURMCluster",
+    "pbs": "PBSCluster",
+    "sge": "SGECluster",
+    "lsf": "LSFCluster",
+    "oar": "OARCluster",
+    "htcondor": "HTCondorCluster",
+}
+"""Classes of dask-jobqueue."""
+
+
+class Profile(Model):
+    """A cluster profile (`rmfs-cluster/1`): what dask-jobqueue is told.
+
+    `cluster = "local"` starts workers on this machine, to try things out.
+    """
+
+    format: Literal["rmfs-cluster/1"]
+    cluster: Literal["slurm", "pbs", "sge", "lsf", "oar", "htcondor", "local"]
+    workers: int = pydantic.Field(ge=1, description="processes in all, one run each at a time")
+    options: dict[str, Any] = pydantic.Field(
+        {}, description="further arguments of the cluster class, such as queue, memory, walltime"
+    )
+
+
+class DaskWorkers:
+    """Does jobs on the workers of a Dask cluster.
+
+    Parameters
+    ----------
+    address
+        Of a scheduler (`tcp://HOST:PORT`), or a profile (a .toml file).
+    work
+        What is done with a job. Default: simulate it.
+
+    Raises
+    ------
+    InputError
+        If Dask is not installed, the scheduler does not answer or the profile is wrong.
+    """
+
+    def __init__(self, address: str, work: Callable[[Job], Outcome] | None = None) -> None:
+        self._distributed = optional("distributed", EXTRA, "--dask")
+        self._work = work
+        self._cluster: Any = None
+        target: Any = address
+        if Path(address).suffix == ".toml":
+            profile = validate(Profile, read_toml(Path(address)), address)
+            target = self._cluster = _started(profile, address)
+        try:
+            self.client = self._distributed.Client(target, timeout=CONNECT_S, set_as_default=False)
+        except (OSError, ValueError) as error:
+            raise InputError(f"--dask {address}: no scheduler answers ({error})") from None
+        self._done: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._jobs: dict[Any, Job] = {}
+
+    @property
+    def slots(self) -> int:
+        """Two jobs per worker, so that none waits for the driver."""
+        workers = self.client.scheduler_info(n_workers=-1)["workers"].values()
+        threads = [int(worker["nthreads"]) for worker in workers]
+        return 2 * max(1, sum(threads))
+
+    def submit(self, job: Job) -> None:
+        """Begin a job on some worker; if that one dies Dask begins it again on another."""
+        future = self.client.submit(_work_of(self._work), job, pure=False)
+        self._jobs[future] = job
+        future.add_done_callback(self._done.put)
+
+    def wait(self, timeout_s: float) -> list[tuple[Job, Outcome]]:
+        """Return the jobs that have ended within a time."""
+        ended: list[tuple[Job, Outcome]] = []
+        try:
+            ended.append(self._result(self._done.get(timeout=timeout_s)))
+            while True:
+                ended.append(self._result(self._done.get_nowait()))
+        except queue.Empty:
+            return ended
+
+    def close(self) -> None:
+        """Cancel what still runs and leave the cluster; end it if it was started here."""
+        self.client.cancel(list(self._jobs), force=True)
+        self._jobs.clear()
+        self.client.close()
+        if self._cluster is not None:
+            self._cluster.close()
+
+    def _result(self, future: Any) -> tuple[Job, Outcome]:
+        job = self._jobs.pop(future)
+        error = future.exception()
+        if error is None:
+            return job, future.result()
+        # what goes wrong in a run is part of its outcome: this is the cluster's own trouble
+        return job, Outcome(error=f"{type(error).__name__}: {error}".splitlines()[0], died=True)
+
+
+def _started(profile: Profile, source: str) -> Any:
+    """Start a cluster.
+
+    Raises
+    ------
+    InputError
+        If its options are wrong.
+    """
+    options = dict(profile.options)
+    try:
+        if profile.cluster == "local":
+            distributed = optional("distributed", EXTRA, "--dask")
+            return distributed.LocalCluster(
+                n_workers=profile.workers,
+                threads_per_worker=1,
+                **({"dashboard_address": None} | options),
+            )
+        jobqueue = optional("dask_jobqueue", EXTRA, f"cluster {profile.cluster}")
+        # a worker process has one thread: as many processes as cores in each job of the queue
+        options.setdefault("cores", 1)
+        options.setdefault("processes", options["cores"])
+        cluster = getattr(jobqueue, CLUSTERS[profile.cluster])(**options)
+        cluster.scale(n=profile.workers)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{source}: options: {str(error).splitlines()[0]}") from None
+    return cluster
+
+
+def _work_of(work: Callable[[Job], Outcome] | None) -> Callable[[Job], Outcome]:
+    if work is not None:
+        return work
+    # imported by the worker
+    from experiments.running.execute import execute
+
+    return execute

@@ -1,0 +1,222 @@
+"""The driver: hands out the runs that are wanted and stores what comes back."""
+
+from __future__ import annotations
+
+from collections import deque
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Protocol
+
+import pandas as pd
+
+from experiments.design.stages import columns, schedule
+from experiments.results import assigned, failed
+from experiments.running.code import code
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from experiments.design.arms import Arm
+    from experiments.design.planning import Plan
+    from experiments.design.stages import Schedule
+    from experiments.running.job import Job, Outcome
+    from experiments.running.local import Engine
+    from experiments.store import Store
+
+ATTEMPTS = 3
+"""How often a run is begun whose worker dies without a word."""
+
+PATIENCE_S = 1.0
+"""Time between two looks at the engine; progress is told in between."""
+
+MERGE_EVERY = 1024
+"""Runs after which the files of single runs are merged."""
+
+
+class Watcher(Protocol):
+    """Told how the experiment goes."""
+
+    def planned(self, total: int, finished: int) -> None:
+        """So many runs are wanted, so many of them were finished before or are now."""
+
+    def ended(self, job: Job, outcome: Outcome) -> None:
+        """A run has ended; well if `outcome.error` is empty."""
+
+    def remark(self, text: str) -> None:
+        """Something worth a line."""
+
+    def tick(self) -> None:
+        """Some time has passed."""
+
+
+class Silent:
+    """A watcher that says nothing."""
+
+    def planned(self, total: int, finished: int) -> None:
+        """Say nothing."""
+
+    def ended(self, job: Job, outcome: Outcome) -> None:
+        """Say nothing."""
+
+    def remark(self, text: str) -> None:
+        """Say nothing."""
+
+    def tick(self) -> None:
+        """Say nothing."""
+
+
+@dataclass
+class Tally:
+    """What a driver has done.
+
+    Attributes
+    ----------
+    wanted, finished
+        Runs of the experiment; those of them that are stored.
+    ran
+        Runs done now.
+    failed
+        Runs that failed now, as arm and replication.
+    """
+
+    wanted: int = 0
+    finished: int = 0
+    ran: int = 0
+    failed: list[tuple[str, int]] = field(default_factory=list)
+
+
+def drive(plan: Plan, store: Store, engine: Engine, watcher: Watcher | None = None) -> Tally:
+    """Do the runs of a plan that are not finished yet.
+
+    Runs that failed in an earlier attempt are begun again, as are those that were cut off.
+
+    Raises
+    ------
+    PlanError
+        If the plan has problems.
+    InputError
+        If the folder cannot be written or another driver works on it.
+    """
+    plan.require_sound()
+    return _Driver(plan, store, engine, watcher or Silent()).run()
+
+
+class _Driver:
+    def __init__(self, plan: Plan, store: Store, engine: Engine, watcher: Watcher) -> None:
+        self.plan, self.store, self.engine, self.watcher = plan, store, engine, watcher
+        self.arms: dict[str, Arm] = {arm.name: arm for arm in plan.arms}
+        self.tally = Tally()
+        self.attempts: dict[str, int] = {}
+        self.finished: set[str] = set()
+        self.failed: set[str] = set()
+
+    def run(self) -> Tally:
+        with self.store.locked(), self._closing():
+            self.plan.save(self.store.folder)
+            self.store.merge()
+            self.finished = self.store.finished(self.plan.design.keep)
+            self._tell_of_strangers()
+            while True:
+                now = self._schedule()
+                todo = self._todo(now)
+                if not todo:
+                    break
+                self._do(todo)
+                if now.complete:
+                    break
+            for text in self._schedule().remarks:
+                self.watcher.remark(text)
+            self.store.merge()
+        return self.tally
+
+    def _schedule(self) -> Schedule:
+        """Ask the stages what they want, given the results so far."""
+        needed = columns(self.plan)
+        if not self.plan.design.stages:
+            return schedule(self.plan, pd.DataFrame({"arm": [], "replication": []}))
+        rows = self.store.rows(["arm_digest", "arm", "replication", "seed", *needed])
+        names = {arm.digest: arm.name for arm in self.plan.arms}
+        rows = rows[rows["arm_digest"].isin(list(names)) & rows["run"].isin(list(self.finished))]
+        rows = rows.assign(arm=rows["arm_digest"].map(names))
+        return schedule(self.plan, rows, set(self.tally.failed))
+
+    def _todo(self, now: Schedule) -> list[Job]:
+        jobs = [self.plan.job(self.arms[run.arm], run.replication) for run in now.runs]
+        self.tally.wanted = len(jobs)
+        self.tally.finished = sum(job.key in self.finished for job in jobs)
+        self.watcher.planned(self.tally.wanted, self.tally.finished)
+        return [job for job in jobs if job.key not in self.finished and job.key not in self.failed]
+
+    def _do(self, jobs: list[Job]) -> None:
+        waiting = deque(jobs)
+        flying = 0
+        while waiting or flying:
+            while waiting and flying < self.engine.slots:
+                self.engine.submit(waiting.popleft())
+                flying += 1
+            for job, outcome in self.engine.wait(PATIENCE_S):
+                flying -= 1
+                if outcome.died and self._once_more(job, outcome):
+                    waiting.appendleft(job)
+                else:
+                    self._store(job, outcome)
+            self.watcher.tick()
+
+    def _once_more(self, job: Job, outcome: Outcome) -> bool:
+        """Whether a run whose worker died gets another chance."""
+        self.attempts[job.key] = self.attempts.get(job.key, 1) + 1
+        if self.attempts[job.key] > ATTEMPTS:
+            return False
+        self.watcher.remark(f"{job}: {outcome.error}; begun again")
+        return True
+
+    def _store(self, job: Job, outcome: Outcome) -> None:
+        self.store.add(job, outcome, code())
+        self.tally.ran += 1
+        if outcome.error:
+            self.failed.add(job.key)
+            self.tally.failed.append((job.arm, job.replication))
+        else:
+            self.finished.add(job.key)
+            self.tally.finished += 1
+        self.watcher.ended(job, outcome)
+        if self.tally.ran % MERGE_EVERY == 0:
+            self.store.merge()
+
+    def _tell_of_strangers(self) -> None:
+        """Say which stored runs no longer count, and which were made by other code."""
+        rows = self.store.rows(["arm_digest", "arm", "replication", "code"])
+        if rows.empty:
+            return
+        digests = {arm.digest for arm in self.plan.arms}
+        outdated = rows[~rows["arm_digest"].isin(list(digests)) & rows["arm"].isin(list(self.arms))]
+        if len(outdated):
+            arms = outdated["arm"].nunique()
+            self.watcher.remark(
+                f"{len(outdated)} finished runs of {arms} arms were made with other inputs and do "
+                "not count any more: their runs are done again"
+            )
+        others = rows[rows["arm_digest"].isin(list(digests)) & (rows["code"] != code()["code"])]
+        if len(others):
+            self.watcher.remark(
+                f"{len(others)} finished runs were made with other code than the present one; "
+                "remove the folder to do them again"
+            )
+
+    @contextmanager
+    def _closing(self) -> Iterator[None]:
+        try:
+            yield
+        finally:
+            self.engine.close()
+
+
+def progress_of(plan: Plan, store: Store) -> Tally:
+    """Return how far an experiment has come."""
+    finished = store.finished(plan.design.keep)
+    lost = failed(plan, store)
+    pairs = list(zip(lost["arm"], lost["replication"].astype(int), strict=True))
+    wanted = schedule(plan, assigned(plan, store.rows()), set(pairs)).runs
+    arms = {arm.name: arm for arm in plan.arms}
+    keys = [plan.job(arms[run.arm], run.replication).key for run in wanted]
+    return Tally(len(keys), sum(key in finished for key in keys), failed=pairs)

@@ -1,0 +1,80 @@
+"""The work of one job: load, simulate, measure. Runs in a process of its own.
+
+What is imported here is imported once, before the processes are forked.
+"""
+
+from __future__ import annotations
+
+import platform
+import time
+import traceback
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from experiments.design import resolve
+from experiments.running.job import Job, Outcome
+from rmfs.errors import InputError
+from rmfs.measure import tables
+from rmfs.measure.checker import check
+from rmfs.simulation.run import simulate
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rmfs.simulation.run import Run
+
+
+def execute(job: Job) -> Outcome:
+    """Do a job; whatever goes wrong in it becomes part of the outcome."""
+    begun = time.perf_counter()
+    host = platform.node()
+    try:
+        made = _simulated(job)
+    except Exception as error:
+        line = str(error).splitlines()[0] if str(error) else ""
+        return Outcome(
+            error=f"{type(error).__name__}: {line}",
+            traceback=traceback.format_exc(),
+            elapsed_s=time.perf_counter() - begun,
+            host=host,
+        )
+    footprint = made.pop("footprint")
+    return Outcome(footprint, made, elapsed_s=time.perf_counter() - begun, host=host)
+
+
+def _simulated(job: Job) -> dict[str, pd.DataFrame]:
+    """Simulate, and return the tables wanted.
+
+    Raises
+    ------
+    InputError
+        If an input file is not the one that was planned with.
+    RuntimeError
+        If the motion is not safe: a defect.
+    """
+    inputs = resolve.load(job.inputs, job.overrides)
+    changed = [name for name, known in job.files.items() if resolve.present_hash(name) != known]
+    if changed:
+        raise InputError(f"{', '.join(changed)}: changed since the plan was made; plan again")
+    run = simulate(
+        inputs.layout,
+        inputs.scenario,
+        inputs.controllers,
+        seed=job.seed,
+        pacing=job.pacing,
+        trace=job.check,
+        allow_not_well_formed=job.allow_not_well_formed,
+    )
+    # as if simulate had read the files itself
+    layout, scenario, controllers = (Path(given).stem for given in job.inputs.values())
+    run.names = (layout, scenario, controllers)
+    run.overrides = list(job.overrides)
+    return _tables(run, job)
+
+
+def _tables(run: Run, job: Job) -> dict[str, pd.DataFrame]:
+    report = check(run.layout, run.trace, until_us=round(run.end_s * 1e6)) if job.check else None
+    if report is not None and not report.ok:
+        raise RuntimeError(f"unsafe motion: {report.summary()}")
+    made = tables.all_tables(run, report)
+    return {name: made[name] for name in ("footprint", *job.keep)}

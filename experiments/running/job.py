@@ -1,0 +1,84 @@
+"""What goes to a worker, and what comes back."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run, with everything needed to do it anywhere.
+
+    Attributes
+    ----------
+    arm_digest
+        Hash of all that decides about the run but its seed.
+    replication
+        The seed as the design counts; the seed of the run itself may be derived from it.
+    files
+        Hash of every input file of the design: the worker compares.
+    """
+
+    design: str
+    design_hash: str
+    arm: str
+    arm_digest: str
+    replication: int
+    seed: int
+    inputs: dict[str, str]
+    overrides: list[tuple[list[str], Any]]
+    pacing: str
+    check: bool
+    allow_not_well_formed: bool
+    keep: tuple[str, ...]
+    files: dict[str, str]
+
+    @property
+    def key(self) -> str:
+        """Identity of the run: the same key means the same results."""
+        return run_key(self.arm_digest, self.seed)
+
+    def __str__(self) -> str:
+        """Name the run for people."""
+        return f"{self.arm}, seed {self.seed}"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a job.
+
+    Attributes
+    ----------
+    footprint
+        One row; nothing if the run failed.
+    tables
+        The tables that were to be kept.
+    error
+        One line; empty if all went well.
+    traceback
+        Where the error came from.
+    died
+        Whether the worker was gone before it could say anything.
+    elapsed_s
+        Wall time of the job, loading and tables included.
+    host
+        Where it ran.
+    """
+
+    footprint: pd.DataFrame | None = None
+    tables: dict[str, pd.DataFrame] = field(default_factory=dict)
+    error: str = ""
+    traceback: str = ""
+    died: bool = False
+    elapsed_s: float = 0.0
+    host: str = ""
+
+
+def run_key(arm_digest: str, seed: int) -> str:
+    """Return the identity of a run."""
+    return hashlib.sha256(f"{arm_digest}/{seed}".encode()).hexdigest()[:24]

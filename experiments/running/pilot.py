@@ -1,0 +1,108 @@
+"""How long an experiment will take: from finished runs, or from short ones tried out."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from experiments.design import resolve
+from rmfs.errors import InputError
+from rmfs.measure import tables
+from rmfs.simulation.run import simulate
+from rmfs.simulation.simulation import StalledError
+
+if TYPE_CHECKING:
+    from experiments.design.planning import Plan
+    from experiments.running.job import Job
+    from experiments.store import Store
+
+ARMS = 4
+"""Arms that are tried out, evenly spread over the design."""
+
+SHARE = 0.05
+"""Simulated share of a run that is tried out."""
+
+LEAST_S, MOST_S = 600.0, 7200.0
+"""Simulated time tried out, at least and at most."""
+
+ENOUGH = 8
+"""Finished runs that make a pilot needless."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """How long runs take.
+
+    Attributes
+    ----------
+    run_s
+        Mean wall time of a run.
+    longest_s
+        That of the slowest arm tried.
+    runs
+        Runs that this comes from.
+    source
+        In words, where the figures come from.
+    """
+
+    run_s: float
+    longest_s: float
+    runs: int
+    source: str
+
+    def total_s(self, runs: int, processes: int) -> float:
+        """Return the wall time of so many runs, so many at a time."""
+        return self.run_s * runs / max(1, min(processes, runs))
+
+
+def estimate(plan: Plan, store: Store) -> Estimate | None:
+    """Estimate how long a run of a design takes; nothing if no pilot run got through."""
+    from experiments.results import assigned
+
+    known = assigned(plan, store.rows())
+    if len(known) >= ENOUGH:
+        by_arm = known.groupby("arm")["elapsed_s"].mean()
+        return Estimate(
+            float(by_arm.mean()), float(by_arm.max()), len(known), f"{len(known)} finished runs"
+        )
+    chosen = np.unique(np.linspace(0, len(plan.arms) - 1, ARMS).round().astype(int))
+    replication = plan.design.seeds_of(plan.design.all_stages()[0])[0]
+    times: list[float] = []
+    for number in chosen:
+        try:
+            times.append(_tried(plan.job(plan.arms[number], replication)))
+        except (InputError, StalledError):
+            continue  # the run itself will tell
+    if not times:
+        return None
+    return Estimate(
+        float(np.mean(times)), max(times), len(times), f"{len(times)} short runs of as many arms"
+    )
+
+
+def _tried(job: Job) -> float:
+    """Simulate the beginning of a run and return the wall time that the whole would take."""
+    begun = time.perf_counter()
+    inputs = resolve.load(job.inputs, job.overrides)
+    whole_s = inputs.scenario.warmup_s + inputs.scenario.duration_s
+    part_s = min(whole_s, max(LEAST_S, min(MOST_S, SHARE * whole_s)))
+    overrides = [
+        *job.overrides,
+        (["scenario", "warmup_s"], 0.0),
+        (["scenario", "duration_s"], part_s),
+    ]
+    scenario = resolve.load(job.inputs, overrides).scenario
+    run = simulate(
+        inputs.layout,
+        scenario,
+        inputs.controllers,
+        seed=job.seed,
+        pacing=job.pacing,
+        allow_not_well_formed=job.allow_not_well_formed,
+    )
+    tables.all_tables(run)
+    around_s = time.perf_counter() - begun - run.wall_s
+    return around_s + run.wall_s * whole_s / part_s

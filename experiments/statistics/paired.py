@@ -1,0 +1,142 @@
+"""Differences between arms, seed by seed.
+
+With common random numbers two arms meet the same demand under the same seed, so the difference of
+each pair varies less than the arms themselves. Differences are always "arm minus baseline".
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from scipy import stats
+
+from experiments.statistics.intervals import Method, interval, require
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
+
+    from numpy.typing import NDArray
+
+
+def paired(
+    arm: pd.Series, baseline: pd.Series, *, confidence: float = 0.95, method: Method = "t"
+) -> dict[str, float]:
+    """Compare two arms seed by seed.
+
+    Parameters
+    ----------
+    arm, baseline
+        One number per seed, indexed by seed; seeds that only one of them has are left out.
+
+    Returns
+    -------
+    `pairs`, `difference` (mean of arm minus baseline) with `low` and `high`, `relative`
+    (difference / baseline's mean), `p` of the paired t test (two-sided; nan below two pairs).
+    """
+    both = pd.concat([arm, baseline], axis=1, keys=["arm", "baseline"], join="inner").dropna()
+    differences: NDArray[np.float64] = (both["arm"] - both["baseline"]).to_numpy(dtype=float)
+    found = interval(differences, confidence, method)
+    base = float(both["baseline"].mean()) if len(both) else np.nan
+    return {
+        "pairs": found.count,
+        "difference": found.mean,
+        "low": found.low,
+        "high": found.high,
+        "relative": found.mean / base if base else np.nan,
+        "p": _p_value(both["arm"], both["baseline"], differences),
+    }
+
+
+def unpaired(arm: pd.Series, baseline: pd.Series, *, confidence: float = 0.95) -> dict[str, float]:
+    """Compare two arms that share no seeds: Welch's t test and its interval.
+
+    Returns
+    -------
+    As of `paired`; `pairs` is 0.
+    """
+    a, b = arm.dropna().to_numpy(dtype=float), baseline.dropna().to_numpy(dtype=float)
+    difference = float(a.mean() - b.mean()) if len(a) and len(b) else np.nan
+    low = high = p = np.nan
+    if len(a) > 1 and len(b) > 1 and (a.std() > 0 or b.std() > 0):
+        test = stats.ttest_ind(a, b, equal_var=False)
+        found = test.confidence_interval(confidence)
+        low, high, p = float(found.low), float(found.high), float(test.pvalue)
+    base = float(b.mean()) if len(b) else np.nan
+    return {
+        "pairs": 0,
+        "difference": difference,
+        "low": low,
+        "high": high,
+        "relative": difference / base if base else np.nan,
+        "p": p,
+    }
+
+
+def against(
+    frame: pd.DataFrame,
+    column: str,
+    baseline: Hashable,
+    *,
+    confidence: float = 0.95,
+    method: Method = "t",
+    by: str = "arm",
+    pair: str = "replication",
+) -> pd.DataFrame:
+    """Compare every arm with a baseline, seed by seed, corrected for their number.
+
+    Parameters
+    ----------
+    baseline
+        The arm that the others are compared with.
+    pair
+        Column that makes pairs. Default `replication`, the seed as the design counts.
+
+    Returns
+    -------
+    One row per other arm: what `paired` returns, `p_holm` (Holm 1979, over all rows) and
+    `direction`: "higher", "lower" or "unclear" at the level 1 - `confidence` after correction.
+    """
+    require(frame, by, column, pair)
+    wide = frame.pivot_table(index=pair, columns=by, values=column, aggfunc="mean", sort=False)
+    if baseline not in wide:
+        raise InputError(f"baseline {baseline}: no such arm with results")
+    others = [arm for arm in frame[by].unique() if arm != baseline and arm in wide]
+    rows = {
+        arm: paired(wide[arm], wide[baseline], confidence=confidence, method=method)
+        for arm in others
+    }
+    made = pd.DataFrame.from_dict(rows, orient="index")
+    made.index.name = by
+    if made.empty:
+        return made
+    made["pairs"] = made["pairs"].astype(int)
+    made["p_holm"] = holm(made["p"])
+    unclear = ~(made["p_holm"] < 1.0 - confidence)
+    made["direction"] = np.where(made["difference"] > 0.0, "higher", "lower")
+    made.loc[unclear, "direction"] = "unclear"
+    return made
+
+
+def holm(p_values: pd.Series) -> pd.Series:
+    """Return p values corrected for their number; missing ones stay missing."""
+    from experiments.extras import statsmodels
+
+    known = p_values.dropna()
+    if len(known) < 2:
+        return p_values.astype(float)
+    multitest = statsmodels("stats.multitest")
+    corrected = pd.Series(np.nan, index=p_values.index)
+    corrected[known.index] = multitest.multipletests(known.to_numpy(), method="holm")[1]
+    return corrected
+
+
+def _p_value(arm: pd.Series, baseline: pd.Series, differences: NDArray[np.float64]) -> float:
+    if len(differences) < 2:
+        return np.nan
+    if (differences == differences[0]).all():
+        # no spread at all: the test statistic is 0 / 0 or infinite
+        return 1.0 if differences[0] == 0.0 else 0.0
+    return float(stats.ttest_rel(arm, baseline).pvalue)

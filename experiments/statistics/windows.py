@@ -1,0 +1,55 @@
+"""Rates in a part of a run: after a warm-up, before and after something was changed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from experiments.statistics.intervals import require
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+def rates(
+    series: pd.DataFrame,
+    columns: Sequence[str],
+    *,
+    start_s: float = 0.0,
+    end_s: float = float("inf"),
+    keys: Sequence[str] = ("arm", "replication"),
+) -> pd.DataFrame:
+    """Return counts per hour of every run within a window of its time.
+
+    Only intervals of the time series that lie wholly in the window are counted.
+
+    Parameters
+    ----------
+    series
+        The table `series` of runs (`experiments.load(DIR, table="series")`).
+    columns
+        Counts per interval, such as `orders_completed` and `distance_m`.
+    start_s, end_s
+        The window, since the start of the runs.
+    keys
+        Columns that tell runs apart.
+
+    Returns
+    -------
+    One row per run: the keys, and each column per hour.
+
+    Raises
+    ------
+    InputError
+        If no interval lies in the window.
+    """
+    require(series, *keys, "time_s", "interval_s", *columns)
+    begin = series["time_s"] - series["interval_s"]
+    inside = series[(begin >= start_s - 1e-6) & (series["time_s"] <= end_s + 1e-6)]
+    if inside.empty:
+        raise InputError(f"window {start_s:g} to {end_s:g} s: no interval of the runs lies in it")
+    sums = inside.groupby(list(keys), sort=False)[[*columns, "interval_s"]].sum()
+    per_hour = sums[list(columns)].div(sums["interval_s"] / 3600.0, axis=0)
+    return per_hour.reset_index()

@@ -1,0 +1,238 @@
+"""The folder of an experiment's results.
+
+    plan.json       the design, its arms and the hashes of its inputs
+    runs/           the dataset: one small Parquet file a run, merged into bigger ones now and then
+    <table>/        a Parquet file a run for each table that is kept
+    failures/       a JSON file with the traceback for each run that failed
+
+Every file is written whole or not at all, so the dataset can be read at any time. Runs are stored
+under their key: what decides about them. Nothing is ever thrown away but doubles: rows of an
+outdated input stay until the folder is removed, and count again if the input is restored.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+import pyarrow as pa  # type: ignore[import-untyped]
+import pyarrow.parquet as pq  # type: ignore[import-untyped]
+
+from rmfs.errors import InputError
+from rmfs.files import replacing, write_text
+from rmfs.measure.dictionary import names
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from experiments.running.job import Job, Outcome
+
+RUNS, FAILURES, LOCK = "runs", "failures", ".lock"
+
+MERGED = "merged-"
+MANY = 256
+"""Files of single runs that are merged into one."""
+
+ORIGIN = ("run", "arm_digest", "replication", "arm", "design", "design_hash")
+"""Columns of a stored row, before the footprint, that say which run it is."""
+
+PROVENANCE = ("rmfs_version", "git_commit", "code", "host", "elapsed_s", "finished")
+"""Columns of a stored row, after the footprint, that say how it was made; they do not repeat."""
+
+COLUMNS = [*ORIGIN, *names("footprint"), *PROVENANCE]
+"""Columns of a stored row."""
+
+_ATTEMPTS = 5
+
+
+class Store:
+    """Reads and writes the folder of an experiment's results.
+
+    Parameters
+    ----------
+    folder
+        Made when something is written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    # writing
+
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Keep other drivers away; also clears away what an interrupted one left half-written.
+
+        Raises
+        ------
+        InputError
+            If another driver works on the folder.
+        """
+        try:
+            (self.folder / RUNS).mkdir(parents=True, exist_ok=True)
+            lock = (self.folder / LOCK).open("w")
+        except OSError as error:
+            raise InputError(f"{self.folder}: cannot be written ({error.strerror})") from None
+        with lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                raise InputError(f"{self.folder}: another process runs this experiment") from None
+            for left in self.folder.glob("*/.*.parquet.*"):
+                left.unlink(missing_ok=True)
+            yield
+
+    def add(self, job: Job, outcome: Outcome, code: Mapping[str, Any]) -> None:
+        """Write what came of a run.
+
+        Parameters
+        ----------
+        code
+            Values of `rmfs_version`, `git_commit` and `code`.
+        """
+        if outcome.footprint is None:
+            told = {
+                "arm": job.arm,
+                "replication": job.replication,
+                "seed": job.seed,
+                "design_hash": job.design_hash,
+                "error": outcome.error,
+                "traceback": outcome.traceback,
+                "host": outcome.host,
+                "failed": _now(),
+            }
+            text = json.dumps(told, indent=1, ensure_ascii=False)
+            write_text(self.folder / FAILURES / f"{job.key}.json", text + "\n")
+            return
+        for name, table in outcome.tables.items():
+            # the row comes last: where it is, everything is
+            self._write(self.folder / name / f"{job.key}.parquet", _identified(table, job))
+        row = _row(job, outcome, code)
+        self._write(self.folder / RUNS / f"{job.key}.parquet", row)
+        (self.folder / FAILURES / f"{job.key}.json").unlink(missing_ok=True)
+
+    def merge(self, at_least: int = MANY) -> None:
+        """Merge the files of single runs, if there are many."""
+        single = sorted(p for p in self._files() if not p.name.startswith(MERGED))
+        if len(single) < at_least:
+            return
+        for start in range(0, len(single), MANY):
+            chunk = single[start : start + MANY]
+            table = _together([pq.read_table(path) for path in chunk])
+            self._write(self.folder / RUNS / f"{MERGED}{chunk[0].stem}.parquet", table)
+            # a reader that comes now meets some rows twice and drops the doubles
+            for path in chunk:
+                path.unlink()
+
+    def _write(self, path: Path, frame: pd.DataFrame | pa.Table) -> None:
+        table = (
+            frame
+            if isinstance(frame, pa.Table)
+            else pa.Table.from_pandas(frame, preserve_index=False)
+        )
+        with replacing(path) as temporary:
+            pq.write_table(table, temporary, compression="zstd")
+
+    # reading
+
+    def rows(self, columns: Sequence[str] | None = None) -> pd.DataFrame:
+        """Read all rows, each run once; the frame is empty while there are none.
+
+        Parameters
+        ----------
+        columns
+            What to read beside `run`. Default everything.
+        """
+        wanted = None if columns is None else list(dict.fromkeys(["run", *columns]))
+        for _ in range(_ATTEMPTS):
+            try:
+                tables = [pq.read_table(path, columns=wanted) for path in sorted(self._files())]
+                break
+            except FileNotFoundError:
+                continue  # merged in between
+            except (OSError, pa.ArrowException) as error:
+                raise InputError(f"{self.folder / RUNS}: corrupted ({error})") from None
+        else:
+            raise InputError(f"{self.folder / RUNS}: files vanish while they are read")
+        if not tables:
+            return pd.DataFrame(columns=pd.Index(wanted or COLUMNS))
+        frame: pd.DataFrame = _together(tables).to_pandas()
+        return frame.drop_duplicates("run", keep="last", ignore_index=True)
+
+    def finished(self, tables: Sequence[str] = ()) -> set[str]:
+        """Return the keys of the runs that are stored with all of these tables."""
+        keys = set(self.rows(columns=[])["run"])
+        for table in tables:
+            keys &= {path.stem for path in (self.folder / table).glob("*.parquet")}
+        return keys
+
+    def table(self, name: str, keys: Sequence[str]) -> pd.DataFrame:
+        """Read a table that was kept, of some runs.
+
+        Raises
+        ------
+        InputError
+            If it was not kept.
+        """
+        if not (self.folder / name).is_dir():
+            raise InputError(f'{self.folder}: table {name} was not kept; set keep = ["{name}"]')
+        paths = [self.folder / name / f"{key}.parquet" for key in keys]
+        tables = [pq.read_table(path) for path in paths if path.is_file()]
+        return _together(tables).to_pandas() if tables else pd.DataFrame({"run": []})
+
+    def failures(self) -> pd.DataFrame:
+        """Return the runs that failed, a row each."""
+        found = []
+        for path in sorted((self.folder / FAILURES).glob("*.json")):
+            found.append({"run": path.stem, **json.loads(path.read_text(encoding="utf-8"))})
+        columns = ["run", "arm", "replication", "seed", "error", "traceback", "design_hash"]
+        return pd.DataFrame(found, columns=pd.Index(columns))
+
+    def _files(self) -> list[Path]:
+        # hidden ones are being written
+        return [p for p in (self.folder / RUNS).glob("*.parquet") if not p.name.startswith(".")]
+
+
+def _together(tables: list[pa.Table]) -> pa.Table:
+    # rows of other versions of rmfs may have other columns
+    return pa.concat_tables(tables, promote_options="permissive")
+
+
+def _identified(table: pd.DataFrame, job: Job) -> pd.DataFrame:
+    made = table.copy(deep=False)
+    made.insert(0, "run", job.key)
+    return made
+
+
+def _row(job: Job, outcome: Outcome, code: Mapping[str, Any]) -> pd.DataFrame:
+    assert outcome.footprint is not None
+    before: dict[str, Any] = {
+        "run": job.key,
+        "arm_digest": job.arm_digest,
+        "replication": job.replication,
+        "arm": job.arm,
+        "design": job.design,
+        "design_hash": job.design_hash,
+    }
+    after = {
+        **code,
+        "host": outcome.host,
+        "elapsed_s": outcome.elapsed_s,
+        "finished": _now(),
+    }
+    parts = [
+        pd.DataFrame([before], columns=pd.Index(ORIGIN)),
+        outcome.footprint.reset_index(drop=True),
+        pd.DataFrame([after], columns=pd.Index(PROVENANCE)),
+    ]
+    return pd.concat(parts, axis=1)
+
+
+def _now() -> str:
+    import datetime
+
+    return datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")

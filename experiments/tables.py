@@ -1,0 +1,310 @@
+"""Tables of results: means with intervals per arm, for papers and for people."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import floor, isfinite, log10
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+import pandas as pd
+
+from experiments.extras import optional
+from experiments.statistics import against, per_arm
+from rmfs.errors import InputError
+from rmfs.files import write_text
+from rmfs.measure.dictionary import FOOTPRINT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
+
+    from experiments.statistics.intervals import Method
+
+Format = Literal["latex", "markdown", "csv", "html"]
+
+SUFFIXES: dict[str, Format] = {
+    ".tex": "latex",
+    ".md": "markdown",
+    ".csv": "csv",
+    ".html": "html",
+}
+
+COLUMNS = ("units_per_h", "orders_per_h", "units_per_visit", "distance_per_unit_m")
+"""What is shown if nothing else is asked for."""
+
+HALF = "±"
+UNITS = {column.name: column.unit for column in FOOTPRINT}
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of numbers that knows how to be written.
+
+    Attributes
+    ----------
+    frame
+        Full precision; the columns are pairs of measure and statistic.
+    decimals
+        Digits after the point, per column.
+    caption
+        One sentence.
+    """
+
+    frame: pd.DataFrame
+    decimals: Mapping[tuple[str, str], int]
+    caption: str
+
+    def to(self, form: Format) -> str:
+        """Return the table as text in one of the formats.
+
+        Raises
+        ------
+        InputError
+            If a package is missing.
+        """
+        match form:
+            case "latex":
+                return self.latex()
+            case "markdown":
+                return self.markdown()
+            case "csv":
+                return self.csv()
+            case "html":
+                return self.html()
+
+    def latex(self) -> str:
+        r"""Return it for LaTeX: needs \usepackage{booktabs,siunitx}."""
+        optional("jinja2", "experiments", "a LaTeX table")
+        frame = self.frame.copy()
+        frame.columns = _latex_header(_columns(frame))
+        style = frame.style.format(
+            precision=0,
+            formatter={
+                new: _fixed(self.decimals.get(old, 0))
+                for new, old in zip(frame.columns, _columns(self.frame), strict=True)
+            },
+            na_rep="{-}",
+        )
+        style = style.format_index(escape="latex", axis=0)
+        return str(
+            style.to_latex(
+                hrules=True,
+                siunitx=True,
+                multicol_align="c",
+                caption=_escaped(self.caption),
+                position_float="centering",
+                column_format="l" * frame.index.nlevels + self._specification(),
+            )
+        )
+
+    def markdown(self) -> str:
+        """Return it as a Markdown table."""
+        optional("tabulate", "experiments", "a Markdown table")
+        shown = self._shown().reset_index()
+        flat = shown.to_markdown(index=False, disable_numparse=True, colalign=self._alignment())
+        return f"{flat}\n\n{self.caption}\n"
+
+    def csv(self) -> str:
+        """Return it as CSV, in full precision."""
+        flat = self.frame.copy()
+        flat.columns = pd.Index(
+            [" ".join(part for part in column if part) for column in _columns(flat)]
+        )
+        return flat.to_csv(lineterminator="\n")
+
+    def html(self) -> str:
+        """Return it as an HTML table."""
+        optional("jinja2", "experiments", "an HTML table")
+        forms: dict[Any, str | Callable[[object], str] | None] = {
+            column: _fixed(self.decimals.get(column, 0)) for column in _columns(self.frame)
+        }
+        style = self.frame.style.format(forms, na_rep="-").format_index(escape="html", axis=0)
+        return str(style.set_caption(self.caption).to_html()) + "\n"
+
+    def rich(self) -> object:
+        """Return it for the terminal."""
+        from rich import box
+        from rich.table import Table as RichTable
+
+        shown = self._shown().reset_index()
+        made = RichTable(box=box.SIMPLE_HEAD, caption=self.caption, caption_justify="left")
+        for number, column in enumerate(shown.columns):
+            made.add_column(
+                str(column), justify="left" if number == 0 else "right", overflow="fold"
+            )
+        for row in shown.itertuples(index=False):
+            made.add_row(*(str(cell) for cell in row))
+        return made
+
+    def write(self, path: Path) -> None:
+        """Write it in the format that the file's name asks for.
+
+        Raises
+        ------
+        InputError
+            If there is no such format.
+        """
+        form = SUFFIXES.get(path.suffix.lower())
+        if form is None:
+            raise InputError(f"{path}: unknown kind of table; valid: {', '.join(SUFFIXES)}")
+        write_text(path, self.to(form))
+
+    def _shown(self) -> pd.DataFrame:
+        """Return the cells as text, mean and half width in one."""
+        made: dict[str, list[str]] = {}
+        for measure, statistic in _columns(self.frame):
+            if statistic == HALF:
+                continue
+            form = _fixed(self.decimals.get((measure, statistic), 0))
+            cells = [form(value) for value in self.frame[measure, statistic]]
+            if (measure, HALF) in self.frame and statistic in ("mean", "difference"):
+                halves = self.frame[measure, HALF]
+                cells = [
+                    cell if pd.isna(half) else f"{cell} ± {form(half)}"
+                    for cell, half in zip(cells, halves, strict=True)
+                ]
+            name = measure if statistic in ("mean", "") else f"{measure} {statistic}".strip()
+            made[name] = cells
+        return pd.DataFrame(made, index=self.frame.index)
+
+    def _alignment(self) -> tuple[str, ...]:
+        shown = self._shown()
+        return ("left",) * self.frame.index.nlevels + ("right",) * shown.shape[1]
+
+    def _specification(self) -> str:
+        r"""Return the column types: numbers aligned at the point, words to the left."""
+        parts = []
+        for column in _columns(self.frame):
+            values = self.frame[column]
+            if not pd.api.types.is_numeric_dtype(values):
+                parts.append("l")
+                continue
+            decimals = self.decimals.get(column, 0)
+            whole = max((len(f"{abs(v):.0f}") for v in values.dropna()), default=1)
+            sign = "-" if (values < 0).any() else ""
+            parts.append(f"S[table-format={sign}{whole}.{decimals}]")
+        return "".join(parts)
+
+
+def means(
+    frame: pd.DataFrame,
+    columns: Sequence[str] = COLUMNS,
+    *,
+    confidence: float = 0.95,
+    method: Method = "t",
+    by: str = "arm",
+) -> Table:
+    """Return means and half widths of their intervals, a row per arm."""
+    parts = {}
+    decimals: dict[tuple[str, str], int] = {}
+    for column in columns:
+        found = per_arm(frame, column, confidence=confidence, method=method, by=by)
+        label = _label(column)
+        parts[label, "mean"], parts[label, HALF] = found["mean"], found["half_width"]
+        digits = _digits(found["half_width"], found["mean"])
+        decimals |= {(label, "mean"): digits, (label, HALF): digits}
+        parts["seeds", ""] = found["count"]
+    made = pd.DataFrame(parts)
+    made = made[[("seeds", ""), *(c for c in made if c != ("seeds", ""))]]
+    made.columns = pd.MultiIndex.from_tuples(_columns(made))
+    caption = f"Means over seeds with {confidence:.0%} confidence intervals ({_called(method)})."
+    return Table(made, decimals, caption)
+
+
+def differences(
+    frame: pd.DataFrame,
+    columns: Sequence[str],
+    baseline: str,
+    *,
+    confidence: float = 0.95,
+    method: Method = "t",
+    by: str = "arm",
+) -> Table:
+    """Return paired differences to a baseline, with p values corrected for all arms and columns."""
+    from experiments.statistics.paired import holm
+
+    found = {
+        column: against(frame, column, baseline, confidence=confidence, method=method, by=by)
+        for column in columns
+    }
+    p_values = pd.concat([table["p"] for table in found.values() if "p" in table], keys=list(found))
+    corrected = holm(p_values)
+    parts = {}
+    decimals: dict[tuple[str, str], int] = {}
+    for column, table in found.items():
+        label = _label(column)
+        half = (table["high"] - table["low"]) / 2
+        parts[label, "difference"], parts[label, HALF] = table["difference"], half
+        parts[label, "p"] = corrected[column]
+        digits = _digits(half, table["difference"])
+        decimals |= {(label, "difference"): digits, (label, HALF): digits, (label, "p"): 4}
+        parts["pairs", ""] = table["pairs"]
+    made = pd.DataFrame(parts)
+    made = made[[("pairs", ""), *(c for c in made if c != ("pairs", ""))]]
+    made.columns = pd.MultiIndex.from_tuples(_columns(made))
+    caption = (
+        f"Arm minus {baseline}, seed by seed, with {confidence:.0%} confidence intervals "
+        f"({_called(method)}); p values of paired t tests, corrected by Holm over the table."
+    )
+    return Table(made, decimals, caption)
+
+
+def effects(found: pd.DataFrame, column: str) -> Table:
+    """Return an analysis of variance (`experiments.statistics.anova`) as a table."""
+    chosen = ["sum_sq", "df", "f", "p", "eta_sq", "partial_eta_sq", "omega_sq"]
+    made = found[chosen].copy()
+    digits = [_digits(made["sum_sq"] / 1000, made["sum_sq"]), 0, 2, 4, 3, 3, 3]
+    made.columns = pd.MultiIndex.from_tuples([(name, "") for name in chosen])
+    decimals = dict(zip(_columns(made), digits, strict=True))
+    return Table(made, decimals, f"Analysis of variance of {column} (type II sums of squares).")
+
+
+def _columns(frame: pd.DataFrame) -> list[tuple[str, str]]:
+    """Return the columns as pairs of measure and statistic."""
+    return cast("list[tuple[str, str]]", list(frame.columns))
+
+
+def _label(column: str) -> str:
+    return column
+
+
+def _called(method: str) -> str:
+    return {"t": "Student's t", "bootstrap": "BCa bootstrap"}.get(method, method)
+
+
+def _digits(halves: pd.Series, values: pd.Series) -> int:
+    """Return digits after the point that show the half widths with two figures."""
+    known = [h for h in halves.dropna() if h > 0 and isfinite(h)]
+    if not known:
+        # no spread is known: four figures of the biggest value
+        known = [abs(v) / 100 for v in values.dropna() if v and isfinite(v)][:1] or [1.0]
+    return int(min(6, max(0, 1 - floor(log10(sorted(known)[len(known) // 2])))))
+
+
+def _fixed(decimals: int) -> _Fixed:
+    return _Fixed(decimals)
+
+
+@dataclass(frozen=True)
+class _Fixed:
+    """Formats a cell: numbers with a fixed number of digits, words as they are."""
+
+    decimals: int
+
+    def __call__(self, value: object) -> str:
+        if isinstance(value, str):
+            return value
+        number = float(value)  # type: ignore[arg-type]
+        return "-" if number != number else f"{number:.{self.decimals}f}"
+
+
+def _latex_header(columns: list[tuple[str, str]]) -> pd.MultiIndex:
+    signs = {HALF: r"{$\pm$}", "mean": "{mean}", "difference": "{difference}", "p": "{$p$}"}
+    return pd.MultiIndex.from_tuples(
+        [(f"{{{_escaped(first)}}}", signs.get(second, second)) for first, second in columns]
+    )
+
+
+def _escaped(text: str) -> str:
+    signs = {"_": r"\_", "%": r"\%", "&": r"\&", "#": r"\#", "$": r"\$", "±": r"$\pm$"}
+    return "".join(signs.get(sign, sign) for sign in text)

@@ -1,0 +1,73 @@
+"""Pictures of a run folder, by name."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from rmfs.errors import InputError
+from rmfs.files import replacing
+from rmfs.measure import plots
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from rmfs.measure.folder import RunFolder
+
+PICTURES: dict[str, tuple[str, Callable[..., None], str]] = {
+    "progression": ("series", plots.progression, "Picked units and distance per hour"),
+    "heat": ("heat", plots.heat, "Where robots drive"),
+    "backlog": ("series", plots.backlog, "Backlogs and open orders"),
+    "turnover": ("orders", plots.turnover, "Order turnover"),
+    "stations": ("stations", plots.stations, "Station utilisation"),
+    "robots": ("series", plots.robots, "Robots by state"),
+    "pile-on": ("visits", plots.pile_on, "Units per visit"),
+    "warmup": ("series", plots.warmup, "Proposed warm-up"),
+}
+"""Table, function and title of each picture."""
+
+FORMATS = {"png": "Software", "svg": "Date", "pdf": "CreationDate"}
+"""Suffix, and the entry of its metadata that would make every file another one."""
+
+
+def picture(run: RunFolder, what: str) -> Figure:
+    """Draw one picture; the heat map has axes for every tier.
+
+    Raises
+    ------
+    InputError
+        If there is no such picture, or the run folder lacks what it is drawn from.
+    """
+    if what not in PICTURES:
+        raise InputError(f"picture {what}: no such; valid: {', '.join(PICTURES)}")
+    table, draw, title = PICTURES[what]
+    frame = run.table(table)
+    tiers = sorted(frame["tier"].unique()) if what == "heat" else [0]
+    figure = Figure(figsize=(7.0, 4.0 * len(tiers)), layout="constrained")
+    FigureCanvasAgg(figure)
+    for place, tier in enumerate(tiers, start=1):
+        ax = figure.add_subplot(len(tiers), 1, place)
+        extra: dict[str, Any] = {"tier": tier} if what == "heat" else {}
+        draw(frame, ax, **extra)
+        ax.set_title(title if len(tiers) == 1 else f"{title}, tier {tier}")
+    return figure
+
+
+def save(run: RunFolder, what: str, path: Path) -> None:
+    """Write one picture as PNG, SVG or PDF; the same run gives the same file.
+
+    Raises
+    ------
+    InputError
+        If the suffix is another one, there is no such picture, or the file cannot be written.
+    """
+    suffix = path.suffix.lower()[1:]
+    if suffix not in FORMATS:
+        raise InputError(f"{path}: pictures are written as {', '.join(FORMATS)}")
+    figure = picture(run, what)
+    with replacing(path) as temporary, mpl.rc_context({"svg.hashsalt": "rmfs"}):
+        figure.savefig(temporary, format=suffix, dpi=150, metadata={FORMATS[suffix]: None})

@@ -1,0 +1,43 @@
+"""Time axes in hours, and rates per hour."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+
+def hours(ax: Axes) -> None:
+    """Label the time axis."""
+    ax.set_xlabel("time (h)")
+    ax.margins(x=0)
+
+
+def per_hour(series: pd.DataFrame, column: str, bin_s: float) -> tuple[Floats, Floats]:
+    """Return a count of a table `series` as rates in bins.
+
+    Parameters
+    ----------
+    bin_s
+        Least length of a bin; shorter where the run is too short for three.
+
+    Returns
+    -------
+    tuple
+        Middle of each bin in h, and rate in 1/h.
+    """
+    end, length = series["time_s"].to_numpy(), series["interval_s"].to_numpy()
+    begin_s, total_s = float(end[0] - length[0]), float(length.sum())
+    number = max(int(total_s // max(min(bin_s, total_s / 3), length[0])), 1)
+    edges = np.linspace(0, len(series), min(number, len(series)) + 1).round().astype(int)[:-1]
+    spans = np.add.reduceat(length, edges)
+    counts = np.add.reduceat(series[column].to_numpy(float), edges)
+    middle = begin_s + np.cumsum(spans) - spans / 2
+    return middle / 3600.0, counts / spans * 3600.0

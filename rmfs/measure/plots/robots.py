@@ -1,0 +1,42 @@
+"""What the robots did, over time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.layout import colours
+from rmfs.measure.plots.hours import hours
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+STATES = {
+    "moving": ("driving", colours.ROBOT, ""),
+    "turning": ("turning", colours.FREE_STORAGE, "//"),
+    "riding": ("in an elevator", colours.ELEVATOR, ""),
+    "transfer": ("lifting, setting down", colours.REPLENISHMENT_STATION, ""),
+    "served": ("at a station", colours.PICK_STATION, ".."),
+    "waiting": ("waiting, queueing", colours.STORAGE, ""),
+    "idle": ("idle", "#FFFFFF", ""),
+}
+"""Label, colour and hatch of each state, from below to above."""
+
+
+def robots(series: pd.DataFrame, ax: Axes) -> None:
+    """Draw the mean number of robots in each state, stacked, from a table `series`."""
+    shown = [state for state in STATES if series[f"robots_{state}"].any()]
+    areas = ax.stackplot(
+        series["time_s"] / 3600.0,
+        [series[f"robots_{state}"].to_numpy() for state in shown],
+        colors=[STATES[state][1] for state in shown],
+        labels=[STATES[state][0] for state in shown],
+        edgecolor=colours.OUTLINE,
+        linewidth=0.3,
+    )
+    for area, state in zip(areas, shown, strict=True):
+        area.set_hatch(STATES[state][2])
+    hours(ax)
+    ax.set_ylabel("robots")
+    handles, labels = ax.get_legend_handles_labels()
+    ax.legend(handles[::-1], labels[::-1], loc="center left", bbox_to_anchor=(1, 0.5))

@@ -1,0 +1,93 @@
+"""What a pick station could pick at most: from the kinematics in front of it, and the pile-on."""
+
+from __future__ import annotations
+
+from math import inf, pi, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.layout.model import Layout, PickStation, RobotKind
+
+
+def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) -> float:
+    """Return the largest rate at which a station can pick with a given pile-on.
+
+    Of p units of a visit, all but the last keep robot and station for max(T, K), where T is
+    `unit_transfer_s` and K is `unit_pick_s`. After the last the robot leaves when K is over, the
+    next one stands there at least a change c later, and its first pick begins when T is over too.
+    So a visit lasts at least (p - 1) max(T, K) + max(T, K + c), which is linear in p: the mean
+    pile-on gives the bound for the mean. (RAWSim-O's formula has the mean pile-on of the whole run,
+    a robot that drives in from standstill, and the slowest robot; its result is no bound where
+    stations or robots differ.)
+
+    Parameters
+    ----------
+    units_per_visit
+        Mean pile-on p; infinite if pods never change.
+
+    Returns
+    -------
+    float
+        Units per hour; infinite if handling takes no time.
+    """
+    transfer_s, pick_s = station.unit_transfer_s, station.unit_pick_s
+    slower_s = max(transfer_s, pick_s)
+    extra_s = max(transfer_s, pick_s + change_s(layout, station.waypoint)) - slower_s
+    per_unit_s = slower_s + extra_s / units_per_visit
+    return 3600.0 / per_unit_s if per_unit_s > 0 else inf
+
+
+def change_s(layout: Layout, waypoint: int) -> float:
+    """Return the least time between a robot's leave to go and the next one's arrival, in s.
+
+    The robot turns to an edge that leads away and clears the waypoint when it reaches the next one;
+    only then may another enter the last edge before the waypoint. The fastest robot counts, and
+    runs that go on behind these two edges pass their ends at full speed.
+    """
+    return min(
+        (
+            _drive_s(length_out, kind.acceleration_m_s2, kind.top_speed_m_s)
+            + _turn_s(heading_in, heading_out, kind)
+            + _drive_s(length_in, kind.deceleration_m_s2, kind.top_speed_m_s)
+            for length_in, heading_in in _edges_in(layout, waypoint)
+            for length_out, heading_out in _edges_out(layout, waypoint)
+            for kind in layout.robot_kinds
+        ),
+        default=0.0,
+    )
+
+
+def _drive_s(length_m: float, acceleration_m_s2: float, top_speed_m_s: float) -> float:
+    """Return the time to speed up from rest over a length, or, reversed, to brake to rest."""
+    ramp_m = top_speed_m_s**2 / (2 * acceleration_m_s2)
+    if length_m <= ramp_m:
+        return sqrt(2 * length_m / acceleration_m_s2)
+    return top_speed_m_s / acceleration_m_s2 + (length_m - ramp_m) / top_speed_m_s
+
+
+def _turn_s(heading_in: float, heading_out: float, kind: RobotKind) -> float:
+    angle = abs(heading_out - heading_in) % (2 * pi)
+    return min(angle, 2 * pi - angle) / (2 * pi) * kind.full_turn_s
+
+
+def _edges_out(layout: Layout, waypoint: int) -> Iterator[tuple[float, float]]:
+    """Yield length and heading of the edges that leave a waypoint."""
+    for end in layout.edge_target[layout.edge_start[waypoint] : layout.edge_start[waypoint + 1]]:
+        yield _vector(layout, waypoint, int(end))
+
+
+def _edges_in(layout: Layout, waypoint: int) -> Iterator[tuple[float, float]]:
+    """Yield length and heading of the edges that lead to a waypoint."""
+    for edge in np.flatnonzero(layout.edge_target == waypoint):
+        start = int(np.searchsorted(layout.edge_start, edge, side="right")) - 1
+        yield _vector(layout, start, waypoint)
+
+
+def _vector(layout: Layout, start: int, end: int) -> tuple[float, float]:
+    x_m = float(layout.x_m[end] - layout.x_m[start])
+    y_m = float(layout.y_m[end] - layout.y_m[start])
+    return float(np.hypot(x_m, y_m)), float(np.arctan2(y_m, x_m))

@@ -1,0 +1,78 @@
+"""The tables of ways: trips from waypoint to waypoint, and edges."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.measure.tables.tidy import tidy
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+    from rmfs.measure.tables.logs import Logs
+
+
+def connections(logs: Logs) -> pd.DataFrame:
+    """One row per pair of waypoints between which a trip ended in the measured time."""
+    told = logs.recorder.trips
+    number = logs.layout.waypoints
+    pair = told["from_wp"].astype(np.int64) * number + told["to_wp"]
+    pairs, which = np.unique(pair, return_inverse=True)
+    time = (told["t1_us"] - told["t0_us"]) / 1e6
+    trips = np.bincount(which, minlength=len(pairs))
+    mean = np.bincount(which, weights=time, minlength=len(pairs)) / trips
+    square = np.bincount(which, weights=(time - mean[which]) ** 2, minlength=len(pairs))
+    distance = np.bincount(which, weights=told["distance_m"], minlength=len(pairs))
+    least, most = np.full(len(pairs), np.inf), np.full(len(pairs), -np.inf)
+    np.minimum.at(least, which, time)
+    np.maximum.at(most, which, time)
+    start, end = pairs // number, pairs % number
+    kinds = waypoint_kinds(logs.layout)
+    return tidy(
+        "connections",
+        {
+            "from_waypoint": start,
+            "to_waypoint": end,
+            "from_kind": kinds[start],
+            "to_kind": kinds[end],
+            "trips": trips,
+            "time_mean_s": mean,
+            "time_variance_s2": square / trips,
+            "time_min_s": least,
+            "time_max_s": most,
+            "distance_mean_m": distance / trips,
+        },
+    )
+
+
+def edges(logs: Logs) -> pd.DataFrame:
+    """One row per edge or elevator ride that was used."""
+    told, tier = logs.recorder.edges, logs.layout.tier
+    return tidy(
+        "edges",
+        {
+            "from_waypoint": told["from_wp"],
+            "to_waypoint": told["to_wp"],
+            "ride": tier[told["from_wp"]] != tier[told["to_wp"]],
+            "passages": told["passages"],
+            "loaded_passages": told["loaded_passages"],
+        },
+    )
+
+
+def waypoint_kinds(layout: Layout) -> NDArray[np.str_]:
+    """Name what each waypoint is for."""
+    kinds = np.full(layout.waypoints, "road", dtype="<U13")
+    kinds[layout.is_queue] = "queue"
+    kinds[layout.is_storage] = "storage"
+    for name, places in (
+        ("elevator", [one for elevator in layout.elevators for one in elevator.waypoints]),
+        ("pick", [station.waypoint for station in layout.pick_stations]),
+        ("replenishment", [station.waypoint for station in layout.replenishment_stations]),
+    ):
+        kinds[places] = name
+    return kinds

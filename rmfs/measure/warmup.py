@@ -1,0 +1,84 @@
+"""Where a series has settled: proposals for the length of a warm-up."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+BATCH = 5
+"""Observations per batch mean: the 5 of MSER-5."""
+
+
+def mser(values: ArrayLike, batch: int = BATCH) -> int | None:
+    """Return how many observations to drop by the marginal standard error rule.
+
+    Of the batch means Z_1 ... Z_n the first d are dropped, with the d <= n / 2 for which
+    sum over j > d of (Z_j - mean)² / (n - d)² is least (White 1997; MSER-5 with batches of five).
+
+    Parameters
+    ----------
+    values
+        Observations at equal distances; those that do not fill a batch are left out at the end.
+
+    Returns
+    -------
+    int | None
+        A multiple of `batch`. None if there are fewer than four batches, or if the least is at the
+        end of the range: the series is too short to tell.
+    """
+    observed = np.asarray(values, np.float64)
+    number = len(observed) // batch
+    if number < 4:
+        return None
+    means = observed[: number * batch].reshape(number, batch).mean(axis=1)
+    tested = range(number // 2 + 1)
+    errors = [float(np.var(means[drop:]) / (number - drop)) for drop in tested]
+    best = int(np.argmin(errors))
+    return None if best == tested[-1] else best * batch
+
+
+def welch(values: ArrayLike, window: int) -> NDArray[np.float64]:
+    """Return the moving average of Welch's method.
+
+    Observation i is averaged with `window` neighbours on either side, with i on either side near
+    the beginning; the last `window` observations have no average.
+
+    Raises
+    ------
+    ValueError
+        If the window is below 1 or above half the number of observations.
+    """
+    observed = np.asarray(values, np.float64)
+    if not 1 <= window <= len(observed) // 2:
+        raise ValueError(f"window {window}: must be from 1 to half of {len(observed)} observations")
+    before = np.concatenate([[0.0], np.cumsum(observed)])
+    middle = np.arange(len(observed) - window)
+    reach = np.minimum(middle, window)
+    smooth = before[middle + reach + 1] - before[middle - reach]
+    means: NDArray[np.float64] = smooth / (2 * reach + 1)
+    return means
+
+
+def settled(smooth: ArrayLike, tolerance: float = 0.05) -> int | None:
+    """Return from which observation on a smoothed series stays near its level.
+
+    Parameters
+    ----------
+    tolerance
+        How far from the mean of the second half it may be, as a share of that mean.
+
+    Returns
+    -------
+    int | None
+        None if it leaves the band again in the second half.
+    """
+    values = np.asarray(smooth, np.float64)
+    half = len(values) // 2
+    level = float(values[half:].mean())
+    outside = np.flatnonzero(np.abs(values - level) > tolerance * abs(level))
+    first = int(outside[-1]) + 1 if len(outside) else 0
+    return first if first <= half else None

@@ -1,0 +1,59 @@
+"""The generated pages are up to date, and the map of RAWSim-O's measures is complete."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from rmfs.measure.dictionary import TABLES, markdown
+from rmfs.measure.pages import DICTIONARY, FROM_RAWSIMO, with_measures, write_pages
+from rmfs.measure.rawsimo import COLUMNS, FILES
+
+ROOT = Path(__file__).resolve().parents[2]
+REFERENCE = ROOT / "../shared/reference/rawsimo-inputs-outputs.md"
+KNOWN = {f"{table}.{column.name}" for table, columns in TABLES.items() for column in columns} | {
+    column.name for column in TABLES["footprint"]
+}
+
+
+def test_the_dictionary_page_is_up_to_date():
+    page = (ROOT / "docs" / DICTIONARY).read_text(encoding="utf-8")
+    assert page == markdown(), "run: rmfs docs"
+
+
+def test_the_page_for_users_of_rawsimo_is_up_to_date():
+    page = (ROOT / "docs" / FROM_RAWSIMO).read_text(encoding="utf-8")
+    assert page == with_measures(page), "run: rmfs docs"
+
+
+def test_what_others_wrote_around_the_generated_part_stays(tmp_path):
+    (tmp_path / FROM_RAWSIMO).write_text(with_measures("# Title\n\nbefore\n\n") + "after\n")
+    write_pages(tmp_path)
+    page = (tmp_path / FROM_RAWSIMO).read_text()
+    assert page.startswith("# Title\n\nbefore\n\n")
+    assert page.endswith("after\n")
+
+
+def test_every_column_is_mapped_once():
+    assert len({one.theirs for one in COLUMNS}) == len(COLUMNS) == 273
+    assert len({one.theirs for one in FILES}) == len(FILES)
+
+
+@pytest.mark.parametrize("one", [*COLUMNS, *FILES], ids=lambda one: one.theirs)
+def test_what_is_named_exists_or_there_is_a_reason(one):
+    named = re.findall(r"`([^`]+)`", one.ours)
+    assert set(named) <= KNOWN
+    assert len(one.ours) > 2
+
+
+@pytest.mark.skipif(not REFERENCE.is_file(), reason="the reference is not beside the checkout")
+def test_columns_and_files_are_those_of_the_reference():
+    text = REFERENCE.read_text(encoding="utf-8")
+    columns = text[text.index("### 4.2") : text.index("### 4.3")]
+    assert re.findall(r"^\| \d+ \| (\w+) \|", columns, re.M) == [one.theirs for one in COLUMNS]
+    files = text[text.index("### 4.1") : text.index("Two further names")]
+    rows = [line.split("|")[1] for line in files.splitlines() if line.startswith("| ")][1:]
+    named = [name for row in rows for name in re.findall(r"[\w]+\.\w+", row)]
+    assert sorted(named) == sorted(one.theirs for one in FILES)

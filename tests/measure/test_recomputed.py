@@ -1,0 +1,190 @@
+"""The footprint of a real run once more, from its written tables alone and by other means."""
+
+from __future__ import annotations
+
+import pandas as pd
+import pytest
+
+from rmfs.measure import load_run, write_run
+from rmfs.simulation.run import simulate
+
+WARMUP_S, DURATION_S = 300.0, 1500.0
+BEGIN, END = WARMUP_S, WARMUP_S + DURATION_S
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    overrides = [
+        (["scenario", "warmup_s"], WARMUP_S),
+        (["scenario", "duration_s"], DURATION_S),
+    ]
+    target = tmp_path_factory.mktemp("runs") / "run"
+    write_run(simulate("basic", "basic", "default", seed=2, overrides=overrides), target)
+    return load_run(target)
+
+
+def level(begin: pd.Series, end: pd.Series) -> float:
+    """Mean number of open intervals, from what each contributes to the measured time."""
+    return ((end.fillna(END).clip(BEGIN, END) - begin.clip(BEGIN)).clip(0).sum()) / DURATION_S
+
+
+def spread(name: str, values: pd.Series) -> dict[str, float]:
+    return {
+        f"{name}_mean_s": values.mean(),
+        f"{name}_median_s": values.median(),
+        f"{name}_lower_quartile_s": values.quantile(0.25),
+        f"{name}_upper_quartile_s": values.quantile(0.75),
+    }
+
+
+def recomputed(run) -> dict[str, float]:
+    """Figures from `orders`, `trips` and `stations`, and where these say nothing from others."""
+    orders, trips, stations = run.table("orders"), run.table("trips"), run.table("stations")
+    bundles, robots = run.table("bundles"), run.table("robots")
+    done = orders[orders["completed_s"].notna()]
+    picks = stations[stations["kind"] == "pick"]
+    others = stations[stations["kind"] != "pick"]
+    hours = DURATION_S / 3600
+    units, visits = picks["units_picked"].sum(), picks["visits"].sum()
+    turnover = done["completed_s"] - done["created_s"]
+    lateness = done["completed_s"] - done["due_s"]
+    trip_s = trips["end_s"] - trips["start_s"]
+    delay = (trip_s - trips["unhindered_s"])[trips["kind"] != "to_station"]
+    stored = bundles[bundles["stored_s"].notna()]
+    distance = robots["distance_m"].sum()
+    return {
+        "orders_completed": len(done),
+        "orders_created": (orders["created_s"] >= BEGIN).sum(),
+        "lines_picked": picks["lines_picked"].sum(),
+        "units_picked": units,
+        "bundles_stored": len(stored),
+        "units_stored": stored["units"].sum(),
+        "bundles_created": (bundles["created_s"] >= BEGIN).sum(),
+        "orders_per_h": len(done) / hours,
+        "lines_per_h": picks["lines_picked"].sum() / hours,
+        "units_per_h": units / hours,
+        "bundles_per_h": len(stored) / hours,
+        "units_per_h_bound": picks["units_per_h_bound"].sum(),
+        "units_score": units / hours / picks["units_per_h_bound"].sum(),
+        "pick_visits": visits,
+        "replenishment_visits": others["visits"].sum(),
+        "units_per_visit": units / visits,
+        "lines_per_visit": picks["lines_picked"].sum() / visits,
+        "orders_per_visit": len(done) / visits,
+        "late_bound_units_per_visit": picks["late_bound_units"].sum() / visits,
+        "bundles_per_visit": len(stored) / others["visits"].sum(),
+        "trips": len(trips),
+        "trip_time_mean_s": trip_s.mean(),
+        "trip_delay_mean_s": delay.mean(),
+        "distance_m": distance,
+        "distance_per_robot_m": distance / len(robots),
+        "distance_per_unit_m": distance / units,
+        "loaded_distance_m": robots["loaded_distance_m"].sum(),
+        "pick_station_idle_share": 1 - picks["busy_s"].mean() / DURATION_S,
+        "replenishment_station_idle_share": 1 - others["busy_s"].mean() / DURATION_S,
+        "pick_station_active_share": picks["active_share"].mean(),
+        "replenishment_station_active_share": others["active_share"].mean(),
+        "robot_busy_share": sum(
+            robots[f"task_{task}_s"].mean() for task in ("pick", "replenish", "park", "reposition")
+        )
+        / DURATION_S,
+        **{
+            f"robot_{state}_share": robots[f"{state}_s"].mean() / DURATION_S
+            for state in ("moving", "turning", "waiting", "served", "transfer", "riding", "idle")
+        },
+        **{
+            f"tasks_{task}": robots[f"tasks_{task}"].sum()
+            for task in ("pick", "replenish", "park", "reposition", "rest")
+        },
+        **spread("order_turnover", turnover),
+        **spread("order_throughput_time", done["completed_s"] - done["assigned_s"]),
+        **spread("order_lateness", lateness),
+        **spread("late_by", lateness[lateness > 0]),
+        **spread("bundle_turnover", stored["stored_s"] - stored["created_s"]),
+        **spread("bundle_throughput_time", stored["stored_s"] - stored["assigned_s"]),
+        "late_share": (lateness > 0).mean(),
+        "orders_late": (lateness > 0).sum(),
+        "backlog_orders_mean": level(orders["created_s"], orders["assigned_s"]),
+        "backlog_orders_end": orders["assigned_s"].isna().sum(),
+        "backlog_bundles_mean": level(bundles["created_s"], bundles["assigned_s"]),
+        "backlog_bundles_end": bundles["assigned_s"].isna().sum(),
+        "open_orders_mean": level(
+            orders["assigned_s"].fillna(END), orders["completed_s"].fillna(END)
+        ),
+    }
+
+
+def test_the_footprint_agrees_with_the_tables(run):
+    footprint = run.footprint
+    told = recomputed(run)
+    assert len(told) >= 75
+    wrong = {
+        name: (value, footprint[name])
+        for name, value in told.items()
+        if footprint[name] != pytest.approx(value, rel=1e-9, abs=1e-9, nan_ok=True)
+    }
+    assert wrong == {}
+    assert 0 < footprint["units_score"] <= 1.01
+
+
+def test_tables_agree_with_each_other(run):
+    picks, visits, bundles = run.table("picks"), run.table("visits"), run.table("bundles")
+    stations, orders, trips = run.table("stations"), run.table("orders"), run.table("trips")
+    connections = run.table("connections")
+    by_station = picks.groupby("station").size()
+    own = stations.set_index("station")
+    assert (by_station == own["units_picked"].loc[by_station.index]).all()
+    assert visits["units"].sum() == len(picks)
+    assert visits["bundles"].sum() == bundles["stored_s"].notna().sum()
+    complete = orders[orders["completed_s"].notna() & (orders["assigned_s"] >= BEGIN)]
+    pods = picks.groupby("order")["pod"].nunique()
+    assert (complete.set_index("order")["pods"] == pods.loc[complete["order"]]).all()
+    assert (
+        picks.groupby("order").size().loc[complete["order"]].to_numpy() == complete["units"]
+    ).all()
+    assert connections["trips"].sum() == len(trips)
+    grouped = trips.assign(time_s=trips["end_s"] - trips["start_s"]).groupby(
+        ["from_waypoint", "to_waypoint"]
+    )["time_s"]
+    wanted = connections.set_index(["from_waypoint", "to_waypoint"])
+    assert grouped.mean().to_numpy() == pytest.approx(wanted["time_mean_s"].to_numpy())
+    assert grouped.var(ddof=0).to_numpy() == pytest.approx(
+        wanted["time_variance_s2"].to_numpy(), abs=1e-6
+    )
+    to_station = trips["kind"] == "to_station"
+    assert (trips["station"][to_station] >= 0).all()
+    assert (trips["station"][~to_station] == -1).all()
+    assert set(connections[connections["to_kind"] == "pick"]["to_waypoint"]) <= set(
+        stations[stations["kind"] == "pick"]["waypoint"]
+    )
+
+
+def test_heat_adds_up(run):
+    heat, edges, robots = run.table("heat"), run.table("edges"), run.table("robots")
+    tasks = ("pick", "replenish", "store", "rest")
+    assert (sum(heat[f"{task}_visits"] for task in tasks) == heat["visits"]).all()
+    waiting = sum(heat[f"{task}_waiting_s"] for task in tasks)
+    assert waiting.to_numpy() == pytest.approx(heat["waiting_s"].to_numpy())
+    # a waypoint is visited by driving an edge to it
+    arrived = edges.groupby("to_waypoint")["passages"].sum()
+    assert arrived.reindex(heat["waypoint"], fill_value=0).tolist() == heat["visits"].tolist()
+    loaded = edges.groupby("to_waypoint")["loaded_passages"].sum()
+    assert loaded.reindex(heat["waypoint"], fill_value=0).tolist() == heat["loaded_visits"].tolist()
+    stood = robots["waiting_s"].sum() + robots["served_s"].sum()
+    assert heat["waiting_s"].sum() == pytest.approx(stood, abs=1e-3)
+    # nobody without a pod stands at a station, and every visitor of a head is bound for it
+    stations = run.table("stations").set_index("waypoint")
+    heads = heat.set_index("waypoint").loc[stations.index]
+    picks = stations["kind"] == "pick"
+    assert heads["waiting_s"].to_numpy() == pytest.approx(heads["loaded_waiting_s"].to_numpy())
+    assert (heads["pick_visits"][picks] == heads["visits"][picks]).all()
+    assert (heads["replenish_visits"][~picks] == heads["visits"][~picks]).all()
+
+
+def test_controllers_agree_with_decisions(run):
+    controllers = run.table("controllers").set_index("problem")
+    decisions = run.table("decisions").groupby("problem")["decisions"].sum()
+    assert (controllers["decisions"].loc[decisions.index] == decisions).all()
+    assert controllers["decisions"].sum() == run.footprint["decisions"]
+    assert controllers["wall_s"].sum() == pytest.approx(run.footprint["decision_wall_s"])
+    assert (controllers["calls"] > 0).all()
