@@ -1,1 +1,12 @@
-"""Optimisation models: arrays in, solution out."""
+"""Pure optimisation models: a frozen dataclass of arrays in, a `Solution` out.
+
+Nothing here knows of a warehouse that moves: a model can be solved, tested and timed without a
+simulation. `solvers.control` fills the arrays from a world and applies the solution.
+"""
+
+from solvers.models.checks import ModelError as ModelError
+from solvers.models.solution import Limits as Limits
+from solvers.models.solution import Sense as Sense
+from solvers.models.solution import Solution as Solution
+from solvers.models.solution import Status as Status
+from solvers.models.solution import WallGuardError as WallGuardError

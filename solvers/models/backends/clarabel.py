@@ -1,0 +1,207 @@
+"""Linear relaxations through cvxpy and Clarabel, compiled once and re-solved.
+
+A relaxation is compiled for a *pattern*: the places of the matrix entries and which row bounds
+exist. Every number (costs, coefficients, bounds) is a `cvxpy.Parameter`, so that programs of the
+same pattern are re-solved without compiling (disciplined parametrised programming). Interior-point
+duals are inexact; the bound is made of them by `safe_bound`, which holds for any multipliers.
+"""
+
+from __future__ import annotations
+
+import time
+import warnings
+from dataclasses import dataclass
+
+import cvxpy as cp
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+
+from solvers.models.backends.safe_bound import safe_bound
+from solvers.models.checks import require
+from solvers.models.program import LinearProgram
+from solvers.models.solution import NO_LIMITS, Limits, WallGuardError
+
+NAME = "clarabel"
+_DEFAULT_ITERATIONS = 200
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """The end of one relaxed solve.
+
+    Parameters
+    ----------
+    x
+        Value per column, fractional and feasible to the solver's tolerance; None if it found none.
+    multipliers
+        One per row, positive where a lower bound binds; zeros if the solver gave none.
+    bound
+        Lower bound of the program and of its integer version, rounded to the safe side.
+    work
+        Interior-point iterations.
+    build_s, wall_s
+        Seconds for setting parameters (and compiling, the first time), and for the whole call.
+    """
+
+    x: NDArray[np.float64] | None
+    multipliers: NDArray[np.float64]
+    bound: float
+    work: float
+    build_s: float
+    wall_s: float
+
+
+class LinearRelaxation:
+    """The compiled relaxation of all programs that share a pattern.
+
+    Parameters
+    ----------
+    program
+        Any program of the pattern.
+    """
+
+    def __init__(self, program: LinearProgram) -> None:
+        self._pattern = _pattern(program)
+        self._lower_rows = np.flatnonzero(np.isfinite(program.row_lower))
+        self._upper_rows = np.flatnonzero(np.isfinite(program.row_upper))
+        rows = np.repeat(np.arange(program.rows), np.diff(program.row_start))
+        self._places = (rows, np.asarray(program.column))
+        self._x = cp.Variable(program.columns)
+        self._cost = cp.Parameter(program.columns)
+        self._box = (cp.Parameter(program.columns), cp.Parameter(program.columns))
+        self._row_lower = cp.Parameter(self._lower_rows.size)
+        self._row_upper = cp.Parameter(self._upper_rows.size)
+        self._constraints: list[cp.Constraint] = [self._x >= self._box[0], self._x <= self._box[1]]
+        self._matrix: cp.Parameter | None = None
+        if program.nonzeros:
+            self._matrix = cp.Parameter((program.rows, program.columns), sparsity=self._places)
+            activity = self._matrix @ self._x
+            self._constraints += [
+                activity[self._lower_rows] >= self._row_lower,
+                activity[self._upper_rows] <= self._row_upper,
+            ]
+        self._problem = cp.Problem(cp.Minimize(self._cost @ self._x), self._constraints)
+
+    def fits(self, program: LinearProgram) -> bool:
+        """Whether a program has the pattern this relaxation was compiled for."""
+        return self._pattern == _pattern(program)
+
+    def solve(self, program: LinearProgram, limits: Limits = NO_LIMITS) -> Relaxation:
+        """Relax and solve a program.
+
+        Parameters
+        ----------
+        program
+            A program of the pattern.
+        limits
+            ``iterations`` limits the interior-point method. Default: 200 iterations.
+
+        Returns
+        -------
+        The relaxed point and a safe bound. The bound holds however the solver ended.
+
+        Raises
+        ------
+        ModelError
+            If the program has another pattern.
+        WallGuardError
+            If the wall-clock guard ran out.
+        """
+        began = time.perf_counter()
+        require(self.fits(program), "program", "has another pattern than the compiled relaxation")
+        self._set(program)
+        built = time.perf_counter()
+        x, multipliers, iterations = None, np.zeros(program.rows), 0
+        # Without a point and duals the box alone still bounds the objective.
+        if self._run(limits):
+            iterations = int(self._problem.solver_stats.num_iters or 0)
+            x = None if self._x.value is None else np.array(self._x.value)
+            multipliers = self._multipliers(program)
+        ended = time.perf_counter()
+        if limits.wall_guard_s is not None and ended - built > limits.wall_guard_s:
+            raise WallGuardError(f"Clarabel took {ended - built:.1f} s")
+        return Relaxation(
+            x=x,
+            multipliers=multipliers,
+            bound=safe_bound(program, multipliers),
+            work=float(iterations),
+            build_s=built - began,
+            wall_s=time.perf_counter() - began,
+        )
+
+    def _run(self, limits: Limits) -> bool:
+        """Call the solver; False if it failed."""
+        with warnings.catch_warnings():
+            # cvxpy warns about its own reading of the sparse parameter, and about inexact ends.
+            warnings.simplefilter("ignore")
+            try:
+                self._problem.solve(solver=cp.CLARABEL, **_options(limits))  # type: ignore[no-untyped-call]
+            except cp.SolverError:
+                return False
+        return self._problem.solver_stats is not None
+
+    def _set(self, program: LinearProgram) -> None:
+        """Fill the parameters."""
+        self._cost.value = program.cost
+        self._box[0].value, self._box[1].value = program.lower, program.upper
+        self._row_lower.value = program.row_lower[self._lower_rows]
+        self._row_upper.value = program.row_upper[self._upper_rows]
+        if self._matrix is not None:
+            shape = (program.rows, program.columns)
+            self._matrix.value_sparse = coo_array((program.coefficient, self._places), shape=shape)
+
+    def _multipliers(self, program: LinearProgram) -> NDArray[np.float64]:
+        """Row multipliers from the duals of both sides."""
+        y = np.zeros(program.rows)
+        if self._matrix is not None:
+            below, above = self._constraints[2].dual_value, self._constraints[3].dual_value
+            if below is not None and above is not None:
+                y[self._lower_rows] += np.maximum(below, 0.0)
+                y[self._upper_rows] -= np.maximum(above, 0.0)
+        return y
+
+
+def relax(program: LinearProgram, limits: Limits = NO_LIMITS) -> Relaxation:
+    """Relax and solve a program once.
+
+    Parameters
+    ----------
+    program
+        The program.
+    limits
+        ``iterations`` limits the interior-point method. Default: 200 iterations.
+
+    Returns
+    -------
+    The relaxed point and a safe bound.
+    """
+    began = time.perf_counter()
+    relaxation = LinearRelaxation(program)
+    compiled = time.perf_counter() - began
+    outcome = relaxation.solve(program, limits)
+    return Relaxation(
+        x=outcome.x,
+        multipliers=outcome.multipliers,
+        bound=outcome.bound,
+        work=outcome.work,
+        build_s=outcome.build_s + compiled,
+        wall_s=outcome.wall_s + compiled,
+    )
+
+
+def _options(limits: Limits) -> dict[str, float]:
+    """Solver options: one thread and the iteration limit."""
+    most = _DEFAULT_ITERATIONS if limits.iterations is None else limits.iterations
+    return {"max_iter": most, "max_threads": 1}
+
+
+def _pattern(program: LinearProgram) -> tuple[bytes, bytes, bytes, bytes, int]:
+    """What must agree for a compiled relaxation to be reused."""
+    return (
+        program.row_start.tobytes(),
+        program.column.tobytes(),
+        np.isfinite(program.row_lower).tobytes(),
+        np.isfinite(program.row_upper).tobytes(),
+        program.columns,
+    )

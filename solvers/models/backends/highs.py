@@ -1,0 +1,159 @@
+"""HiGHS: linear and mixed-integer programs, limited by nodes or iterations.
+
+HiGHS repeats itself exactly on one thread. Its limit is the number of nodes; the work of a node
+varies, so `Outcome.work` counts simplex iterations instead. A mixed-integer bound comes from
+floating-point LPs: it is lowered by the solver's own tolerance before it is called a bound.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+
+import highspy  # type: ignore[import-untyped]
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.backends.outcome import NUMERICAL_TOLERANCE, Outcome, trivial
+from solvers.models.program import LinearProgram
+from solvers.models.solution import NO_LIMITS, Limits, Status, WallGuardError
+
+NAME = "highs"
+_INTEGER_LIMIT = 2**31 - 1
+
+
+def solve(
+    program: LinearProgram,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: NDArray[np.float64] | None = None,
+) -> Outcome:
+    """Solve a program with HiGHS.
+
+    Parameters
+    ----------
+    program
+        What to solve.
+    limits
+        ``nodes`` limits branch and bound, ``iterations`` the simplex of a pure LP; ``gap`` is
+        relative. Default: to optimality.
+    seed
+        Seed of the solver's tie-breaks. Default 0.
+    start
+        A feasible point to start from, shape (n,). Default: none.
+
+    Returns
+    -------
+    The outcome; whole columns are rounded to exact whole numbers.
+
+    Raises
+    ------
+    WallGuardError
+        If the wall-clock guard ran out.
+    """
+    began = time.perf_counter()
+    if (answer := trivial(program, NAME)) is not None:
+        return answer
+    solver = highspy.Highs()
+    _set_options(solver, limits, seed)
+    solver.passModel(_lp(program))
+    if start is not None:
+        solution = highspy.HighsSolution()
+        solution.col_value = start.tolist()
+        solver.setSolution(solution)
+    built = time.perf_counter()
+    solver.run()
+    return _outcome(program, solver, began, built)
+
+
+def _set_options(solver: highspy.Highs, limits: Limits, seed: int) -> None:
+    """One thread, a fixed seed, silence, and the limits."""
+    options: dict[str, str | int | float | bool] = {
+        "output_flag": False,
+        "threads": 1,
+        "parallel": "off",
+        "random_seed": seed,
+        "mip_rel_gap": limits.gap,
+        "mip_abs_gap": 0.0 if limits.gap == 0.0 else 1e-6,
+    }
+    if limits.nodes is not None:
+        options["mip_max_nodes"] = min(limits.nodes, _INTEGER_LIMIT)
+    if limits.iterations is not None:
+        options["simplex_iteration_limit"] = min(limits.iterations, _INTEGER_LIMIT)
+    if limits.wall_guard_s is not None:
+        options["time_limit"] = limits.wall_guard_s
+    for name, value in options.items():
+        if solver.setOptionValue(name, value) != highspy.HighsStatus.kOk:
+            raise RuntimeError(f"HiGHS refuses {name} = {value!r}")
+
+
+def _lp(program: LinearProgram) -> highspy.HighsLp:
+    """The program in the solver's own structure, array by array."""
+    lp = highspy.HighsLp()
+    lp.num_col_ = program.columns
+    lp.num_row_ = program.rows
+    lp.offset_ = program.offset
+    lp.col_cost_ = program.cost
+    lp.col_lower_ = program.lower
+    lp.col_upper_ = program.upper
+    lp.row_lower_ = program.row_lower
+    lp.row_upper_ = program.row_upper
+    if program.integer.any():
+        kinds = (highspy.HighsVarType.kContinuous, highspy.HighsVarType.kInteger)
+        lp.integrality_ = [kinds[whole] for whole in program.integer.tolist()]
+    matrix = lp.a_matrix_
+    matrix.format_ = highspy.MatrixFormat.kRowwise
+    matrix.num_col_ = program.columns
+    matrix.num_row_ = program.rows
+    matrix.start_ = program.row_start
+    matrix.index_ = program.column
+    matrix.value_ = program.coefficient
+    return lp
+
+
+def _outcome(program: LinearProgram, solver: highspy.Highs, began: float, built: float) -> Outcome:
+    """Read the end of the run."""
+    model_status, info = solver.getModelStatus(), solver.getInfo()
+    if model_status == highspy.HighsModelStatus.kTimeLimit:
+        raise WallGuardError(f"HiGHS was stopped after {time.perf_counter() - built:.1f} s")
+    infeasible = model_status in (
+        highspy.HighsModelStatus.kInfeasible,
+        # All columns are bounded, so "unbounded or infeasible" can only be infeasible.
+        highspy.HighsModelStatus.kUnboundedOrInfeasible,
+    )
+    found = info.primal_solution_status == highspy.SolutionStatus.kSolutionStatusFeasible
+    optimal = model_status == highspy.HighsModelStatus.kOptimal
+    x = None
+    if found and not infeasible:
+        x = np.array(solver.getSolution().col_value)
+        x[program.integer] = np.rint(x[program.integer])
+        x = np.clip(x, program.lower, program.upper)
+    if infeasible:
+        status, bound = Status.INFEASIBLE, math.inf
+    elif x is None:
+        status, bound = Status.LIMIT, _bound(program, solver)
+    else:
+        status = Status.OPTIMAL if optimal else Status.FEASIBLE
+        bound = _bound(program, solver)
+    return Outcome(
+        x=x,
+        bound=bound,
+        status=status,
+        backend=NAME,
+        work=float(max(info.simplex_iteration_count, 0)),
+        build_s=built - began,
+        wall_s=time.perf_counter() - began,
+    )
+
+
+def _bound(program: LinearProgram, solver: highspy.Highs) -> float:
+    """The solver's lower bound, lowered by its tolerance."""
+    info = solver.getInfo()
+    if program.integer.any():
+        raw = float(info.mip_dual_bound)
+    elif solver.getModelStatus() == highspy.HighsModelStatus.kOptimal:
+        raw = float(info.objective_function_value)
+    else:
+        raw = -math.inf
+    return raw - NUMERICAL_TOLERANCE * max(1.0, abs(raw)) if math.isfinite(raw) else -math.inf

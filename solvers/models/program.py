@@ -1,0 +1,229 @@
+"""Mixed-integer linear programs in matrix form, and a builder that fills them by blocks.
+
+A model states its formulation once, here; `solvers.models.backends` hands it to each solver. All
+building is array work: one call per family of columns or rows, never one per row.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csr_array
+
+from solvers.models.checks import flags, integers, reals, require
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Kind = TypeVar("Kind", bound=np.generic)
+
+
+@dataclass(frozen=True)
+class LinearProgram:
+    """Minimise ``cost·x + offset`` over ``row_lower <= A x <= row_upper, lower <= x <= upper``.
+
+    Parameters
+    ----------
+    cost
+        Cost per column, shape (n,).
+    lower, upper
+        Finite bounds per column, shape (n,).
+    integer
+        Whether the column must be whole, shape (n,).
+    row_start, column, coefficient
+        The matrix A in compressed rows: row i holds ``coefficient[row_start[i]:row_start[i + 1]]``
+        in the columns ``column[...]``, sorted and without duplicates.
+    row_lower, row_upper
+        Bounds per row, shape (m,); an infinite one is absent.
+    offset
+        Constant part of the objective. Default 0.
+
+    Raises
+    ------
+    ModelError
+        If shapes do not fit, a bound is crossed or a number is not finite where it must be.
+    """
+
+    cost: Floats
+    lower: Floats
+    upper: Floats
+    integer: NDArray[np.bool_]
+    row_start: Integers
+    column: Integers
+    coefficient: Floats
+    row_lower: Floats
+    row_upper: Floats
+    offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        n, m = np.shape(self.cost)[0], np.shape(self.row_lower)[0]
+        checked = {
+            "cost": reals("cost", self.cost, (n,)),
+            "lower": reals("lower", self.lower, (n,)),
+            "upper": reals("upper", self.upper, (n,)),
+            "integer": flags("integer", self.integer, (n,)),
+            "row_start": integers("row_start", self.row_start, (m + 1,), low=0),
+            "column": integers("column", self.column, (None,), low=0, high=max(n - 1, 0)),
+        }
+        nonzeros = checked["column"].shape[0]
+        checked["coefficient"] = reals("coefficient", self.coefficient, (nonzeros,))
+        for field, value in checked.items():
+            object.__setattr__(self, field, value)
+        require(self.row_upper.shape == (m,), "row_upper", f"shape must be ({m},)")
+        require(bool(np.all(self.lower <= self.upper)), "lower", "must not exceed upper")
+        require(
+            bool(np.all(self.row_lower <= self.row_upper)), "row_lower", "must not exceed row_upper"
+        )
+
+    @property
+    def columns(self) -> int:
+        """Number of columns."""
+        return int(self.cost.shape[0])
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return int(self.row_lower.shape[0])
+
+    @property
+    def nonzeros(self) -> int:
+        """Number of entries of the matrix."""
+        return int(self.column.shape[0])
+
+    @cached_property
+    def matrix(self) -> csr_array:
+        """A as a SciPy array."""
+        return csr_array(
+            (self.coefficient, self.column, self.row_start), shape=(self.rows, self.columns)
+        )
+
+    def objective(self, x: Floats) -> float:
+        """Value of the objective at a point."""
+        return float(self.cost @ x) + self.offset
+
+    def violation(self, x: Floats) -> float:
+        """Largest amount by which a point breaks a bound, a row or a whole number; 0 if none."""
+        activity = np.asarray(self.matrix @ x)
+        broken = [
+            self.lower - x,
+            x - self.upper,
+            self.row_lower - activity,
+            activity - self.row_upper,
+            np.abs(x - np.rint(x))[self.integer],
+        ]
+        return max(0.0, *(float(part.max(initial=0.0)) for part in broken))
+
+
+class ProgramBuilder:
+    """Collects columns and rows by blocks and puts them together once."""
+
+    def __init__(self) -> None:
+        self._columns = 0
+        self._rows = 0
+        self._cost: list[Floats] = []
+        self._lower: list[Floats] = []
+        self._upper: list[Floats] = []
+        self._integer: list[NDArray[np.bool_]] = []
+        self._row_lower: list[Floats] = []
+        self._row_upper: list[Floats] = []
+        self._entries: list[tuple[Integers, Integers, Floats]] = []
+
+    def columns(
+        self,
+        shape: int | tuple[int, ...],
+        *,
+        cost: ArrayLike = 0.0,
+        lower: ArrayLike = 0.0,
+        upper: ArrayLike = 1.0,
+        integer: bool = True,
+    ) -> Integers:
+        """Add a block of columns.
+
+        Parameters
+        ----------
+        shape
+            Shape of the block.
+        cost, lower, upper
+            Values of that shape, or that broadcast to it. Defaults: 0, 0 and 1.
+        integer
+            Whether the columns must be whole. Default: yes, so that the defaults are binary.
+
+        Returns
+        -------
+        The index of every new column, in the shape asked for.
+        """
+        block = np.zeros(shape, dtype=np.int64)
+        new = np.arange(self._columns, self._columns + block.size, dtype=np.int64)
+        for store, value in ((self._cost, cost), (self._lower, lower), (self._upper, upper)):
+            store.append(np.broadcast_to(np.asarray(value, dtype=np.float64), block.shape).ravel())
+        self._integer.append(np.full(block.size, integer))
+        self._columns += block.size
+        return new.reshape(block.shape)
+
+    def rows(
+        self,
+        count: int,
+        *entries: tuple[ArrayLike, ArrayLike, ArrayLike],
+        lower: ArrayLike = -np.inf,
+        upper: ArrayLike = np.inf,
+    ) -> None:
+        """Add a block of rows.
+
+        Parameters
+        ----------
+        count
+            Number of rows in the block.
+        entries
+            Triples (row within the block, column, coefficient) that broadcast against each other.
+            Entries of the same place add up.
+        lower, upper
+            Bounds per row, or one for all. Default: none.
+        """
+        for row, column, value in entries:
+            r, c, v = np.broadcast_arrays(
+                np.asarray(row, dtype=np.int64) + self._rows,
+                np.asarray(column, dtype=np.int64),
+                np.asarray(value, dtype=np.float64),
+            )
+            self._entries.append((r.ravel(), c.ravel(), v.ravel()))
+        self._row_lower.append(np.broadcast_to(np.asarray(lower, dtype=np.float64), (count,)))
+        self._row_upper.append(np.broadcast_to(np.asarray(upper, dtype=np.float64), (count,)))
+        self._rows += count
+
+    def build(self, offset: float = 0.0) -> LinearProgram:
+        """Put the blocks together.
+
+        Parameters
+        ----------
+        offset
+            Constant part of the objective. Default 0.
+
+        Returns
+        -------
+        The program; rows sorted by column, entries of the same place added up.
+        """
+        row = _joined([entry[0] for entry in self._entries], np.int64)
+        column = _joined([entry[1] for entry in self._entries], np.int64)
+        value = _joined([entry[2] for entry in self._entries], np.float64)
+        matrix = csr_array((value, (row, column)), shape=(self._rows, self._columns))
+        matrix.sum_duplicates()
+        return LinearProgram(
+            cost=_joined(self._cost, np.float64),
+            lower=_joined(self._lower, np.float64),
+            upper=_joined(self._upper, np.float64),
+            integer=_joined(self._integer, np.bool_),
+            row_start=matrix.indptr.astype(np.int64),
+            column=matrix.indices.astype(np.int64),
+            coefficient=matrix.data,
+            row_lower=_joined(self._row_lower, np.float64),
+            row_upper=_joined(self._row_upper, np.float64),
+            offset=offset,
+        )
+
+
+def _joined(parts: list[NDArray[Kind]], kind: type[Kind]) -> NDArray[Kind]:
+    """Concatenate, also an empty list."""
+    return np.concatenate(parts) if parts else np.zeros(0, dtype=kind)

@@ -1,0 +1,29 @@
+"""Replenishment (RPS and ROA): bundles to pods, and these pods to stations.
+
+Both decisions are one: a pod is brought to one station for all its bundles, and the bundles' worth
+must pay for its trip.
+"""
+
+from solvers.models.replenishment.candidates import best_pods as best_pods
+from solvers.models.replenishment.cp_sat import solve as solve_by_cp_sat
+from solvers.models.replenishment.data import Replenishment as Replenishment
+from solvers.models.replenishment.data import Stocking as Stocking
+from solvers.models.replenishment.data import objective as objective
+from solvers.models.replenishment.data import violations as violations
+from solvers.models.replenishment.greedy import solve as solve_greedily
+from solvers.models.replenishment.highs import solve as solve_by_highs
+from solvers.models.replenishment.rounding import solve as solve_by_rounding
+from solvers.models.replenishment.worth import bundle_worth_s as bundle_worth_s
+
+__all__ = [
+    "Replenishment",
+    "Stocking",
+    "best_pods",
+    "bundle_worth_s",
+    "objective",
+    "solve_by_cp_sat",
+    "solve_by_highs",
+    "solve_by_rounding",
+    "solve_greedily",
+    "violations",
+]

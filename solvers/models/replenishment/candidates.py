@@ -1,0 +1,50 @@
+"""Fewer pods per bundle: the rest is hardly ever worth a trip."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.replenishment.data import Replenishment
+
+
+def best_pods(data: Replenishment, *, pods: int, stations: int) -> Replenishment:
+    """Keep the best pods of every bundle and the nearest stations of every pod.
+
+    Pods are rated by the worth of the bundle minus their shortest trip, shared by as many average
+    bundles as fit: a pod with room for several is not judged by one. A bundle that may be
+    stored in few pods keeps those.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    pods
+        How many pods to keep per bundle.
+    stations
+        How many stations to keep per pod.
+
+    Returns
+    -------
+    The same problem with fewer pairs; ties keep the lowest index. Its solutions are ones of the
+    problem; its bound is one for itself only.
+    """
+    trip_s = data.trip_s.min(axis=1, initial=np.inf)
+    mean_space = max(float(data.space.mean()), 1e-9) if len(data.space) else 1.0
+    shared = np.maximum(1.0, np.floor(data.pod_space / mean_space))
+    rating = data.worth_s - trip_s / shared
+    fits = data.space[:, np.newaxis] <= data.pod_space
+    rating = np.where(fits, rating, -np.inf)
+    worth_s = np.where(_first(-rating, pods) & fits, data.worth_s, -np.inf)
+    near_s = np.where(_first(data.trip_s, stations), data.trip_s, np.inf)
+    return dataclasses.replace(data, worth_s=worth_s, trip_s=near_s)
+
+
+def _first(values: NDArray[np.float64], count: int) -> NDArray[np.bool_]:
+    """Mark the least values of each row; ties go to the lowest index."""
+    order = np.argsort(values, axis=1, kind="stable")[:, :count]
+    marked = np.zeros(values.shape, bool)
+    np.put_along_axis(marked, order, values=True, axis=1)
+    return marked

@@ -1,0 +1,160 @@
+r"""The problem: bundles that wait, pods with free space, stations with free space.
+
+.. math::
+
+    \min \sum_{ps} trip_{ps}\, y_{ps} + \sum_b leave_b\, l_b - \sum_{bp} worth_{bp}\, x_{bp}
+
+Every bundle goes to one pod or is left, :math:`\sum_p x_{bp} + l_b = 1`; a pod that gets one is
+brought to one station, :math:`x_{bp} \le \sum_s y_{ps} \le 1`; the bundles of a pod fit into it,
+and those of the pods of a station fit into the station's buffer. What a bundle is worth in a pod
+is the robot time it will save (`bundle_worth_s`), so both sides of the balance are seconds: a trip
+is made if its bundles will save more. The bundles of one batch are rated one by one; what two of
+them are worth to each other in a pod is not counted.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from solvers.models.checks import reals
+from solvers.models.tasks.network import costs
+
+LEFT = -1
+"""The pod of a bundle that is left for later, and the station of a pod that is not brought."""
+
+PARTS = 16
+"""Parts of a space unit that are told apart."""
+
+
+@dataclass(frozen=True)
+class Replenishment:
+    """Bundles, pods and replenishment stations.
+
+    Spaces are rounded to sixteenths of a space unit, those of bundles up and those that are free
+    down, so that all back ends solve the same problem in whole numbers.
+
+    Parameters
+    ----------
+    worth_s
+        Robot time saved later if each bundle is stored in each pod, shape (B, P), in s; -inf where
+        it may not be.
+    leave_s
+        What it costs to leave each bundle for later, shape (B,), in s; +inf where it must be
+        stored.
+    space
+        Space units of each bundle, shape (B,).
+    pod_space
+        Space units free in each pod, shape (P,).
+    trip_s
+        Robot time to bring each pod to each station and back, shape (P, S), in s; +inf where it
+        may not be, 0 where it is going anyway.
+    station_space
+        Space units free at each station, shape (S,).
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+
+    worth_s: NDArray[np.float64]
+    leave_s: NDArray[np.float64]
+    space: NDArray[np.float64]
+    pod_space: NDArray[np.float64]
+    trip_s: NDArray[np.float64]
+    station_space: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        worth_s = -costs("worth_s", _negative(self.worth_s), (None, None))
+        worth_s.setflags(write=False)
+        bundles, pods = worth_s.shape
+        trip_s = costs("trip_s", self.trip_s, (pods, None), low=0)
+        checked = {
+            "worth_s": worth_s,
+            "leave_s": costs("leave_s", self.leave_s, (bundles,)),
+            "space": _parts(np.ceil, "space", self.space, bundles),
+            "pod_space": _parts(np.floor, "pod_space", self.pod_space, pods),
+            "trip_s": trip_s,
+            "station_space": _parts(np.floor, "station_space", self.station_space, trip_s.shape[1]),
+        }
+        for field, value in checked.items():
+            object.__setattr__(self, field, value)
+
+
+def _negative(value: ArrayLike) -> ArrayLike:
+    raw = np.asarray(value)
+    return -raw if raw.dtype.kind in "if" else value
+
+
+def _parts(rounding: np.ufunc, field: str, value: ArrayLike, count: int) -> NDArray[np.float64]:
+    """Check spaces and round them to parts of a unit."""
+    exact = reals(field, value, (count,), low=0)
+    rounded: NDArray[np.float64] = rounding(exact * PARTS) / PARTS
+    rounded.setflags(write=False)
+    return rounded
+
+
+@dataclass(frozen=True)
+class Stocking:
+    """Where bundles and pods go.
+
+    Attributes
+    ----------
+    pod
+        Pod of each bundle, or `LEFT`, shape (B,).
+    station
+        Station of each pod, or `LEFT`, shape (P,).
+    """
+
+    pod: NDArray[np.int64]
+    station: NDArray[np.int64]
+
+
+def objective(data: Replenishment, stocking: Stocking) -> float:
+    """Return trips plus the cost of what is left minus the worth of what is stored, in s.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    stocking
+        Where bundles and pods go.
+    """
+    stored, brought = stocking.pod != LEFT, stocking.station != LEFT
+    trips = data.trip_s[np.flatnonzero(brought), stocking.station[brought]]
+    worth = data.worth_s[np.flatnonzero(stored), stocking.pod[stored]]
+    return math.fsum(trips) + math.fsum(data.leave_s[~stored]) - math.fsum(worth)
+
+
+def violations(data: Replenishment, stocking: Stocking) -> list[str]:
+    """Say what is wrong with a stocking; empty if nothing is.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    stocking
+        Where bundles and pods go.
+    """
+    pods, stations = data.trip_s.shape
+    pod, station = stocking.pod, stocking.station
+    for chosen, count, of in ((pod, pods, data.leave_s), (station, stations, data.pod_space)):
+        if chosen.shape != of.shape or not ((chosen >= LEFT) & (chosen < count)).all():
+            return ["not one pod, or none, for every bundle, and one station, or none, per pod"]
+    found = []
+    stored = pod != LEFT
+    if (station[pod[stored]] == LEFT).any():
+        return ["a bundle in a pod that is not brought"]
+    in_pod = np.bincount(pod[stored], weights=data.space[stored], minlength=pods)
+    if (in_pod > data.pod_space).any():
+        found.append("more bundles than fit into a pod")
+    at = np.bincount(station[pod[stored]], weights=data.space[stored], minlength=stations)
+    if (at > data.station_space).any():
+        found.append("more bundles than fit into a station")
+    if not math.isfinite(objective(data, stocking)):
+        found.append("a pair that is not allowed, or a bundle left that must be stored")
+    return found

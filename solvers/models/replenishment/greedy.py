@@ -1,0 +1,171 @@
+"""Pod after pod: bring the one whose bundles gain most over its trip."""
+
+from __future__ import annotations
+
+import heapq
+import math
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.replenishment.data import (
+    LEFT,
+    Replenishment,
+    Stocking,
+    objective,
+    violations,
+)
+from solvers.models.replenishment.polish import polished
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+
+
+def solve(
+    data: Replenishment,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: Stocking | None = None,
+) -> Solution[Stocking]:
+    """Bring the pod with the greatest gain, with the bundles that gain most per space, and so on.
+
+    As bundles and space only get fewer, a gain computed earlier is too high at worst, so only
+    the pods on top of a heap are rated again; they enter it with what they could gain if bundles
+    could be cut. Bundles that must be stored count a large gain.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    limits, seed, start
+        Not needed.
+
+    Returns
+    -------
+    Where bundles and pods go; ties go to the lowest pod and station. Status LIMIT if a bundle is
+    left that must be stored. The bound lets every bundle choose for itself, trips for nothing.
+    """
+    begin = perf_counter()
+    best = np.minimum(-data.worth_s.max(axis=1, initial=-math.inf), data.leave_s)
+    bound = math.fsum(best) if np.isfinite(best).all() else math.inf
+    filling = Filling(data)
+    stocking = polished(data, filling.run())
+    wall_s = perf_counter() - begin
+    if violations(data, stocking):
+        status = Status.LIMIT if math.isfinite(bound) else Status.INFEASIBLE
+        return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, float(filling.scored))
+    value = objective(data, stocking)
+    return Solution(
+        stocking,
+        value,
+        min(bound, value),
+        Status.FEASIBLE,
+        "rule",
+        wall_s,
+        0.0,
+        float(filling.scored),
+    )
+
+
+class Filling:
+    """Bundles, pods and stations while they are being matched.
+
+    Parameters
+    ----------
+    data
+        The problem.
+
+    Attributes
+    ----------
+    scored
+        Candidates scored so far.
+    """
+
+    def __init__(self, data: Replenishment) -> None:
+        self._data = data
+        self._pod = np.full(len(data.space), LEFT, np.int64)
+        self._station = np.full(len(data.pod_space), LEFT, np.int64)
+        self._room = data.station_space.tolist()
+        self._space = data.space.tolist()
+        self._gain = self._gains()
+        density = self._gain / np.maximum(data.space, 1e-9)[:, np.newaxis]
+        self._order = np.argsort(-density, axis=0, kind="stable")
+        useful = (self._gain > 0).sum(axis=0).tolist()
+        self._wanted = [self._order[:n, pod].tolist() for pod, n in enumerate(useful)]
+        self.scored = data.worth_s.size
+
+    def run(self) -> Stocking:
+        """Bring pods until none gains anything."""
+        pods, stations = np.nonzero(np.isfinite(self._data.trip_s))
+        most = (self._most()[pods] - self._data.trip_s[pods, stations]).tolist()
+        options = zip(most, pods.tolist(), stations.tolist(), strict=True)
+        heap = [(-gain, pod, station) for gain, pod, station in options if gain > 0]
+        heapq.heapify(heap)
+        while heap:
+            _, pod, station = heapq.heappop(heap)
+            if self._station[pod] != LEFT:
+                continue
+            gain, bundles = self.gain(pod, station, self._wanted[pod])
+            if gain <= 0:
+                continue
+            if heap and -gain > heap[0][0]:
+                heapq.heappush(heap, (-gain, pod, station))
+                continue
+            self.bring(pod, station, bundles)
+        return Stocking(self._pod, self._station)
+
+    def bring(self, pod: int, station: int, bundles: list[int]) -> None:
+        """Bring a pod to a station for some bundles.
+
+        Parameters
+        ----------
+        pod, station
+            The pod, which is not brought yet, and the station.
+        bundles
+            Bundles that are not stored yet; they fit.
+        """
+        self._station[pod] = station
+        self._pod[bundles] = pod
+        self._room[station] -= sum(self._space[bundle] for bundle in bundles)
+
+    def gain(self, pod: int, station: int, wanted: list[int]) -> tuple[float, list[int]]:
+        """Return what bringing a pod gains with the first of some bundles that fit, and these.
+
+        Parameters
+        ----------
+        pod, station
+            The pod and the station.
+        wanted
+            Bundles, the most wanted first; those stored already are passed over.
+        """
+        room = min(float(self._data.pod_space[pod]), self._room[station])
+        total, chosen = -float(self._data.trip_s[pod, station]), []
+        for bundle in wanted:
+            if self._pod[bundle] == LEFT and self._space[bundle] <= room:
+                room -= self._space[bundle]
+                total += float(self._gain[bundle, pod])
+                chosen.append(bundle)
+        self.scored += len(wanted)
+        return total, chosen
+
+    def _gains(self) -> NDArray[np.float64]:
+        """Return what storing gains over leaving, at least 0, shape (B, P)."""
+        data = self._data
+        must = np.isinf(data.leave_s)
+        finite = np.abs(data.worth_s[np.isfinite(data.worth_s)]).sum()
+        trips = data.trip_s[np.isfinite(data.trip_s)].sum()
+        # more than all else together
+        urgent = 1.0 + finite + trips + np.abs(data.leave_s[~must]).sum()
+        gain = data.worth_s + np.where(must, urgent, data.leave_s)[:, np.newaxis]
+        fits = data.space[:, np.newaxis] <= data.pod_space
+        return np.where(fits, np.maximum(gain, 0.0), 0.0)
+
+    def _most(self) -> NDArray[np.float64]:
+        """Return what each pod gains at most, if bundles could be cut, without its trip."""
+        data = self._data
+        gain = np.take_along_axis(self._gain, self._order, axis=0)
+        space = data.space[self._order]
+        before = np.cumsum(space, axis=0) - space
+        share = np.clip((data.pod_space - before) / np.maximum(space, 1e-9), 0.0, 1.0)
+        most: NDArray[np.float64] = (gain * np.where(space > 0, share, 1.0)).sum(axis=0)
+        return most

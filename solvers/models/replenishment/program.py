@@ -1,0 +1,154 @@
+r"""The integer programme.
+
+Bundles go to pods (x), pods to stations (y); the load w of a pod counts at its station:
+
+.. math::
+
+    \sum_p x_{bp} + l_b = 1, \quad x_{bp} \le \sum_s y_{ps} \le 1, \quad
+    \sum_b space_b\, x_{bp} \le \sum_s w_{ps}, \\
+    w_{ps} \le podspace_p\, y_{ps}, \quad \sum_p w_{ps} \le stationspace_s
+
+Splitting x by stations instead would say the same with as many times the columns as there are
+stations. Spaces are counted in parts of a unit, so that all numbers but the costs are whole.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.program import LinearProgram, ProgramBuilder
+from solvers.models.replenishment.data import LEFT, PARTS, Replenishment, Stocking
+
+
+@dataclass(frozen=True)
+class Columns:
+    """What the columns of a programme stand for: x, then y, then w, then l.
+
+    Attributes
+    ----------
+    bundle, pod
+        Bundle and pod of each pair x, shape (X,).
+    brought, station
+        Pod and station of each y and of each w, shape (Y,).
+    """
+
+    bundle: NDArray[np.int64]
+    pod: NDArray[np.int64]
+    brought: NDArray[np.int64]
+    station: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, data: Replenishment) -> Columns:
+        """List what is allowed.
+
+        Parameters
+        ----------
+        data
+            The problem.
+        """
+        allowed = np.isfinite(data.worth_s) & (data.space[:, np.newaxis] <= data.pod_space)
+        allowed &= np.isfinite(data.trip_s).any(axis=1)
+        wanted = np.zeros(len(data.pod_space), bool)
+        bundle, pod = np.nonzero(allowed)
+        wanted[pod] = True
+        brought, station = np.nonzero(np.isfinite(data.trip_s) & wanted[:, np.newaxis])
+        return cls(bundle, pod, brought, station)
+
+
+def program(data: Replenishment, columns: Columns, *, whole: bool) -> LinearProgram:
+    """State the problem in matrix form.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    columns
+        Its columns.
+    whole
+        Whether loads must be whole. They are, if x and y are; CP-SAT wants to be told, and branch
+        and bound is ten times as fast where it need not care.
+    """
+    bundles, (pods, stations) = len(data.space), data.trip_s.shape
+    bundle, pod, brought, station = columns.bundle, columns.pod, columns.brought, columns.station
+    must = np.isinf(data.leave_s)
+    space = data.space * PARTS
+    room = np.minimum(data.pod_space[brought], data.station_space[station]) * PARTS
+    builder = ProgramBuilder()
+    x = builder.columns(len(bundle), cost=-data.worth_s[bundle, pod])
+    y = builder.columns(len(brought), cost=data.trip_s[brought, station])
+    w = builder.columns(len(brought), upper=room, integer=whole)
+    left = builder.columns(bundles, cost=np.where(must, 0.0, data.leave_s), upper=~must)
+
+    builder.rows(bundles, (bundle, x, 1.0), (np.arange(bundles), left, 1.0), lower=1.0, upper=1.0)
+    pair, option = _meet(pod, brought)
+    builder.rows(len(bundle), (np.arange(len(bundle)), x, 1.0), (pair, y[option], -1.0), upper=0.0)
+    builder.rows(pods, (brought, y, 1.0), upper=1.0)
+    builder.rows(pods, (pod, x, space[bundle]), (brought, w, -1.0), upper=0.0)
+    each = np.arange(len(brought))
+    builder.rows(len(brought), (each, w, 1.0), (each, y, -room), upper=0.0)
+    builder.rows(stations, (station, w, 1.0), upper=data.station_space * PARTS)
+    return builder.build()
+
+
+def _meet(
+    pod: NDArray[np.int64], brought: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """List the pairs (index into `pod`, index into `brought`) of the same pod."""
+    # options are sorted by pod, so those of a pod are a range
+    begin = np.searchsorted(brought, pod, side="left")
+    count = np.searchsorted(brought, pod, side="right") - begin
+    pair = np.repeat(np.arange(len(pod)), count)
+    option = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+    return pair, option + np.repeat(begin, count)
+
+
+def columns_of(data: Replenishment, columns: Columns, stocking: Stocking) -> NDArray[np.float64]:
+    """Write a stocking as columns of the programme.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    columns
+        Its columns.
+    stocking
+        Where bundles and pods go.
+    """
+    stored = stocking.pod != LEFT
+    load = np.bincount(
+        stocking.pod[stored], weights=data.space[stored] * PARTS, minlength=len(data.pod_space)
+    )
+    chosen = stocking.station[columns.brought] == columns.station
+    x = stocking.pod[columns.bundle] == columns.pod
+    w = np.where(chosen, load[columns.brought], 0.0)
+    return np.concatenate([x, chosen, w, ~stored]).astype(np.float64)
+
+
+def stocking_of(data: Replenishment, columns: Columns, x: NDArray[np.float64]) -> Stocking:
+    """Read a stocking off the columns of the programme.
+
+    Pods that are brought for nothing stay where they are.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    columns
+        Its columns.
+    x
+        Their values.
+    """
+    pairs = len(columns.bundle)
+    stored = x[:pairs] > 0.5
+    chosen = x[pairs : pairs + len(columns.brought)] > 0.5
+    pod = np.full(len(data.space), LEFT, np.int64)
+    station = np.full(len(data.pod_space), LEFT, np.int64)
+    pod[columns.bundle[stored]] = columns.pod[stored]
+    station[columns.brought[chosen]] = columns.station[chosen]
+    empty = np.ones(len(station), bool)
+    empty[pod[pod != LEFT]] = False
+    station[empty] = LEFT
+    return Stocking(pod, station)

@@ -1,0 +1,98 @@
+"""The relaxed programme as a guide: its fractions say which pods to bring, and for what.
+
+The relaxation is solved in a fraction of the time of the programme and is tight, so its fractions
+are good advice, and its value is a bound. (Rounding by a relaxation, as in fix-and-dive heuristics;
+the greedy rule takes over where the fractions end.)
+"""
+
+from __future__ import annotations
+
+import math
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.replenishment.data import Replenishment, Stocking, objective, violations
+from solvers.models.replenishment.greedy import Filling
+from solvers.models.replenishment.polish import polished
+from solvers.models.replenishment.program import Columns, program
+from solvers.models.replenishment.relaxation import relax
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+
+_SOME = 1e-6
+"""Fractions below this are noise."""
+
+
+def solve(
+    data: Replenishment,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: Stocking | None = None,
+) -> Solution[Stocking]:
+    """Bring the pods that the relaxation brings most of, for the bundles it puts there.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    limits
+        `iterations` of the relaxation; where they do not suffice, the rule is alone and its bound
+        is that of nothing known.
+    seed
+        Seed of the solver. Default 0.
+    start
+        Not needed.
+
+    Returns
+    -------
+    Where bundles and pods go; ties go to the lowest index. Status LIMIT if a bundle is left that
+    must be stored. Work in simplex iterations.
+    """
+    begin = perf_counter()
+    columns = Columns.of(data)
+    linear = program(data, columns, whole=False)
+    built_s = perf_counter() - begin
+    outcome = relax(linear, limits, seed=seed)
+    build_s = built_s + outcome.build_s
+    if outcome.status is Status.INFEASIBLE:
+        wall_s = perf_counter() - begin
+        return Solution(
+            None, math.inf, math.inf, outcome.status, "rounding", wall_s, build_s, outcome.work
+        )
+    filling = Filling(data)
+    if outcome.x is not None:
+        _follow(filling, columns, outcome.x)
+    stocking = polished(data, filling.run())
+    wall_s = perf_counter() - begin
+    if violations(data, stocking):
+        return Solution(
+            None, math.inf, outcome.bound, Status.LIMIT, "rounding", wall_s, build_s, outcome.work
+        )
+    value = objective(data, stocking)
+    bound = min(outcome.bound, value)
+    close = value - bound <= limits.gap * abs(value)
+    status = Status.OPTIMAL if close else Status.FEASIBLE
+    return Solution(stocking, value, bound, status, "rounding", wall_s, build_s, outcome.work)
+
+
+def _follow(filling: Filling, columns: Columns, x: NDArray[np.float64]) -> None:
+    """Bring pods in the order of their fractions, unless that does not pay."""
+    pairs, options = len(columns.bundle), len(columns.brought)
+    put, brought = x[:pairs], x[pairs : pairs + options]
+    wanted: dict[int, list[int]] = {}
+    for pair in np.argsort(-put, kind="stable").tolist():
+        if put[pair] <= _SOME:
+            break
+        wanted.setdefault(int(columns.pod[pair]), []).append(int(columns.bundle[pair]))
+    for option in np.argsort(-brought, kind="stable").tolist():
+        if brought[option] <= _SOME:
+            break
+        pod, station = int(columns.brought[option]), int(columns.station[option])
+        if pod not in wanted:
+            continue
+        gain, bundles = filling.gain(pod, station, wanted[pod])
+        if gain > 0:
+            filling.bring(pod, station, bundles)
+            del wanted[pod]

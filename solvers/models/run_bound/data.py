@@ -1,0 +1,267 @@
+"""What the bound is made of: stations, robots, stock, refill and demand over a window of time.
+
+Every number is an extreme: a *least* time, a *largest* amount. The bound is proven for whatever
+stays within them, so a caller who is not sure of a number gives a more generous one (0 for a
+changeover, infinity for the demand).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.checks import integers, number, reals, require
+
+
+@dataclass(frozen=True)
+class PickStations:
+    """The pick stations; all arrays have shape (S,).
+
+    Parameters
+    ----------
+    unit_transfer_s
+        Time that one unit keeps the station, in s.
+    unit_pick_s
+        Time that one unit keeps the robot, in s. The longer of the two must be positive.
+    changeover_s
+        Least time from the moment a robot may leave the head of the queue until a robot that
+        comes next can be served, in s; 0 is always right.
+    inbound_s, outbound_s
+        Least robot time to bring a pod to the station and to take it away, in s; see
+        `visit_legs`.
+    order_slots
+        Orders that may be open at once.
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+
+    unit_transfer_s: NDArray[np.float64]
+    unit_pick_s: NDArray[np.float64]
+    changeover_s: NDArray[np.float64]
+    inbound_s: NDArray[np.float64]
+    outbound_s: NDArray[np.float64]
+    order_slots: NDArray[np.int64]
+
+    def __post_init__(self) -> None:
+        count = np.shape(self.unit_transfer_s)[:1] or (None,)
+        for field in ("unit_transfer_s", "unit_pick_s", "changeover_s", "inbound_s", "outbound_s"):
+            checked = reals(field, getattr(self, field), count, low=0)
+            object.__setattr__(self, field, checked)
+        slots = integers("order_slots", self.order_slots, count, low=0)
+        object.__setattr__(self, "order_slots", slots)
+        require(
+            bool((self.cadence_s > 0).all()), "unit_transfer_s", "no station is infinitely fast"
+        )
+
+    @property
+    def cadence_s(self) -> NDArray[np.float64]:
+        """Least time between two picks from the same pod: the longer of transfer and pick."""
+        return np.maximum(self.unit_transfer_s, self.unit_pick_s)
+
+    @property
+    def change_s(self) -> NDArray[np.float64]:
+        """Least time between two picks from pods that follow each other."""
+        return np.maximum(self.unit_transfer_s, self.unit_pick_s + self.changeover_s)
+
+
+@dataclass(frozen=True)
+class Refill:
+    """The replenishment stations; arrays have shape (Q,). No stations: nothing is refilled.
+
+    Parameters
+    ----------
+    bundle_transfer_s
+        Time that one bundle keeps station and robot, in s, positive.
+    inbound_s, outbound_s
+        As for pick stations.
+    bundle_units
+        Most units in a bundle.
+    bundles_per_visit
+        Most bundles put into a pod in one visit.
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+
+    bundle_transfer_s: NDArray[np.float64]
+    inbound_s: NDArray[np.float64]
+    outbound_s: NDArray[np.float64]
+    bundle_units: int
+    bundles_per_visit: int
+
+    def __post_init__(self) -> None:
+        count = np.shape(self.bundle_transfer_s)[:1] or (None,)
+        for field in ("bundle_transfer_s", "inbound_s", "outbound_s"):
+            checked = reals(field, getattr(self, field), count, low=0)
+            object.__setattr__(self, field, checked)
+        fast = bool((self.bundle_transfer_s > 0).all())
+        require(fast, "bundle_transfer_s", "no station is infinitely fast")
+        number("bundle_units", self.bundle_units, low=1)
+        number("bundles_per_visit", self.bundles_per_visit, low=1)
+
+
+@dataclass(frozen=True)
+class Stock:
+    """What the pods hold.
+
+    Parameters
+    ----------
+    pod_units
+        Most units that each pod can hold at the start of the window, shape (P,): its contents
+        where they are known, or what fits (capacity / least space of a unit).
+    largest_pod_units
+        Most units that any pod can hold at any time.
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+
+    pod_units: NDArray[np.int64]
+    largest_pod_units: int
+
+    def __post_init__(self) -> None:
+        units = integers("pod_units", self.pod_units, (None,), low=0)
+        object.__setattr__(self, "pod_units", units)
+        number("largest_pod_units", self.largest_pod_units, low=int(units.max(initial=0)))
+
+
+@dataclass(frozen=True)
+class Orders:
+    """What is ordered.
+
+    Parameters
+    ----------
+    units
+        Units asked for and not yet picked when the window begins (work in progress included) plus
+        those of the orders that arrive in it. Default: without limit, as with a backlog that is
+        always topped up.
+    largest_order_units
+        Most units in an order; infinity if unknown. Default: unknown.
+    lone_units
+        Most units of orders that are served whole from one visit. Known where demand is: the
+        units of the orders whose SKUs some pod holds together. Default: without limit.
+    join_visits
+        Whether an order put on the station while a pod is served there can still be served from
+        that visit. Default: yes, which holds always.
+
+    Raises
+    ------
+    ModelError
+        If a value is negative.
+    """
+
+    units: float = math.inf
+    largest_order_units: float = math.inf
+    lone_units: float = math.inf
+    join_visits: bool = True
+
+    def __post_init__(self) -> None:
+        for field in ("units", "largest_order_units", "lone_units"):
+            value = getattr(self, field)
+            require(value >= 0, field, f"must be at least 0, is {value}")
+
+
+@dataclass(frozen=True)
+class RunBound:
+    """A warehouse and the time it has.
+
+    Parameters
+    ----------
+    duration_s
+        Length H of the window in which picks are counted, in s, positive.
+    robots
+        Number R of robots.
+    picking, refill, stock, orders
+        What they can do, and with what.
+
+    Raises
+    ------
+    ModelError
+        If a value is wrong.
+    """
+
+    duration_s: float
+    robots: int
+    picking: PickStations
+    refill: Refill
+    stock: Stock
+    orders: Orders = Orders()
+
+    def __post_init__(self) -> None:
+        require(number("duration_s", self.duration_s) > 0, "duration_s", "must be positive")
+        integers("robots", self.robots, (), low=0)
+
+    @property
+    def hours(self) -> float:
+        """Length of the window in h."""
+        return self.duration_s / 3600.0
+
+    @property
+    def visit_units(self) -> NDArray[np.float64]:
+        """Most units in one visit at each pick station, shape (S,).
+
+        A pod is not refilled while it is picked from, so it gives no more than it can hold; if no
+        order joins a running visit, also no more than the open orders can ask for.
+        """
+        largest = np.full(len(self.picking.order_slots), float(self.stock.largest_pod_units))
+        if self.orders.join_visits or math.isinf(self.orders.largest_order_units):
+            return largest
+        asked = self.picking.order_slots * self.orders.largest_order_units
+        fewer: NDArray[np.float64] = np.minimum(largest, asked)
+        return fewer
+
+    @property
+    def end_effect_s(self) -> float:
+        """Robot time per robot that can lie outside the window: a way in, a service, a way out."""
+        inbound = np.concatenate([self.picking.inbound_s, self.refill.inbound_s])
+        outbound = np.concatenate(
+            [
+                self.picking.outbound_s + self.picking.unit_pick_s,
+                self.refill.outbound_s + self.refill.bundle_transfer_s,
+            ]
+        )
+        return float(inbound.max(initial=0.0) + outbound.max(initial=0.0))
+
+
+@dataclass(frozen=True)
+class Throughput:
+    """What the best imaginable run does in the window.
+
+    Attributes
+    ----------
+    units, visits
+        Units picked and visits of pods per pick station, shape (S,).
+    lone_units
+        The part of the units that went to orders served whole from one visit, shape (S,).
+    bundles, refill_visits
+        Bundles stored and visits per replenishment station, shape (Q,).
+    """
+
+    units: NDArray[np.float64]
+    visits: NDArray[np.float64]
+    lone_units: NDArray[np.float64]
+    bundles: NDArray[np.float64]
+    refill_visits: NDArray[np.float64]
+
+
+def objective(data: RunBound, values: Throughput) -> float:
+    """Return units per hour.
+
+    Parameters
+    ----------
+    data
+        The warehouse.
+    values
+        What happens in the window.
+    """
+    return float(values.units.sum()) / data.hours

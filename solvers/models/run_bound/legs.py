@@ -1,0 +1,74 @@
+r"""The least robot time that a visit takes on its way in and out.
+
+A pod comes to a station from a storage place, where it was lifted, or straight from another
+station, and leaves likewise. A way from storage belongs to its visit alone; a way between two
+stations is shared by two visits, so each is charged one half:
+
+.. math::
+
+    in_s &= \min(lift + \min_l t_{ls},\; \tfrac12 \min_{r \ne s} t_{rs}) \\
+    out_s &= \min(setdown + \min_l t_{sl},\; \tfrac12 \min_{r \ne s} t_{sr})
+
+Whatever a robot does, the charges of its visits add up to no more than its driving, lifting and
+setting down. Empty driving is not counted: it can be zero.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.checks import number
+from solvers.models.tasks.network import costs
+
+
+class Legs(NamedTuple):
+    """Least robot time per visit of each station, in s, shape (S,): `inbound_s`, `outbound_s`."""
+
+    inbound_s: NDArray[np.float64]
+    outbound_s: NDArray[np.float64]
+
+
+def visit_legs(
+    from_storage_s: NDArray[np.float64],
+    to_storage_s: NDArray[np.float64],
+    between_s: NDArray[np.float64],
+    transfer_s: float,
+) -> Legs:
+    """Charge the ways of pods to visits, for all stations in their common numbering.
+
+    Parameters
+    ----------
+    from_storage_s
+        Least driving time from any storage place to each station, shape (S,), in s.
+    to_storage_s
+        Least driving time from each station to any storage place, shape (S,), in s.
+    between_s
+        Least driving time from station to station, shape (S, S), in s; +inf where pods do not go
+        straight from one to the other. The diagonal is not read: a pod that stays makes no new
+        visit.
+    transfer_s
+        Least time to lift or to set down a pod, in s.
+
+    Returns
+    -------
+    The charges; +inf driving times make a station unreachable and are refused.
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+    inward = costs("from_storage_s", from_storage_s, (None,), low=0)
+    stations = len(inward)
+    outward = costs("to_storage_s", to_storage_s, (stations,), low=0)
+    between = costs("between_s", between_s, (stations, stations), low=0).copy()
+    lift = number("transfer_s", transfer_s, low=0)
+    np.fill_diagonal(between, math.inf)
+    return Legs(
+        np.minimum(lift + inward, between.min(axis=0, initial=math.inf) / 2.0),
+        np.minimum(lift + outward, between.min(axis=1, initial=math.inf) / 2.0),
+    )

@@ -1,0 +1,44 @@
+"""What each resource alone would allow: weaker than the linear programme, but seen at a glance."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from solvers.models.run_bound.data import RunBound
+
+
+def single_bounds(data: RunBound) -> dict[str, float]:
+    r"""Bound the units per hour by one resource at a time.
+
+    - ``stations``: never waiting for a pod, :math:`\sum_s (H / a_s + 1)`;
+    - ``robots``: always at the station with the best ratio, every visit at its largest pile-on
+      :math:`u_s`: :math:`R (H + E) / \min_s (a_s + (w_s + \pi_s - a_s) / u_s)`, or
+      :math:`w_s + \pi_s` per unit where that is less;
+    - ``demand``: what is ordered.
+
+    Parameters
+    ----------
+    data
+        The warehouse.
+
+    Returns
+    -------
+    Units per hour by name; each is at least the bound of `linear`, up to rounding.
+    """
+    picking = data.picking
+    cadence = picking.cadence_s
+    stations = float((data.duration_s / cadence + 1.0).sum())
+    visit_s = picking.inbound_s + picking.outbound_s + picking.unit_pick_s
+    largest = data.visit_units
+    worth_it = largest > 0
+    if not worth_it.any():
+        return {"stations": 0.0, "robots": 0.0, "demand": data.orders.units / data.hours}
+    full = cadence + (visit_s - cadence) / np.maximum(largest, 1.0)
+    # a visit of one unit can cost less robot time per unit than a long one
+    per_unit_s = float(np.minimum(full, visit_s)[worth_it].min())
+    time_s = data.robots * (data.duration_s + data.end_effect_s)
+    robots = time_s / per_unit_s if per_unit_s > 0 else math.inf
+    each = {"stations": stations, "robots": robots, "demand": data.orders.units}
+    return {name: units / data.hours for name, units in each.items()}

@@ -1,0 +1,203 @@
+"""What every model returns, and the limits it is given.
+
+All limits are in deterministic work: the same input gives the same output on a busy machine and
+on an idle one. A wall-clock guard exists, but it only ever raises an error.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+from typing import Generic, TypeVar
+
+from solvers.models.checks import number, require
+
+V_co = TypeVar("V_co", covariant=True)
+
+GAP_FLOOR = 1e-9
+"""Smallest denominator of a relative gap, so that an optimum of 0 has gap 0."""
+
+BOUND_TOLERANCE = 1e-6
+"""How far, relative to the objective, a bound may pass it before it counts as a defect."""
+
+
+class WallGuardError(RuntimeError):
+    """A solver ran into its wall-clock guard: there is no result, because it would not repeat."""
+
+
+class Status(Enum):
+    """How a solve ended."""
+
+    OPTIMAL = "optimal"
+    """Values proven to be within the gap limit of the best."""
+
+    FEASIBLE = "feasible"
+    """Values that satisfy every constraint; a heuristic, or a search ended by its limit."""
+
+    INFEASIBLE = "infeasible"
+    """Proven: no values satisfy the constraints."""
+
+    LIMIT = "limit"
+    """The limit came before the first feasible values."""
+
+
+class Sense(Enum):
+    """Whether less or more is better."""
+
+    MINIMISE = 1
+    MAXIMISE = -1
+
+    @property
+    def worst(self) -> float:
+        """The objective of 'nothing found': +inf when minimising, -inf when maximising."""
+        return math.inf * self.value
+
+
+@dataclass(frozen=True)
+class Limits:
+    """When a solver stops.
+
+    Parameters
+    ----------
+    deterministic_s
+        Limit of CP-SAT in its own deterministic seconds (roughly a second of one core, but counted
+        in operations). Default: none.
+    nodes
+        Limit of a HiGHS branch-and-bound in nodes. Default: none (to optimality).
+    iterations
+        Limit of an LP, assignment, flow or interior-point solve, or of a local search, in its
+        iterations. Default: none.
+    gap
+        Relative gap at which a solve counts as optimal. Default 0.
+    wall_guard_s
+        Seconds of wall clock after which the solve raises `WallGuardError`. It never shapes a
+        result. Default: none.
+
+    Raises
+    ------
+    ModelError
+        If a limit is negative or not a number.
+    """
+
+    deterministic_s: float | None = None
+    nodes: int | None = None
+    iterations: int | None = None
+    gap: float = 0.0
+    wall_guard_s: float | None = None
+
+    def __post_init__(self) -> None:
+        for field in ("deterministic_s", "nodes", "iterations", "gap", "wall_guard_s"):
+            value = getattr(self, field)
+            if value is not None:
+                number(f"limits.{field}", value, low=0)
+
+
+NO_LIMITS = Limits()
+"""Solve to proven optimality."""
+
+
+@dataclass(frozen=True)
+class Solution(Generic[V_co]):
+    """The outcome of one solve.
+
+    Parameters
+    ----------
+    values
+        The decision; None if `status` is INFEASIBLE or LIMIT.
+    objective
+        What the model's own objective function makes of the values (never the number a solver
+        reports); `sense.worst` without values.
+    bound
+        A proven bound on the best objective: below it when minimising, above it when maximising;
+        ``-sense.worst`` if nothing is known.
+    status
+        How the solve ended.
+    backend
+        Who solved it, such as ``"cp_sat"``, ``"highs"``, ``"greedy"``.
+    wall_s
+        Wall-clock seconds of the whole call, building included. Measured, never used.
+    build_s
+        The part of it spent on making the solver's model from the arrays.
+    work
+        Deterministic work spent, in the back end's unit (`WORK_UNITS`).
+    sense
+        Whether less or more is better. Default: less.
+
+    Raises
+    ------
+    ModelError
+        If the parts contradict each other, such as a bound beyond the objective.
+    """
+
+    values: V_co | None
+    objective: float
+    bound: float
+    status: Status
+    backend: str
+    wall_s: float = 0.0
+    build_s: float = 0.0
+    work: float = 0.0
+    sense: Sense = Sense.MINIMISE
+
+    def __post_init__(self) -> None:
+        found = self.status in (Status.OPTIMAL, Status.FEASIBLE)
+        require(found == (self.values is not None), "values", f"do not fit status {self.status}")
+        require(not math.isnan(self.objective), "objective", "is not a number")
+        require(not math.isnan(self.bound), "bound", "is not a number")
+        if found:
+            require(math.isfinite(self.objective), "objective", "must be finite")
+            excess = (self.bound - self.objective) * self.sense.value
+            slack = BOUND_TOLERANCE * max(1.0, abs(self.objective))
+            require(excess <= slack, "bound", f"{self.bound} is beyond {self.objective}")
+
+    @property
+    def found(self) -> bool:
+        """Whether there are values to apply."""
+        return self.values is not None
+
+    @property
+    def gap(self) -> float:
+        """Relative distance of objective and bound: |objective - bound| / |objective|; inf if open.
+
+        A bound that passes the objective by rounding counts as met.
+        """
+        if not self.found or math.isinf(self.bound):
+            return math.inf
+        distance = max(0.0, (self.objective - self.bound) * self.sense.value)
+        return distance / max(abs(self.objective), GAP_FLOOR)
+
+    @property
+    def solve_s(self) -> float:
+        """Wall-clock seconds without the building."""
+        return self.wall_s - self.build_s
+
+    @property
+    def required(self) -> V_co:
+        """The values, for a caller that knows there are some.
+
+        Raises
+        ------
+        ValueError
+            If there are none.
+        """
+        if self.values is None:
+            raise ValueError(f"no values: {self.backend} ended with {self.status.value}")
+        return self.values
+
+    def summary(self) -> str:
+        """One line for people: who, how it ended, objective, bound, gap, work and time."""
+        return (
+            f"{self.backend}: {self.status.value}, objective {self.objective:g}, "
+            f"bound {self.bound:g}, gap {self.gap:.2%}, work {self.work:g}, "
+            f"{self.wall_s * 1e3:.1f} ms ({self.build_s * 1e3:.1f} ms building)"
+        )
+
+
+WORK_UNITS = {
+    "cp_sat": "deterministic seconds",
+    "highs": "simplex iterations over all nodes",
+    "clarabel": "interior-point iterations",
+    "rule": "candidates scored",
+}
+"""The unit of `Solution.work` per back end; heuristics count under "rule"."""

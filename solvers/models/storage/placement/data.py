@@ -1,0 +1,95 @@
+r"""The problem: a batch of pods that need a place, and the places that are free.
+
+.. math::
+
+    \min \sum_{p,l} (travel_{pl} + visits_p \cdot access_l)\, x_{pl}, \quad
+    \sum_l x_{pl} = 1, \quad \sum_p x_{pl} \le 1
+
+Robot time now is weighed against robot time later: a pod that will soon be wanted is worth a longer
+way today to a place near the stations. (The batch form of the "cheapest place" rule of Krenzler,
+Xie, Li 2018; nearest-place storage is the case of no visits.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.checks import reals
+from solvers.models.tasks.network import costs
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Pods to be stored and free places.
+
+    Parameters
+    ----------
+    travel_s
+        Robot time from where each pod is now to each place, set-down included, shape (P, L), in
+        s; +inf where a pod may not be put.
+    access_s
+        Robot time between each place and the stations that a future visit takes, both ways,
+        shape (L,), in s.
+    visits
+        Expected visits of each pod before it is moved again, shape (P,); see `expected_visits`.
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+
+    travel_s: NDArray[np.float64]
+    access_s: NDArray[np.float64]
+    visits: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        travel_s = costs("travel_s", self.travel_s, (None, None), low=0)
+        pods, places = travel_s.shape
+        object.__setattr__(self, "travel_s", travel_s)
+        object.__setattr__(self, "access_s", reals("access_s", self.access_s, (places,), low=0))
+        object.__setattr__(self, "visits", reals("visits", self.visits, (pods,), low=0))
+
+    @property
+    def cost_s(self) -> NDArray[np.float64]:
+        """Robot time of each pair, now and later, shape (P, L)."""
+        return self.travel_s + np.outer(self.visits, self.access_s)
+
+
+def objective(data: Placement, place: NDArray[np.int64]) -> float:
+    """Return the robot time of a placement, in s.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    place
+        Place of each pod, shape (P,).
+    """
+    pods = np.arange(len(place))
+    later = data.visits * data.access_s[place]
+    return float((data.travel_s[pods, place] + later).sum())
+
+
+def violations(data: Placement, place: NDArray[np.int64]) -> list[str]:
+    """Say what is wrong with a placement; empty if nothing is.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    place
+        Place of each pod, shape (P,).
+    """
+    pods, places = data.travel_s.shape
+    if place.shape != (pods,) or not ((place >= 0) & (place < places)).all():
+        return ["not one place for every pod"]
+    found = []
+    if len(np.unique(place)) < pods:
+        found.append("two pods on one place")
+    if np.isinf(data.travel_s[np.arange(pods), place]).any():
+        found.append("a pod on a place that is not allowed")
+    return found

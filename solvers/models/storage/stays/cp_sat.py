@@ -1,0 +1,43 @@
+"""The interval model by CP-SAT, limited by deterministic time."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.backends import cp_sat
+from solvers.models.solution import NO_LIMITS, Limits, Solution
+from solvers.models.storage.stays.backend import solve_by
+from solvers.models.storage.stays.data import Stays
+
+
+def solve(
+    data: Stays,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: NDArray[np.int64] | None = None,
+) -> Solution[NDArray[np.int64]]:
+    """Find the zone of each stay by constraint programming.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    limits
+        `deterministic_s` and `gap`. Default: to optimality.
+    seed
+        Seed of the solver. Default 0.
+    start
+        A feasible choice of zones to start from, shape (S,). Default: none.
+
+    Returns
+    -------
+    The zone of each stay, shape (S,).
+
+    Raises
+    ------
+    ModelError
+        If the start is not feasible.
+    """
+    return solve_by(cp_sat.solve, data, limits, seed, start, whole=True)

@@ -1,0 +1,134 @@
+r"""The problem: stays with known begin and end, and zones of equal places.
+
+.. math::
+
+    \min \sum_{sz} c_{sz} x_{sz}, \quad \sum_z x_{sz} = 1, \quad
+    \sum_{s \text{ present at } t} x_{sz} \le k_z \text{ for all } t, \quad x \in \{0, 1\}
+
+A stay lasts from the moment a place is given to a pod until the pod has left it, ``[begin, end)``.
+(Weidinger, Boysen, Briskorn 2018 decide on single places: zones of one place.) Places of a zone
+are interchangeable, and no more than :math:`k_z` stays at a time is enough to give each a place of
+its own: interval graphs are perfect. A pod that stands there already is a stay that begins at once
+and is allowed only where it stands.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.checks import integers, reals, require
+from solvers.models.tasks.network import costs
+
+
+@dataclass(frozen=True)
+class Stays:
+    """Stays of pods and zones of places.
+
+    Parameters
+    ----------
+    begin_s, end_s
+        When each stay begins and ends, shape (S,), in s; every stay has a length.
+    cost_s
+        Robot time of a stay in each zone (the way there and the way to the next station), shape
+        (S, Z), in s; +inf where it is not allowed.
+    capacity
+        Places of each zone, shape (Z,).
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+
+    begin_s: NDArray[np.float64]
+    end_s: NDArray[np.float64]
+    cost_s: NDArray[np.float64]
+    capacity: NDArray[np.int64]
+
+    def __post_init__(self) -> None:
+        cost_s = costs("cost_s", self.cost_s, (None, None))
+        stays, zones = cost_s.shape
+        object.__setattr__(self, "cost_s", cost_s)
+        object.__setattr__(self, "begin_s", reals("begin_s", self.begin_s, (stays,)))
+        object.__setattr__(self, "end_s", reals("end_s", self.end_s, (stays,)))
+        object.__setattr__(self, "capacity", integers("capacity", self.capacity, (zones,), low=0))
+        require(bool((self.begin_s < self.end_s).all()), "end_s", "must be after begin_s")
+
+    @cached_property
+    def periods(self) -> tuple[NDArray[np.int64], NDArray[np.int64], int]:
+        """The fewest moments at which places must be counted.
+
+        Stays can only get more until one ends, so that counting at the last moment before an end
+        is enough: these are the maximal sets of stays that are present together.
+
+        Returns
+        -------
+        First period of each stay, the period after its last one, both shape (S,), and the number
+        of periods.
+        """
+        ended = np.searchsorted(np.sort(self.end_s), self.begin_s, side="right")
+        distinct, first = np.unique(ended, return_inverse=True)
+        # a period opens with its earliest begin, after the end that closed the one before
+        opens = np.full(len(distinct), np.inf)
+        np.minimum.at(opens, first, self.begin_s)
+        last = np.searchsorted(opens, self.end_s, side="left")
+        return first.astype(np.int64), last.astype(np.int64), len(distinct)
+
+    def present(self, zone: NDArray[np.int64], counted: int) -> NDArray[np.int64]:
+        """Count stays in one zone over the periods.
+
+        Parameters
+        ----------
+        zone
+            Zone of each stay, shape (S,).
+        counted
+            The zone to look at.
+
+        Returns
+        -------
+        Stays present, shape (periods,).
+        """
+        first, last, periods = self.periods
+        change = np.zeros(periods + 1, np.int64)
+        np.add.at(change, first[zone == counted], 1)
+        np.add.at(change, last[zone == counted], -1)
+        return np.cumsum(change[:-1])
+
+
+def objective(data: Stays, zone: NDArray[np.int64]) -> float:
+    """Return the robot time of all stays, in s.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    zone
+        Zone of each stay, shape (S,).
+    """
+    return float(data.cost_s[np.arange(len(zone)), zone].sum())
+
+
+def violations(data: Stays, zone: NDArray[np.int64]) -> list[str]:
+    """Say what is wrong with a choice of zones; empty if nothing is.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    zone
+        Zone of each stay, shape (S,).
+    """
+    stays, zones = data.cost_s.shape
+    if zone.shape != (stays,) or not ((zone >= 0) & (zone < zones)).all():
+        return ["not one zone for every stay"]
+    found = []
+    if np.isinf(data.cost_s[np.arange(stays), zone]).any():
+        found.append("a stay in a zone where it is not allowed")
+    for each, places in enumerate(data.capacity.tolist()):
+        if (data.present(zone, each) > places).any():
+            found.append(f"more stays than places in zone {each}")
+    return found

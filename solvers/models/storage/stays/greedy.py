@@ -1,0 +1,81 @@
+"""Stays one after another: by what is at stake per hour, or, in need, by their begin."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from solvers.models.storage.stays.data import Stays, objective
+
+
+def solve(
+    data: Stays,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: NDArray[np.int64] | None = None,
+) -> Solution[NDArray[np.int64]]:
+    """Give each stay the cheapest zone that has room all the time.
+
+    Stays whose zones differ most per hour of stay choose first: a good place serves many short
+    stays better than a long one. If that leaves a stay without a zone, they choose in the order of
+    their begin, which fails only where not every zone is allowed (or there is no room at all).
+
+    Parameters
+    ----------
+    data
+        The problem.
+    limits, seed, start
+        Not needed.
+
+    Returns
+    -------
+    The zone of each stay, shape (S,); ties go to the lowest index. Status LIMIT if both orders
+    fail. The bound lets every stay have its cheapest zone; a stay without one is INFEASIBLE.
+    """
+    begin = perf_counter()
+    stays, zones = data.cost_s.shape
+    bound = float(data.cost_s.min(axis=1, initial=math.inf).sum())
+    scored = 0
+    for order in (_at_stake(data), np.argsort(data.begin_s, kind="stable")):
+        zone = _place(data, order.tolist())
+        scored += stays * zones
+        if zone is not None:
+            value = objective(data, zone)
+            wall_s = perf_counter() - begin
+            return Solution(zone, value, bound, Status.FEASIBLE, "rule", wall_s, 0.0, float(scored))
+    status = Status.LIMIT if math.isfinite(bound) else Status.INFEASIBLE
+    wall_s = perf_counter() - begin
+    return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, float(scored))
+
+
+def _at_stake(data: Stays) -> NDArray[np.intp]:
+    """Sort stays by the cost between their best and their worst zone per second, most first."""
+    allowed = np.isfinite(data.cost_s)
+    worst = np.where(allowed, data.cost_s, -math.inf).max(axis=1, initial=-math.inf)
+    best = data.cost_s.min(axis=1, initial=math.inf)
+    # a stay without a choice is certain to need its zone
+    stake = np.where(allowed.sum(axis=1) > 1, worst - best, math.inf)
+    return np.argsort(-stake / (data.end_s - data.begin_s), kind="stable")
+
+
+def _place(data: Stays, order: Iterable[int]) -> NDArray[np.int64] | None:
+    """Place stays in an order; None if one finds no zone."""
+    first, last, periods = data.periods
+    room = np.repeat(data.capacity[:, np.newaxis], periods, axis=1)
+    zone = np.full(len(data.cost_s), -1, np.int64)
+    for stay in order:
+        during = slice(first[stay], last[stay])
+        free = room[:, during].min(axis=1) > 0 if len(room) else np.zeros(0, bool)
+        cost_s = np.where(free, data.cost_s[stay], math.inf)
+        best = int(cost_s.argmin()) if cost_s.size else -1
+        if best < 0 or math.isinf(cost_s[best]):
+            return None
+        zone[stay] = best
+        room[best, during] -= 1
+    return zone

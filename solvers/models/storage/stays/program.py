@@ -1,0 +1,87 @@
+r"""The integer programme, with the pods of each zone carried over from period to period.
+
+.. math::
+
+    y_{zt} = y_{z,t-1} + \sum_{s \text{ begins in } t} x_{sz}
+    - \sum_{s \text{ is over in } t} x_{sz}, \qquad 0 \le y_{zt} \le k_z
+
+says the same as one row per maximal set of stays, with a number of entries that grows with the
+stays and not with the square of them. For each zone alone the matrix is one of a network, so that
+the relaxation is tight.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.program import LinearProgram, ProgramBuilder
+from solvers.models.storage.stays.data import Stays
+
+
+def program(data: Stays, *, whole: bool) -> LinearProgram:
+    """State the problem in matrix form.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    whole
+        Whether y must be whole. It is, if x is; CP-SAT wants to be told, branch and bound not.
+
+    Returns
+    -------
+    The programme; its first S * Z columns are x, row by row.
+    """
+    stays, zones = data.cost_s.shape
+    first, last, periods = data.periods
+    allowed = np.isfinite(data.cost_s)
+    builder = ProgramBuilder()
+    x = builder.columns((stays, zones), cost=np.where(allowed, data.cost_s, 0.0), upper=allowed)
+    y = builder.columns((zones, periods), upper=data.capacity[:, np.newaxis], integer=whole)
+    builder.rows(stays, (np.arange(stays)[:, np.newaxis], x, 1.0), lower=1.0, upper=1.0)
+    count = np.arange(zones * periods).reshape(zones, periods)
+    over = last < periods
+    builder.rows(
+        zones * periods,
+        (count, y, 1.0),
+        (count[:, 1:], y[:, :-1], -1.0),
+        (count[:, first].T, x, -1.0),
+        (count[:, last[over]].T, x[over], 1.0),
+        lower=0.0,
+        upper=0.0,
+    )
+    return builder.build()
+
+
+def columns_of(data: Stays, zone: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Write a choice of zones as columns of the programme.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    zone
+        Zone of each stay, shape (S,).
+    """
+    chosen = np.zeros(data.cost_s.shape)
+    chosen[np.arange(len(zone)), zone] = 1.0
+    present = [data.present(zone, each) for each in range(len(data.capacity))]
+    return np.concatenate([chosen.ravel(), *(each.astype(np.float64) for each in present)])
+
+
+def zones_of(data: Stays, x: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Read a choice of zones off the columns of the programme.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    x
+        The columns.
+    """
+    if not data.cost_s.size:
+        return np.zeros(0, np.int64)
+    chosen = x[: data.cost_s.size].reshape(data.cost_s.shape)
+    zone: NDArray[np.int64] = chosen.argmax(axis=1)
+    return zone

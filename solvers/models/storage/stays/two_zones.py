@@ -1,0 +1,112 @@
+r"""Two zones: a minimum-cost flow, exact at any size.
+
+With two zones a stay that is not in zone 0 is in zone 1. The :math:`k_0` places of zone 0 walk
+along the periods as units of flow: a unit either waits from one period to the next or spends a
+stay. A stay in zone 0 saves :math:`c_{s1} - c_{s0}`. As the stays present in period t that are not
+in zone 0 must fit into zone 1, at most :math:`k_0 - (present_t - k_1)^+` units may wait there.
+(The k-colouring of intervals by flow of Carlisle and Lloyd 1995, with a limit on waiting.) A stay
+that must be in zone 0 takes its unit out of the flow and puts it back.
+"""
+
+from __future__ import annotations
+
+import math
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.checks import require
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from solvers.models.storage.stays.data import Stays, objective
+from solvers.models.tasks.network import Network, min_cost_flow
+
+
+def solve(
+    data: Stays,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: NDArray[np.int64] | None = None,
+) -> Solution[NDArray[np.int64]]:
+    """Find the zone of each stay if there are two zones.
+
+    Parameters
+    ----------
+    data
+        The problem; two zones.
+    limits, seed, start
+        Not needed: the algorithm is polynomial, deterministic and starts from nothing.
+
+    Returns
+    -------
+    The zone of each stay, shape (S,); work in arcs.
+
+    Raises
+    ------
+    ModelError
+        If there is another number of zones.
+    """
+    require(
+        len(data.capacity) == 2, "capacity", f"must be of two zones, is of {len(data.capacity)}"
+    )
+    begin = perf_counter()
+    near, far = data.cost_s.T
+    forced_near, forced_far = np.isinf(far), np.isinf(near)
+    network, free = _network(data, forced_near, forced_far)
+    built = perf_counter()
+    flow = None
+    if not (forced_near & forced_far).any() and (network.capacity >= 0).all():
+        flow = min_cost_flow(network)
+    if flow is None:
+        wall_s, build_s = perf_counter() - begin, built - begin
+        return Solution(
+            None, math.inf, math.inf, Status.INFEASIBLE, "min_cost_flow", wall_s, build_s
+        )
+    zone = np.ones(len(near), np.int64)
+    zone[forced_near] = 0
+    zone[free[flow.units[len(flow.units) - len(free) :] > 0]] = 0
+    value = objective(data, zone)
+    fixed = math.fsum(near[forced_near]) + math.fsum(far[~forced_near])
+    return Solution(
+        zone,
+        value,
+        min(fixed + flow.bound, value),
+        Status.OPTIMAL,
+        "min_cost_flow",
+        perf_counter() - begin,
+        built - begin,
+        flow.work,
+    )
+
+
+def _network(
+    data: Stays, forced_near: NDArray[np.bool_], forced_far: NDArray[np.bool_]
+) -> tuple[Network, NDArray[np.int64]]:
+    """Lay the places of zone 0 along the periods.
+
+    Returns
+    -------
+    The network, whose first arcs wait and whose last ones are stays, and the stays of these arcs.
+    """
+    first, last, periods = data.periods
+    near_places, far_places = data.capacity.tolist()
+    everywhere = np.zeros(len(first), np.int64)
+    overflow = np.maximum(0, data.present(everywhere, 0) - far_places)
+    free = np.flatnonzero(~forced_near & ~forced_far)
+    supply = np.zeros(periods + 1, np.int64)
+    supply[0] += near_places
+    supply[periods] -= near_places
+    np.add.at(supply, first[forced_near], -1)
+    np.add.at(supply, last[forced_near], 1)
+    saved = data.cost_s[free, 0] - data.cost_s[free, 1]
+    return (
+        Network(
+            tail=np.concatenate([np.arange(periods), first[free]]),
+            head=np.concatenate([np.arange(1, periods + 1), last[free]]),
+            capacity=np.concatenate([near_places - overflow, np.ones(len(free), np.int64)]),
+            cost=np.concatenate([np.zeros(periods), saved]),
+            supply=supply,
+        ),
+        free,
+    )

@@ -1,0 +1,141 @@
+r"""The steady state: how many pods of each class stand in each zone on average.
+
+.. math::
+
+    \min \sum_{ij} r_i t_{ij} x_{ij} + \sum_j \gamma_j f_j^2, \quad
+    f_j = \sum_i r_i x_{ij}, \quad
+    \sum_j x_{ij} = m_i, \quad \sum_i x_{ij} \le k_j, \quad x \ge 0
+
+A pod of class i is visited :math:`r_i` times an hour; a visit from zone j takes a robot
+:math:`t_{ij}` seconds and waits :math:`\gamma_j f_j` seconds more, because delay grows with the
+traffic :math:`f_j` of the zone. The objective is robot seconds per hour. Without congestion this is
+the transportation problem of class-based storage (Hausman, Schwarz, Graves 1976); the quadratic
+cost makes busy zones dear before they are full.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.checks import reals
+
+_TOLERANCE = 1e-9
+"""Relative error allowed where pods are counted."""
+
+
+@dataclass(frozen=True)
+class Zones:
+    """Classes of pods and zones of places.
+
+    Parameters
+    ----------
+    visit_s
+        Robot time of one visit to a pod of each class from each zone, to the station and back,
+        shape (I, J), in s.
+    rate_per_h
+        Visits of a pod of each class, shape (I,), in 1/h.
+    pods
+        Pods of each class, shape (I,).
+    places
+        Places of each zone, shape (J,).
+    congestion_s_h
+        Seconds that a visit is delayed per visit per hour to the same zone, shape (J,), in s h.
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+
+    visit_s: NDArray[np.float64]
+    rate_per_h: NDArray[np.float64]
+    pods: NDArray[np.float64]
+    places: NDArray[np.float64]
+    congestion_s_h: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        visit_s = reals("visit_s", self.visit_s, (None, None), low=0)
+        classes, zones = visit_s.shape
+        object.__setattr__(self, "visit_s", visit_s)
+        for field, count in (
+            ("rate_per_h", classes),
+            ("pods", classes),
+            ("places", zones),
+            ("congestion_s_h", zones),
+        ):
+            checked = reals(field, getattr(self, field), (count,), low=0)
+            object.__setattr__(self, field, checked)
+
+    @property
+    def fits(self) -> bool:
+        """Whether there is a place for every pod."""
+        return bool(self.pods.sum() <= self.places.sum() * (1.0 + _TOLERANCE))
+
+
+def traffic_per_h(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the visits to each zone, shape (J,), in 1/h.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    standing
+        Pods of each class in each zone, shape (I, J).
+    """
+    visits: NDArray[np.float64] = (data.rate_per_h[:, np.newaxis] * standing).sum(axis=0)
+    return visits
+
+
+@dataclass(frozen=True)
+class ZonePlan:
+    """Where pods stand on average, and what that says of places.
+
+    Attributes
+    ----------
+    standing
+        Pods of each class in each zone, shape (I, J).
+    price_per_h
+        Robot time that one more place in each zone would save, shape (J,), in s/h.
+    """
+
+    standing: NDArray[np.float64]
+    price_per_h: NDArray[np.float64]
+
+
+def objective(data: Zones, plan: ZonePlan) -> float:
+    """Return the robot time a plan takes, in s/h.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    plan
+        Where pods stand.
+    """
+    driving = (data.rate_per_h[:, np.newaxis] * data.visit_s * plan.standing).sum()
+    traffic = traffic_per_h(data, plan.standing)
+    return float(driving + (data.congestion_s_h * traffic**2).sum())
+
+
+def violations(data: Zones, plan: ZonePlan) -> list[str]:
+    """Say what is wrong with a plan; empty if nothing is.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    plan
+        Where pods stand.
+    """
+    found = []
+    slack = _TOLERANCE * max(1.0, float(data.pods.sum()))
+    if (plan.standing < 0).any():
+        found.append("a negative number of pods")
+    if (np.abs(plan.standing.sum(axis=1) - data.pods) > slack).any():
+        found.append("not every pod stands somewhere")
+    if (plan.standing.sum(axis=0) > data.places + slack).any():
+        found.append("more pods than places in a zone")
+    return found

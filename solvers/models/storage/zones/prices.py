@@ -1,0 +1,143 @@
+r"""What a place is worth: the dual of the steady state, its bound, and the rule it gives.
+
+Let :math:`p_j \ge 0` be the price of a place, :math:`d_j = 2 \gamma_j f_j` the delay that one more
+visit causes at the traffic :math:`f_j`. As :math:`\gamma f^2 \ge \gamma f_j^2 + 2 \gamma f_j
+(f - f_j)`, every :math:`p` and every :math:`f` give the bound
+
+.. math::
+
+    \sum_i m_i u_i - \sum_j k_j p_j - \sum_j \gamma_j f_j^2, \qquad
+    u_i = \min_j r_i (t_{ij} + d_j) + p_j
+
+At the optimum it is equal to the robot time. :math:`u_i` is what a pod of class i costs per hour
+where it stands best: its worth to the rule. The rule rates the stay of a pod at a place by
+
+.. math::
+
+    travel + d_j + stay \cdot (p_j - u_i)
+
+which is 0 for the zones the plan uses and positive for all others, if travel is the average and the
+stay lasts :math:`1 / r_i`: a bargain on the way, or a pod unlike its class, tips the scales.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.storage.zones.data import ZonePlan, Zones, traffic_per_h
+
+_TINY = 2.0**-46
+"""Relative error of the dual value: a few thousand roundings."""
+
+
+@dataclass(frozen=True)
+class Prices:
+    """What the steady state says of zones and classes.
+
+    Attributes
+    ----------
+    place_per_h
+        Price of a place in each zone, shape (J,), in s/h.
+    delay_s
+        Delay that one more visit to each zone causes itself and others, shape (J,), in s.
+    worth_per_h
+        What a pod of each class costs where it stands best, shape (I,), in s/h.
+    """
+
+    place_per_h: NDArray[np.float64]
+    delay_s: NDArray[np.float64]
+    worth_per_h: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, data: Zones, plan: ZonePlan) -> Prices:
+        """Read the prices off a plan.
+
+        Parameters
+        ----------
+        data
+            The problem.
+        plan
+            A plan, the best one for the best prices.
+        """
+        delay_s = 2.0 * data.congestion_s_h * traffic_per_h(data, plan.standing)
+        place = np.maximum(plan.price_per_h, 0.0)
+        each = data.rate_per_h[:, np.newaxis] * (data.visit_s + delay_s) + place
+        return cls(place, delay_s, each.min(axis=1, initial=math.inf))
+
+
+def price_bound(data: Zones, plan: ZonePlan) -> float:
+    """Bound the robot time of every plan from below by the prices of one.
+
+    Parameters
+    ----------
+    data
+        The problem; it has zones.
+    plan
+        Any plan; the best one makes the bound equal to its robot time.
+
+    Returns
+    -------
+    The dual value, rounded down, in s/h.
+    """
+    prices = Prices.of(data, plan)
+    given = data.pods * np.where(data.pods > 0, prices.worth_per_h, 0.0)
+    paid = data.places * prices.place_per_h
+    bent = data.congestion_s_h * traffic_per_h(data, plan.standing) ** 2
+    # traffic enters twice: in the delays and in what is subtracted
+    size = math.fsum(np.abs(given)) + math.fsum(paid) + 2.0 * math.fsum(bent)
+    return math.fsum(given) - math.fsum(paid) - math.fsum(bent) - _TINY * size
+
+
+def expected_stay_h(rate_per_h: NDArray[np.float64], longest_h: float) -> NDArray[np.float64]:
+    """Expect how long a pod stays until it is wanted again.
+
+    Parameters
+    ----------
+    rate_per_h
+        Visits of each pod, any shape, in 1/h.
+    longest_h
+        No stay is taken to be longer, in h, positive: the plan will be another by then.
+
+    Returns
+    -------
+    Hours, of the same shape.
+    """
+    stay_h: NDArray[np.float64] = 1.0 / np.maximum(rate_per_h, 1.0 / longest_h)
+    return stay_h
+
+
+def place_values(
+    prices: Prices,
+    travel_s: NDArray[np.float64],
+    *,
+    zone: NDArray[np.int64],
+    pod_class: NDArray[np.int64],
+    stay_h: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Rate places for pods: travel, plus the price of the place, minus the worth of the pod.
+
+    Parameters
+    ----------
+    prices
+        Prices of the steady state.
+    travel_s
+        Robot time of storing each pod at each place now and fetching it from there, shape (P, L),
+        in s; +inf where a pod may not be put.
+    zone
+        Zone of each place, shape (L,).
+    pod_class
+        Class of each pod, shape (P,).
+    stay_h
+        How long each pod will stay, shape (P,), in h; see `expected_stay_h`.
+
+    Returns
+    -------
+    Seconds of robot time, shape (P, L): the less the better.
+    """
+    rent = prices.place_per_h[zone] - prices.worth_per_h[pod_class][:, np.newaxis]
+    values: NDArray[np.float64] = travel_s + prices.delay_s[zone] + stay_h[:, np.newaxis] * rent
+    return values

@@ -1,0 +1,45 @@
+"""Make an almost feasible plan feasible."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.storage.zones.data import Zones
+
+
+def repaired(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Remove the inexactness of an interior-point solution.
+
+    Negative numbers become 0, rows are scaled to the number of pods, and what a zone has too many
+    is moved to zones with room, lowest index first.
+
+    Parameters
+    ----------
+    data
+        The problem; every pod fits.
+    standing
+        Pods of each class in each zone, shape (I, J); about right.
+
+    Returns
+    -------
+    A feasible table, shape (I, J).
+    """
+    fixed = np.maximum(standing, 0.0)
+    total = fixed.sum(axis=1)
+    some = total > 0
+    fixed[some] *= (data.pods[some] / total[some])[:, np.newaxis]
+    fixed[~some] = data.pods[~some, np.newaxis] * (data.places / max(data.places.sum(), 1.0))
+    room = data.places - fixed.sum(axis=0)
+    for full in np.flatnonzero(room < 0).tolist():
+        for free in np.flatnonzero(room > 0).tolist():
+            amount = min(-room[full], room[free])
+            if amount <= 0:
+                break
+            # taken from all classes in proportion
+            part = fixed[:, full] * (amount / fixed[:, full].sum())
+            fixed[:, full] -= part
+            fixed[:, free] += part
+            room[full] += amount
+            room[free] -= amount
+    return fixed

@@ -1,0 +1,138 @@
+r"""The problem: free robots, waiting tasks, stations with queues, due times.
+
+.. math::
+
+    \min \sum_{rt} \bigl(arrive_{rt} + w \max(0, arrive_{rt} - due_t)\bigr) x_{rt}
+    + \sum_t leave_t \Bigl(1 - \sum_r x_{rt}\Bigr)
+    + \sum_s \sum_{k=1}^{n_s} (queue_s + k - 1)\, service_s
+
+with :math:`n_s \le room_s` the number of robots sent to station s. The k-th of them finds
+:math:`queue_s + k - 1` pods before it, so that each further robot to the same station costs more:
+stations are balanced by what imbalance costs. The waiting is an estimate for the whole group and
+does not enter the lateness, which keeps the cost of a pair fixed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.checks import integers, number, reals
+from solvers.models.tasks.matching import Matching
+from solvers.models.tasks.matching import objective as matching_objective
+from solvers.models.tasks.matching import violations as matching_violations
+from solvers.models.tasks.matching.data import LEFT
+from solvers.models.tasks.network import costs
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Free robots, waiting tasks and stations.
+
+    Parameters
+    ----------
+    arrive_s
+        Time until each robot would be at the station with the pod of each task, shape (R, T), in
+        s; +inf where it may not do it.
+    leave_s
+        What it costs to leave each task for later, shape (T,), in s; +inf where it must be done.
+    due_s
+        Time until each task should be at its station, shape (T,), in s; negative when it is late
+        already, +inf without a due time.
+    station
+        Station of each task, shape (T,).
+    queue
+        Pods at each station or on their way to it, shape (S,).
+    service_s
+        Time a pod keeps each station, shape (S,), in s.
+    room
+        Most robots that may be sent to each station now, shape (S,).
+    late_weight
+        Seconds of travel that a second of lateness is worth. Default 1.
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+
+    arrive_s: NDArray[np.float64]
+    leave_s: NDArray[np.float64]
+    due_s: NDArray[np.float64]
+    station: NDArray[np.int64]
+    queue: NDArray[np.int64]
+    service_s: NDArray[np.float64]
+    room: NDArray[np.int64]
+    late_weight: float = 1.0
+
+    def __post_init__(self) -> None:
+        arrive_s = costs("arrive_s", self.arrive_s, (None, None), low=0)
+        tasks = arrive_s.shape[1]
+        service_s = reals("service_s", self.service_s, (None,), low=0)
+        stations = len(service_s)
+        checked = {
+            "arrive_s": arrive_s,
+            "leave_s": costs("leave_s", self.leave_s, (tasks,)),
+            "due_s": costs("due_s", self.due_s, (tasks,)),
+            "station": integers("station", self.station, (tasks,), low=0, high=stations - 1),
+            "queue": integers("queue", self.queue, (stations,), low=0),
+            "service_s": service_s,
+            "room": integers("room", self.room, (stations,), low=0),
+            "late_weight": number("late_weight", self.late_weight, low=0),
+        }
+        for field, value in checked.items():
+            object.__setattr__(self, field, value)
+
+    @property
+    def pairs(self) -> Matching:
+        """The problem without stations: every pair at its travel and lateness."""
+        late_s = np.maximum(0.0, self.arrive_s - np.where(np.isinf(self.due_s), 0.0, self.due_s))
+        counted = self.late_weight * np.where(np.isinf(self.due_s) | np.isinf(late_s), 0.0, late_s)
+        return Matching(self.arrive_s + counted, self.leave_s)
+
+    def waiting_s(self, sent: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Return the waiting of the robots sent to each station, shape (S,), in s.
+
+        Parameters
+        ----------
+        sent
+            Robots sent to each station, shape (S,).
+        """
+        waiting: NDArray[np.float64] = self.service_s * (
+            sent * self.queue + sent * (sent - 1) / 2.0
+        )
+        return waiting
+
+
+def objective(data: Balance, robot: NDArray[np.int64]) -> float:
+    """Return travel, lateness, waiting and the cost of what is left, in s.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    robot
+        Robot of each task, or `LEFT`, shape (T,).
+    """
+    sent = np.bincount(data.station[robot != LEFT], minlength=len(data.room))
+    return matching_objective(data.pairs, robot) + float(data.waiting_s(sent).sum())
+
+
+def violations(data: Balance, robot: NDArray[np.int64]) -> list[str]:
+    """Say what is wrong with a choice of robots; empty if nothing is.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    robot
+        Robot of each task, or `LEFT`, shape (T,).
+    """
+    found = matching_violations(data.pairs, robot)
+    if robot.shape == data.station.shape:
+        sent = np.bincount(data.station[robot != LEFT], minlength=len(data.room))
+        if (sent > data.room).any():
+            found.append("too many robots for a station")
+    return found

@@ -1,0 +1,105 @@
+r"""Balanced dispatch as a minimum-cost flow.
+
+Robots send one unit each: to a task and on to its station, or straight to the sink (idle). From
+station s to the sink lead arcs of capacity 1 with costs :math:`(queue_s + k - 1) service_s`,
+:math:`k = 1, 2, \dots`; as they rise, the cheapest are used first and add up to the waiting.
+Leaving a task is paid in advance and given back on the arc from the task to its station; a task
+that must be done keeps the unit, and its station sends another.
+"""
+
+from __future__ import annotations
+
+import math
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from solvers.models.tasks.balance.data import Balance, objective
+from solvers.models.tasks.matching.data import LEFT
+from solvers.models.tasks.network import Network, min_cost_flow
+
+
+def solve(
+    data: Balance,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: NDArray[np.int64] | None = None,
+) -> Solution[NDArray[np.int64]]:
+    """Find the robot of each task.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    limits, seed, start
+        Not needed: the algorithm is polynomial, deterministic and starts from nothing.
+
+    Returns
+    -------
+    The robot of each task, or `LEFT`, shape (T,); work in arcs.
+    """
+    begin = perf_counter()
+    pair_s = data.pairs.travel_s
+    pair_robot, pair_task = np.nonzero(np.isfinite(pair_s))
+    network = _network(data, pair_s, pair_robot, pair_task)
+    built = perf_counter()
+    flow = min_cost_flow(network)
+    if flow is None:
+        wall_s, build_s = perf_counter() - begin, built - begin
+        return Solution(
+            None, math.inf, math.inf, Status.INFEASIBLE, "min_cost_flow", wall_s, build_s
+        )
+    robot = np.full(len(data.leave_s), LEFT, np.int64)
+    used = flow.units[: len(pair_task)] > 0
+    robot[pair_task[used]] = pair_robot[used]
+    value = objective(data, robot)
+    paid = math.fsum(data.leave_s[np.isfinite(data.leave_s)])
+    return Solution(
+        robot,
+        value,
+        min(paid + flow.bound, value),
+        Status.OPTIMAL,
+        "min_cost_flow",
+        perf_counter() - begin,
+        built - begin,
+        flow.work,
+    )
+
+
+def _network(
+    data: Balance,
+    pair_s: NDArray[np.float64],
+    pair_robot: NDArray[np.int64],
+    pair_task: NDArray[np.int64],
+) -> Network:
+    """Lay out robots, tasks, stations and the sink; the first arcs are the pairs."""
+    robots, tasks = pair_s.shape
+    stations = len(data.room)
+    of_task, of_station = robots + np.arange(tasks), robots + tasks + np.arange(stations)
+    sink = robots + tasks + stations
+    must = np.isinf(data.leave_s)
+    may = np.flatnonzero(~must)
+    supply = np.zeros(sink + 1, np.int64)
+    supply[:robots] = 1
+    supply[of_task[must]] = -1
+    np.add.at(supply, of_station[data.station[must]], 1)
+    supply[sink] = -robots
+
+    most = np.minimum(data.room, np.bincount(data.station, minlength=stations))
+    last = np.repeat(np.arange(stations), most)
+    rank = np.arange(len(last)) - np.repeat(np.cumsum(most) - most, most)
+    arcs = (
+        (pair_robot, of_task[pair_task], pair_s[pair_robot, pair_task]),
+        (np.arange(robots), np.full(robots, sink), np.zeros(robots)),
+        (of_task[may], of_station[data.station[may]], -data.leave_s[may]),
+        (
+            of_station[last],
+            np.full(len(last), sink),
+            (data.queue[last] + rank) * data.service_s[last],
+        ),
+    )
+    tail, head, cost = (np.concatenate(part) for part in zip(*arcs, strict=True))
+    return Network(tail, head, np.ones(len(tail), np.int64), cost, supply)

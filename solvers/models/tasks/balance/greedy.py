@@ -1,0 +1,63 @@
+"""Tasks one after another, the most pressing first, each by the robot that is there first."""
+
+from __future__ import annotations
+
+import math
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from solvers.models.tasks.balance.data import Balance, objective, violations
+from solvers.models.tasks.matching.data import LEFT
+
+
+def solve(
+    data: Balance,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: NDArray[np.int64] | None = None,
+) -> Solution[NDArray[np.int64]]:
+    """Let tasks choose their robots by due time; those that must be done come first.
+
+    A task is left if its travel, lateness and the waiting it adds cost more than leaving it. The
+    bound lets robots do any number of tasks and stations start with the queue they have.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    limits, seed, start
+        Not needed.
+
+    Returns
+    -------
+    The robot of each task, or `LEFT`, shape (T,); ties go to the lowest index. Status LIMIT if a
+    task is left that must be done.
+    """
+    begin = perf_counter()
+    pair_s = data.pairs.travel_s.copy()
+    waiting_s = data.queue * data.service_s
+    cheapest = pair_s.min(axis=0, initial=math.inf) + waiting_s[data.station]
+    bound = float(np.minimum(cheapest, data.leave_s).sum())
+    robot = np.full(len(data.leave_s), LEFT, np.int64)
+    sent = np.zeros(len(data.room), np.int64)
+    for task in np.lexsort((data.due_s, np.isfinite(data.leave_s))).tolist():
+        station = int(data.station[task])
+        if sent[station] >= data.room[station] or not len(pair_s):
+            continue
+        best = int(pair_s[:, task].argmin())
+        added = waiting_s[station] + sent[station] * data.service_s[station]
+        cost = pair_s[best, task] + added
+        if math.isfinite(cost) and cost < data.leave_s[task]:
+            robot[task] = best
+            sent[station] += 1
+            pair_s[best] = math.inf
+    wall_s, work = perf_counter() - begin, float(pair_s.size)
+    if violations(data, robot):
+        status = Status.LIMIT if math.isfinite(bound) else Status.INFEASIBLE
+        return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, work)
+    value = objective(data, robot)
+    return Solution(robot, value, min(bound, value), Status.FEASIBLE, "rule", wall_s, 0.0, work)

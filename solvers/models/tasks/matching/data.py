@@ -1,0 +1,88 @@
+r"""The problem: robots that are free, tasks that wait.
+
+.. math::
+
+    \min \sum_{rt} travel_{rt}\, x_{rt} + \sum_t leave_t \Bigl(1 - \sum_r x_{rt}\Bigr), \quad
+    \sum_r x_{rt} \le 1, \quad \sum_t x_{rt} \le 1
+
+A task that stays behind costs what waiting for another robot is worth; where that is infinite the
+task must be done. Robots may stay idle. (The Hungarian dispatch of the literature, with tasks that
+may wait.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.tasks.network import costs
+
+LEFT = -1
+"""The robot of a task that is left for later."""
+
+
+@dataclass(frozen=True)
+class Matching:
+    """Free robots and waiting tasks.
+
+    Parameters
+    ----------
+    travel_s
+        Time each robot needs to each task, shape (R, T), in s; +inf where it may not do it.
+    leave_s
+        What it costs to leave each task for later, shape (T,), in s; +inf where it must be done.
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+
+    travel_s: NDArray[np.float64]
+    leave_s: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        travel_s = costs("travel_s", self.travel_s, (None, None), low=0)
+        object.__setattr__(self, "travel_s", travel_s)
+        object.__setattr__(self, "leave_s", costs("leave_s", self.leave_s, travel_s.shape[1:]))
+
+
+def objective(data: Matching, robot: NDArray[np.int64]) -> float:
+    """Return travel plus the cost of what is left, in s.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    robot
+        Robot of each task, or `LEFT`, shape (T,).
+    """
+    done = robot != LEFT
+    travel = data.travel_s[robot[done], np.flatnonzero(done)].sum()
+    return float(travel + data.leave_s[~done].sum())
+
+
+def violations(data: Matching, robot: NDArray[np.int64]) -> list[str]:
+    """Say what is wrong with a choice of robots; empty if nothing is.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    robot
+        Robot of each task, or `LEFT`, shape (T,).
+    """
+    robots, tasks = data.travel_s.shape
+    if robot.shape != (tasks,) or not ((robot >= LEFT) & (robot < robots)).all():
+        return ["not one robot, or none, for every task"]
+    done = robot != LEFT
+    found = []
+    if len(np.unique(robot[done])) < done.sum():
+        found.append("a robot with two tasks")
+    if np.isinf(data.travel_s[robot[done], np.flatnonzero(done)]).any():
+        found.append("a robot with a task it may not do")
+    if np.isinf(data.leave_s[~done]).any():
+        found.append("a task left that must be done")
+    return found

@@ -1,0 +1,59 @@
+"""The nearest pair first."""
+
+from __future__ import annotations
+
+import math
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from solvers.models.tasks.matching.data import LEFT, Matching, objective, violations
+
+
+def solve(
+    data: Matching,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: NDArray[np.int64] | None = None,
+) -> Solution[NDArray[np.int64]]:
+    """Match the pair that saves most against leaving the task, until none saves anything.
+
+    Tasks that must be done come first. The bound lets robots do any number of tasks.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    limits, seed, start
+        Not needed.
+
+    Returns
+    -------
+    The robot of each task, or `LEFT`, shape (T,); ties go to the lowest robot and task. Status
+    LIMIT if a task is left that must be done.
+    """
+    begin = perf_counter()
+    robots, tasks = data.travel_s.shape
+    robot = np.full(tasks, LEFT, np.int64)
+    idle = np.ones(robots, bool)
+    must = np.isinf(data.leave_s)
+    gain = np.where(must, 0.0, data.leave_s) - data.travel_s
+    for group in (must, ~must):
+        order = np.argsort(-np.where(group, gain, -math.inf), axis=None, kind="stable")
+        for one, task in zip(*np.unravel_index(order, gain.shape), strict=True):
+            if not group[task] or gain[one, task] == -math.inf:
+                break
+            if idle[one] and robot[task] == LEFT and (must[task] or gain[one, task] > 0):
+                robot[task] = one
+                idle[one] = False
+    best = np.minimum(data.travel_s.min(axis=0, initial=math.inf), data.leave_s)
+    bound, work = float(best.sum()), float(gain.size)
+    wall_s = perf_counter() - begin
+    if violations(data, robot):
+        status = Status.LIMIT if math.isfinite(bound) else Status.INFEASIBLE
+        return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, work)
+    value = objective(data, robot)
+    return Solution(robot, value, min(bound, value), Status.FEASIBLE, "rule", wall_s, 0.0, work)

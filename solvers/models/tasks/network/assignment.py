@@ -1,0 +1,165 @@
+r"""The linear assignment problem on a table of costs, rows at most as many as columns.
+
+.. math::
+
+    \min \sum_{ij} c_{ij} x_{ij}, \quad \sum_j x_{ij} = 1, \quad \sum_i x_{ij} \le 1
+
+Dual: :math:`\max \sum_i u_i + \sum_j v_j` over :math:`u_i + v_j \le c_{ij}`, :math:`v \le 0`
+(Burkard, Dell'Amico, Martello: Assignment Problems, chapter 4). Every :math:`v \le 0` gives a bound
+with :math:`u_i = \min_j c_{ij} - v_j`; an optimal matching gives the best one.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from solvers.models.tasks.network.flow import Network, min_cost_flow
+
+Solver = Literal["scipy", "min_cost_flow"]
+"""Shortest augmenting paths on real costs (SciPy), or cost scaling on whole ones (OR-Tools)."""
+
+_TINY = 2.0**-50
+"""Relative error of a sum of two numbers, with room to spare."""
+
+
+class Assigned(NamedTuple):
+    """A column for every row.
+
+    Attributes
+    ----------
+    column
+        Column of each row, shape (M,).
+    bound
+        No assignment costs less.
+    work
+        Entries of the table: the unit in which back ends for assignments count their work.
+    """
+
+    column: NDArray[np.int64]
+    bound: float
+    work: float
+
+
+def assign(cost: NDArray[np.float64], solver: Solver = "scipy") -> Assigned | None:
+    """Match every row with a column of its own at the least total cost.
+
+    Parameters
+    ----------
+    cost
+        Shape (M, N); +inf forbids a pair.
+    solver
+        Who solves it. Default: SciPy.
+
+    Returns
+    -------
+    The best assignment, or None if there is none.
+    """
+    rows, columns = cost.shape
+    if rows > columns:
+        return None
+    if not rows:
+        return Assigned(np.zeros(0, np.int64), 0.0, 0.0)
+    column = _by_scipy(cost) if solver == "scipy" else _by_flow(cost)
+    if column is None:
+        return None
+    return Assigned(column, assignment_bound(cost, column), float(cost.size))
+
+
+def greedy_assign(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
+    """Take the cheapest pair left until every row has a column; ties go to the lowest indices.
+
+    Parameters
+    ----------
+    cost
+        Shape (M, N); +inf forbids a pair.
+
+    Returns
+    -------
+    Column of each row, or None if greed ends in a dead end (or there is no assignment).
+    """
+    rows, columns = cost.shape
+    column = np.full(rows, -1, np.int64)
+    taken = np.zeros(columns, bool)
+    left = rows
+    flat = cost.ravel()
+    # a stable sort, so that ties keep the order of the indices
+    for pair in np.argsort(flat, kind="stable").tolist():
+        row, place = divmod(pair, columns)
+        if math.isinf(flat[pair]) or not left:
+            break
+        if column[row] < 0 and not taken[place]:
+            column[row] = place
+            taken[place] = True
+            left -= 1
+    return None if left else column
+
+
+def assignment_bound(cost: NDArray[np.float64], column: NDArray[np.int64]) -> float:
+    """Bound the cost of every assignment from below, given one that should be the best.
+
+    The prices `v` of the columns are the lengths of the shortest alternating paths (Bellman and
+    Ford on the rows); columns without a row have price 0. Whatever the prices are, the bound holds.
+
+    Parameters
+    ----------
+    cost
+        Shape (M, N); +inf forbids a pair.
+    column
+        Column of each row, shape (M,).
+
+    Returns
+    -------
+    The dual value, rounded down.
+    """
+    rows = len(column)
+    if not rows:
+        return 0.0
+    price = np.zeros(cost.shape[1])
+    exchange = cost[:, column] - cost[np.arange(rows), column][:, np.newaxis]
+    shortest = np.zeros(rows)
+    for _ in range(rows):
+        shorter = np.minimum(shortest, (shortest[:, np.newaxis] + exchange).min(axis=0))
+        if np.array_equal(shorter, shortest):
+            break
+        shortest = shorter
+    price[column] = shortest
+    value = (cost - price).min(axis=1)
+    error = _TINY * (math.fsum(np.abs(value)) + math.fsum(np.abs(price)))
+    return math.fsum(value) + math.fsum(price) - error
+
+
+def _by_scipy(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
+    try:
+        _, column = linear_sum_assignment(cost)
+    except ValueError:  # SciPy's word for "infeasible"
+        return None
+    return np.asarray(column, np.int64)
+
+
+def _by_flow(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
+    """One unit from every row through the columns to a sink."""
+    rows, columns = cost.shape
+    row, column = np.nonzero(np.isfinite(cost))
+    sink = rows + columns
+    supply = np.zeros(sink + 1, np.int64)
+    supply[:rows] = 1
+    supply[sink] = -rows
+    network = Network(
+        tail=np.concatenate([row, np.arange(rows, sink)]),
+        head=np.concatenate([row * 0 + rows + column, np.full(columns, sink)]),
+        capacity=np.ones(len(row) + columns, np.int64),
+        cost=np.concatenate([cost[row, column], np.zeros(columns)]),
+        supply=supply,
+    )
+    flow = min_cost_flow(network)
+    if flow is None:
+        return None
+    used = np.flatnonzero(flow.units[: len(row)])
+    chosen = np.empty(rows, np.int64)
+    chosen[row[used]] = column[used]
+    return chosen

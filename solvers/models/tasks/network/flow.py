@@ -1,0 +1,155 @@
+r"""Minimum-cost flow with supplies on nodes and capacities on arcs.
+
+.. math::
+
+    \min \sum_a c_a f_a, \quad 0 \le f_a \le q_a, \quad
+    \sum_{a \text{ out of } v} f_a - \sum_{a \text{ into } v} f_a = b_v
+
+For any potentials :math:`\pi` (Ahuja, Magnanti, Orlin: Network Flows, section 9.4)
+
+.. math::
+
+    \sum_a q_a \min(0,\; c_a + \pi_{tail(a)} - \pi_{head(a)}) - \sum_v b_v \pi_v
+
+bounds the cost from below, and shortest distances in the residual network of the best flow make
+the bound equal to its cost.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from ortools.graph.python import min_cost_flow as ortools_flow  # type: ignore[import-untyped]
+
+_LARGEST_COST = 2.0**40
+"""Largest whole cost handed to OR-Tools, which multiplies costs by the number of nodes."""
+
+_FINEST = 1e6
+"""Parts of a unit of cost that are told apart at most."""
+
+_TINY = 2.0**-50
+
+
+@dataclass(frozen=True)
+class Network:
+    """A directed graph with costs.
+
+    Parameters
+    ----------
+    tail, head
+        Ends of each arc, shape (A,).
+    capacity
+        Units an arc can carry, shape (A,).
+    cost
+        Cost per unit, shape (A,); any sign, finite.
+    supply
+        Units that enter the network at each node, negative where they leave, shape (V,); they
+        add up to 0.
+    """
+
+    tail: NDArray[np.int64]
+    head: NDArray[np.int64]
+    capacity: NDArray[np.int64]
+    cost: NDArray[np.float64]
+    supply: NDArray[np.int64]
+
+
+class Flow(NamedTuple):
+    """A cheapest flow.
+
+    Attributes
+    ----------
+    units
+        Units on each arc, shape (A,).
+    bound
+        No flow costs less.
+    work
+        Arcs: the unit in which the back end counts its work.
+    """
+
+    units: NDArray[np.int64]
+    bound: float
+    work: float
+
+
+def min_cost_flow(network: Network) -> Flow | None:
+    """Find a cheapest flow with OR-Tools' cost-scaling push-relabel algorithm.
+
+    Costs are rounded to whole millionths (coarser if they are huge), on which the solver is exact;
+    the bound is one for the unrounded costs.
+
+    Parameters
+    ----------
+    network
+        The graph, its costs and supplies.
+
+    Returns
+    -------
+    A cheapest flow, or None if no flow meets all supplies.
+    """
+    if not len(network.tail):
+        feasible = not network.supply.any()
+        return Flow(np.zeros(0, np.int64), 0.0, 0.0) if feasible else None
+    largest = float(np.abs(network.cost).max())
+    scale = min(_FINEST, _LARGEST_COST / largest) if largest else 1.0
+    whole = np.rint(network.cost * scale).astype(np.int64)
+    solver = ortools_flow.SimpleMinCostFlow()
+    arcs = solver.add_arcs_with_capacity_and_unit_cost(
+        network.tail.astype(np.int32), network.head.astype(np.int32), network.capacity, whole
+    )
+    solver.set_nodes_supplies(np.arange(len(network.supply), dtype=np.int32), network.supply)
+    status = solver.solve()
+    if status == solver.INFEASIBLE:
+        return None
+    if status != solver.OPTIMAL:
+        raise RuntimeError(f"OR-Tools ended a minimum-cost flow with {status}")
+    units = np.asarray(solver.flows(arcs), np.int64)
+    potential = _distances(network, units, whole) / scale
+    return Flow(units, flow_bound(network, potential), float(len(network.tail)))
+
+
+def flow_bound(network: Network, potential: NDArray[np.float64]) -> float:
+    """Bound the cost of every flow from below by potentials; any will do, the best are tight.
+
+    Parameters
+    ----------
+    network
+        The graph, its costs and supplies.
+    potential
+        One per node, shape (V,).
+
+    Returns
+    -------
+    The dual value, rounded down.
+    """
+    tail, head = potential[network.tail], potential[network.head]
+    saved = np.minimum(0.0, network.cost + tail - head) * network.capacity
+    given = network.supply * potential
+    size = (np.abs(network.cost) + np.abs(tail) + np.abs(head)) * network.capacity
+    error = _TINY * (math.fsum(size) + math.fsum(np.abs(given)))
+    return math.fsum(saved) - math.fsum(given) - error
+
+
+def _distances(
+    network: Network, units: NDArray[np.int64], whole: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Return shortest distances from anywhere in the residual network (Bellman and Ford)."""
+    forward, backward = units < network.capacity, units > 0
+    tail = np.concatenate([network.tail[forward], network.head[backward]])
+    head = np.concatenate([network.head[forward], network.tail[backward]])
+    length = np.concatenate([whole[forward], -whole[backward]])
+    # arcs grouped by their head, so that one reduction finds the shortest way into each
+    order = np.argsort(head, kind="stable")
+    tail, head, length = tail[order], head[order], length[order]
+    reached, first = np.unique(head, return_index=True)
+    distance = np.zeros(len(network.supply), np.int64)
+    for _ in range(len(distance)):
+        shorter = np.minimum(distance[reached], np.minimum.reduceat(distance[tail] + length, first))
+        if np.array_equal(shorter, distance[reached]):
+            break
+        distance[reached] = shorter
+    return distance.astype(np.float64)

@@ -1,0 +1,94 @@
+r"""A bound by relaxing routes to pairs: every task needs somebody who comes from somewhere.
+
+Forget that places are used once, that chains must begin at a robot, and all times but the earliest
+ones. What is left is an assignment: task t follows robot r, or task o, or is left. With
+:math:`s_o = \min_l store_{ol}`, following o costs
+
+.. math::
+
+    \min_l (store_{ol} + fetch_{lt}) - s_o + bring_t + s_t + w \max(0, e_t - due_t)
+
+where :math:`e_t` is the earliest arrival over all chains. The first difference is what the drive
+to t adds to storing the pod of o somewhere; storing itself is counted with o.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.tasks.network import assign
+from solvers.models.tasks.sequence.candidates import shortest_over_places
+from solvers.models.tasks.sequence.data import SLACK_S, Sequence
+
+_ROUNDING = 2.0**-40
+
+
+def relaxed_bound(data: Sequence) -> float:
+    """Bound the cost of all routes from below.
+
+    Parameters
+    ----------
+    data
+        The problem.
+
+    Returns
+    -------
+    The bound, in s; +inf if it shows that there are no routes.
+    """
+    first_s, first_extra_s, stowing_s = _from_robots(data)
+    next_s, next_extra_s, storing_s = _from_tasks(data)
+    arrive_s = _earliest(data, first_s, next_s)
+    # who arrives too late, or finds no place, cannot do the task
+    possible = (arrive_s <= data.latest_s + SLACK_S) & np.isfinite(arrive_s + storing_s)
+    timed = possible & np.isfinite(data.due_s)
+    late_s = np.where(possible, 0.0, math.inf)
+    late_s[timed] = data.late_weight * np.maximum(0.0, arrive_s[timed] - data.due_s[timed])
+    later = np.full((data.tasks, data.tasks), math.inf)
+    np.fill_diagonal(later, data.skip_s)
+    own_s = (data.bring_s + np.where(np.isinf(storing_s), 0.0, storing_s) + late_s)[:, np.newaxis]
+    pairs = np.hstack([first_extra_s.T + own_s, next_extra_s.T + own_s, later])
+    assigned = assign(pairs)
+    if assigned is None or np.isinf(stowing_s).any():
+        return math.inf
+    total = assigned.bound + math.fsum(stowing_s)
+    return total - _ROUNDING * abs(total)
+
+
+def _from_robots(
+    data: Sequence,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return when robots can be at pods, what that adds to storing, and storing itself."""
+    through_s = shortest_over_places(data.stow_s, data.fetch_s)
+    stowing_s = np.where(data.carrying, data.stow_s.min(axis=1, initial=math.inf), 0.0)
+    way_s = np.where(data.carrying[:, np.newaxis], through_s, data.reach_s)
+    known = np.where(np.isinf(stowing_s), 0.0, stowing_s)[:, np.newaxis]
+    return data.ready_s[:, np.newaxis] + way_s, way_s - known, stowing_s
+
+
+def _from_tasks(
+    data: Sequence,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return the time from one station to the next pod, what it adds, and storing itself."""
+    through_s = shortest_over_places(data.store_s, data.fetch_s)
+    np.fill_diagonal(through_s, math.inf)
+    storing_s = data.store_s.min(axis=1, initial=math.inf)
+    known = np.where(np.isinf(storing_s), 0.0, storing_s)[:, np.newaxis]
+    return data.service_s[:, np.newaxis] + through_s, through_s - known, storing_s
+
+
+def _earliest(
+    data: Sequence, first_s: NDArray[np.float64], next_s: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the earliest arrival of each pod over all chains of tasks, shape (T,), in s."""
+    start_s = np.maximum(first_s.min(axis=0, initial=math.inf) + data.bring_s, data.earliest_s)
+    arrive_s: NDArray[np.float64] = start_s
+    for _ in range(data.tasks):
+        chained = (arrive_s[:, np.newaxis] + next_s).min(axis=0, initial=math.inf) + data.bring_s
+        sooner = np.minimum(arrive_s, np.maximum(chained, data.earliest_s))
+        if np.array_equal(sooner, arrive_s):
+            break
+        arrive_s = sooner
+    return arrive_s

@@ -1,0 +1,112 @@
+"""Routes by CP-SAT, limited by deterministic time."""
+
+from __future__ import annotations
+
+import math
+from time import perf_counter
+
+import numpy as np
+from ortools.sat.python import cp_model
+
+from solvers.models.backends.cp_sat import check_guard, configure
+from solvers.models.checks import require
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from solvers.models.tasks.sequence.bound import relaxed_bound
+from solvers.models.tasks.sequence.candidates import Ways, every_way
+from solvers.models.tasks.sequence.circuit import Circuit
+from solvers.models.tasks.sequence.data import NONE, TICKS_PER_S, Routes, Sequence
+from solvers.models.tasks.sequence.schedule import objective, violations
+
+_STATUS = {
+    cp_model.OPTIMAL: Status.OPTIMAL,
+    cp_model.FEASIBLE: Status.FEASIBLE,
+    cp_model.INFEASIBLE: Status.INFEASIBLE,
+    cp_model.UNKNOWN: Status.LIMIT,
+}
+
+
+def solve(
+    data: Sequence,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: Routes | None = None,
+    ways: Ways | None = None,
+) -> Solution[Routes]:
+    """Find the routes.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    limits
+        `deterministic_s` and `gap`. Default: to optimality.
+    seed
+        Seed of the solver. Default 0.
+    start
+        Feasible routes to start from. Default: none.
+    ways
+        Ways to look at; see `short_ways` for many tasks. Default: all.
+
+    Returns
+    -------
+    The routes, never worse than the start. The bound is one for all ways: that of
+    `relaxed_bound`, or the solver's if it is better and has looked at all. With fewer ways the best
+    routes over them are FEASIBLE unless the bound proves more, and to find none is LIMIT.
+
+    Raises
+    ------
+    ModelError
+        If the start is not feasible.
+    WallGuardError
+        If the wall-clock guard ran out.
+    """
+    begin = perf_counter()
+    if start is not None:
+        broken = violations(data, start)
+        require(not broken, "start", "; ".join(broken))
+    if not data.robots:
+        return _without_robots(data, begin)
+    looked_at = every_way(data) if ways is None else ways
+    circuit = Circuit(data, looked_at)
+    if start is not None:
+        circuit.hint(start)
+    solver = cp_model.CpSolver()
+    configure(solver, limits, seed)
+    built = perf_counter()
+    ended = solver.solve(circuit.model)
+    check_guard(solver, ended, limits)
+    status, work = _STATUS[ended], float(solver.deterministic_time)
+    routes = circuit.read(solver) if status in (Status.OPTIMAL, Status.FEASIBLE) else None
+    if routes is None and start is not None:
+        # the limit came before the solver had even read the start
+        routes, status = start, Status.FEASIBLE
+    value = math.inf if routes is None else objective(data, routes)
+    bound = relaxed_bound(data)
+    if not looked_at.complete:
+        status = _without_proof(status, value, bound, limits)
+    elif status is Status.INFEASIBLE:
+        bound = math.inf
+    else:
+        bound = max(bound, solver.best_objective_bound / TICKS_PER_S)
+    wall_s, build_s = perf_counter() - begin, built - begin
+    return Solution(routes, value, min(bound, value), status, "cp_sat", wall_s, build_s, work)
+
+
+def _without_proof(status: Status, value: float, bound: float, limits: Limits) -> Status:
+    """Return what a search over some ways says about all."""
+    if status is Status.INFEASIBLE:
+        return Status.LIMIT
+    if status is Status.OPTIMAL and value - bound > limits.gap * abs(value):
+        return Status.FEASIBLE
+    return status
+
+
+def _without_robots(data: Sequence, begin: float) -> Solution[Routes]:
+    """Leave everything."""
+    routes = Routes((), np.full(data.tasks, NONE, np.int64), np.zeros(0, np.int64))
+    value = objective(data, routes)
+    wall_s = perf_counter() - begin
+    if math.isinf(value):
+        return Solution(None, math.inf, math.inf, Status.INFEASIBLE, "cp_sat", wall_s)
+    return Solution(routes, value, value, Status.OPTIMAL, "cp_sat", wall_s)

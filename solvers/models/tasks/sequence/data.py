@@ -1,0 +1,147 @@
+"""The problem: robots, tasks and free places, with the times between them.
+
+A *task* is to fetch a pod from where it stands, to bring it to its station, to have it served, and
+to store it at a free place. A robot does tasks one after another; one that carries a pod at the
+beginning stores that first. Where a pod is stored decides how far it is to the next one, so places
+are chosen together with the order of the tasks: the generalised travelling-salesman view of
+Gharehgozli and Zaerpour 2020, with several robots and time windows.
+
+Places that fetched pods leave behind are not offered within the same plan: the plan is made anew
+before they matter (rolling horizon). Stations have no queue here; their rhythm is in the windows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.checks import flags, integers, reals
+from solvers.models.tasks.network import costs
+
+NONE = -1
+"""The place of a pod that is not moved."""
+
+TICKS_PER_S = 1000
+"""Times are rounded to milliseconds at the door, so that all back ends solve the same problem."""
+
+SLACK_S = 1e-7
+"""Rounding of sums of whole milliseconds."""
+
+
+@dataclass(frozen=True)
+class Sequence:
+    """Robots, tasks and free places.
+
+    Times are rounded to milliseconds; +inf forbids a way.
+
+    Parameters
+    ----------
+    ready_s
+        When each robot can begin, shape (R,), in s.
+    carrying
+        Whether each robot carries a pod, shape (R,).
+    reach_s
+        Empty drive of each robot to the pod of each task, shape (R, T), in s; not read for robots
+        that carry a pod.
+    stow_s
+        Drive of each robot with its pod to each place, set-down included, shape (R, L), in s; not
+        read for robots that carry none.
+    fetch_s
+        Empty drive from each place to the pod of each task, shape (L, T), in s.
+    bring_s
+        Lift and drive of the pod of each task to its station, shape (T,), in s.
+    service_s
+        Time at the station, shape (T,), in s.
+    store_s
+        Drive from the station of each task to each place, set-down included, shape (T, L), in s.
+    earliest_s, latest_s
+        Window for the arrival at the station, shape (T,), in s; robots wait for the earliest time,
+        and after the latest (+inf: never) the task cannot be done.
+    due_s
+        When the pod should be there, shape (T,), in s; +inf without a due time.
+    skip_s
+        What it costs to leave each task for later, shape (T,), in s; +inf where it must be done.
+    late_weight
+        Seconds of driving that a second of lateness is worth, whole. Default 1.
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+
+    ready_s: NDArray[np.float64]
+    carrying: NDArray[np.bool_]
+    reach_s: NDArray[np.float64]
+    stow_s: NDArray[np.float64]
+    fetch_s: NDArray[np.float64]
+    bring_s: NDArray[np.float64]
+    service_s: NDArray[np.float64]
+    store_s: NDArray[np.float64]
+    earliest_s: NDArray[np.float64]
+    latest_s: NDArray[np.float64]
+    due_s: NDArray[np.float64]
+    skip_s: NDArray[np.float64]
+    late_weight: int = 1
+
+    def __post_init__(self) -> None:
+        ready_s = reals("ready_s", self.ready_s, (None,), low=0)
+        bring_s = reals("bring_s", self.bring_s, (None,), low=0)
+        fetch_s = costs("fetch_s", self.fetch_s, (None, len(bring_s)), low=0)
+        robots, tasks, places = len(ready_s), len(bring_s), len(fetch_s)
+        checked = {
+            "ready_s": ready_s,
+            "reach_s": costs("reach_s", self.reach_s, (robots, tasks), low=0),
+            "stow_s": costs("stow_s", self.stow_s, (robots, places), low=0),
+            "fetch_s": fetch_s,
+            "bring_s": bring_s,
+            "service_s": reals("service_s", self.service_s, (tasks,), low=0),
+            "store_s": costs("store_s", self.store_s, (tasks, places), low=0),
+            "earliest_s": reals("earliest_s", self.earliest_s, (tasks,), low=0),
+            "latest_s": costs("latest_s", self.latest_s, (tasks,), low=0),
+            "due_s": costs("due_s", self.due_s, (tasks,)),
+            "skip_s": costs("skip_s", self.skip_s, (tasks,), low=0),
+        }
+        for field, value in checked.items():
+            exact = np.rint(value * TICKS_PER_S) / TICKS_PER_S
+            exact.setflags(write=False)
+            object.__setattr__(self, field, exact)
+        object.__setattr__(self, "carrying", flags("carrying", self.carrying, (robots,)))
+        weight = int(integers("late_weight", self.late_weight, (), low=0))
+        object.__setattr__(self, "late_weight", weight)
+
+    @property
+    def robots(self) -> int:
+        """Number of robots."""
+        return len(self.ready_s)
+
+    @property
+    def tasks(self) -> int:
+        """Number of tasks."""
+        return len(self.bring_s)
+
+    @property
+    def places(self) -> int:
+        """Number of free places."""
+        return len(self.fetch_s)
+
+
+@dataclass(frozen=True)
+class Routes:
+    """What the robots do.
+
+    Attributes
+    ----------
+    tasks
+        The tasks of each robot in their order, one tuple per robot.
+    place
+        Where the pod of each task is stored, or `NONE` if the task is left, shape (T,).
+    robot_place
+        Where the pod that each robot carries is stored first, or `NONE` without one, shape (R,).
+    """
+
+    tasks: tuple[tuple[int, ...], ...]
+    place: NDArray[np.int64]
+    robot_place: NDArray[np.int64]

@@ -1,0 +1,226 @@
+"""Cheapest insertion: tasks by urgency, each where it adds least to a route.
+
+An insertion between a pod that is stored and the fetch that follows chooses two places anew: where
+the first pod is stored (on the way to the new task), and where the new one is (on the way to the
+next).
+"""
+
+from __future__ import annotations
+
+import math
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.checks import require
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from solvers.models.tasks.network import assign
+from solvers.models.tasks.sequence.bound import relaxed_bound
+from solvers.models.tasks.sequence.data import NONE, Routes, Sequence
+from solvers.models.tasks.sequence.schedule import (
+    approach_s,
+    follow,
+    lateness_s,
+    objective,
+    violations,
+)
+
+
+def solve(
+    data: Sequence,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: Routes | None = None,
+) -> Solution[Routes]:
+    """Insert tasks one after another; those that must be done first, then by due time.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    limits, seed
+        Not needed.
+    start
+        Routes to insert the remaining tasks into. Default: robots only store what they carry.
+
+    Returns
+    -------
+    The routes; ties go to the lowest robot and place. Status LIMIT if a task is left that must be
+    done. The bound is that of `relaxed_bound`.
+
+    Raises
+    ------
+    ModelError
+        If the start is not feasible.
+    """
+    begin = perf_counter()
+    if start is not None:
+        broken = violations(data, start)
+        require(not broken, "start", "; ".join(broken))
+    bound = relaxed_bound(data)
+    plan = _Plan.of(data, start)
+    if plan is not None:
+        pressing = np.minimum(data.due_s, data.latest_s)
+        for task in np.lexsort((pressing, np.isfinite(data.skip_s))).tolist():
+            if plan.place[task] == NONE:
+                plan.insert(task)
+    routes = None if plan is None else plan.routes()
+    work = 0.0 if plan is None else float(plan.scored)
+    wall_s = perf_counter() - begin
+    if routes is None or violations(data, routes):
+        status = Status.LIMIT if math.isfinite(bound) else Status.INFEASIBLE
+        return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, work)
+    value = objective(data, routes)
+    return Solution(routes, value, min(bound, value), Status.FEASIBLE, "rule", wall_s, 0.0, work)
+
+
+class _Gap(NamedTuple):
+    """A position in a route: after `before` (`NONE`: the robot itself), ahead of `after`."""
+
+    robot: int
+    position: int
+    before: int
+    after: int
+
+
+class _Change(NamedTuple):
+    """An insertion: where the pod before and the pod of the task are stored."""
+
+    gap: _Gap
+    before_place: int
+    place: int
+
+
+class _Plan:
+    """Routes under construction."""
+
+    def __init__(self, data: Sequence, routes: Routes) -> None:
+        self._data = data
+        self._tasks = [list(tasks) for tasks in routes.tasks]
+        self.place = routes.place.copy()
+        self._robot_place = routes.robot_place.copy()
+        self._free = np.ones(data.places, bool)
+        for used in (self.place, self._robot_place):
+            self._free[used[used != NONE]] = False
+        self.scored = 0
+
+    @classmethod
+    def of(cls, data: Sequence, start: Routes | None) -> _Plan | None:
+        """Begin with given routes, or with the cheapest places for what robots carry."""
+        if start is not None:
+            return cls(data, start)
+        stowed = np.full(data.robots, NONE, np.int64)
+        assigned = assign(data.stow_s[data.carrying])
+        if assigned is None:
+            return None
+        stowed[data.carrying] = assigned.column
+        nothing = np.full(data.tasks, NONE, np.int64)
+        return cls(data, Routes(((),) * data.robots, nothing, stowed))
+
+    def routes(self) -> Routes:
+        """Return what has been built."""
+        return Routes(tuple(tuple(tasks) for tasks in self._tasks), self.place, self._robot_place)
+
+    def insert(self, task: int) -> None:
+        """Insert a task where it adds least, unless leaving it costs less."""
+        best, best_cost = None, float(self._data.skip_s[task])
+        gaps = self._gaps()
+        driving_s, before_place, place = self._score(task, gaps)
+        for which in np.argsort(driving_s, kind="stable").tolist():
+            # lateness only adds to driving
+            if math.isinf(driving_s[which]) or driving_s[which] >= best_cost:
+                break
+            change = _Change(gaps[which], int(before_place[which]), int(place[which]))
+            cost = self._added(task, change)
+            if cost < best_cost:
+                best, best_cost = change, cost
+        if best is not None:
+            self._apply(task, best)
+
+    def _gaps(self) -> list[_Gap]:
+        return [
+            _Gap(robot, position, before, after)
+            for robot, tasks in enumerate(self._tasks)
+            for position, (before, after) in enumerate(
+                zip([NONE, *tasks], [*tasks, NONE], strict=True)
+            )
+        ]
+
+    def _score(
+        self, task: int, gaps: list[_Gap]
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+        """Return the driving each insertion adds at best, and the two places it takes."""
+        data = self._data
+        free = np.flatnonzero(self._free)
+        self.scored += len(gaps) * len(free)
+        driving_s = np.full(len(gaps), math.inf)
+        moved, place = np.full(len(gaps), NONE, np.int64), np.full(len(gaps), NONE, np.int64)
+        fetch_s = data.fetch_s[free, task]
+        for which, gap in enumerate(gaps):
+            inward_s, taken, now = self._approach(task, gap, free, fetch_s)
+            # the place that the pod before gives up, if it does
+            places = free if taken == now else np.append(free[free != taken], now)
+            outward_s = data.store_s[task, places]
+            saved_s = 0.0
+            if gap.after != NONE:
+                outward_s = outward_s + data.fetch_s[places, gap.after]
+                saved_s = approach_s(data, gap.robot, now, gap.after)
+            if not len(places):
+                continue
+            best = int(outward_s.argmin())
+            driving_s[which] = inward_s + data.bring_s[task] + outward_s[best] - saved_s
+            moved[which], place[which] = taken, places[best]
+        return driving_s, moved, place
+
+    def _approach(
+        self, task: int, gap: _Gap, free: NDArray[np.int64], fetch_s: NDArray[np.float64]
+    ) -> tuple[float, int, int]:
+        """Return what the way to the task adds, where the pod before it goes, and where it was."""
+        data = self._data
+        if gap.before != NONE:
+            now, store_s = int(self.place[gap.before]), data.store_s[gap.before]
+        elif data.carrying[gap.robot]:
+            now, store_s = int(self._robot_place[gap.robot]), data.stow_s[gap.robot]
+        else:
+            return float(data.reach_s[gap.robot, task]), NONE, NONE
+        added_s, taken = float(data.fetch_s[now, task]), now
+        if len(free):
+            other_s = store_s[free] - store_s[now] + fetch_s
+            best = int(other_s.argmin())
+            if other_s[best] < added_s:
+                added_s, taken = float(other_s[best]), int(free[best])
+        return added_s, taken, now
+
+    def _added(self, task: int, change: _Change) -> float:
+        """Return what an insertion adds to the objective."""
+        gap = change.gap
+        before = self._cost(gap.robot, self._tasks[gap.robot])
+        kept = self.place.copy(), self._robot_place.copy()
+        self._set_places(task, change)
+        tasks = self._tasks[gap.robot]
+        after = self._cost(gap.robot, [*tasks[: gap.position], task, *tasks[gap.position :]])
+        self.place, self._robot_place = kept
+        return after - before
+
+    def _cost(self, robot: int, tasks: list[int]) -> float:
+        stowed = int(self._robot_place[robot])
+        driving_s, arrivals = follow(self._data, robot, tuple(tasks), self.place, stowed)
+        late = (lateness_s(self._data, one, at) for one, at in zip(tasks, arrivals, strict=True))
+        return driving_s + sum(late)
+
+    def _set_places(self, task: int, change: _Change) -> None:
+        self.place[task] = change.place
+        if change.gap.before != NONE:
+            self.place[change.gap.before] = change.before_place
+        else:
+            self._robot_place[change.gap.robot] = change.before_place
+
+    def _apply(self, task: int, change: _Change) -> None:
+        self._set_places(task, change)
+        self._tasks[change.gap.robot].insert(change.gap.position, task)
+        self._free[:] = True
+        for used in (self.place, self._robot_place):
+            self._free[used[used != NONE]] = False

@@ -1,0 +1,152 @@
+r"""When robots arrive, what their routes cost, and whether they may be driven.
+
+.. math::
+
+    \min \sum driving + w \sum_{t \text{ done}} \max(0, arrive_t - due_t)
+    + \sum_{t \text{ left}} skip_t
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.tasks.sequence.data import NONE, SLACK_S, Routes, Sequence
+
+
+def approach_s(data: Sequence, robot: int, place: int, task: int) -> float:
+    """Return the empty drive to the pod of a task.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    robot
+        Who drives.
+    place
+        Where it stored its last pod, or `NONE` if it comes from where it was.
+    task
+        The task.
+    """
+    return float(data.reach_s[robot, task] if place == NONE else data.fetch_s[place, task])
+
+
+def follow(
+    data: Sequence, robot: int, tasks: tuple[int, ...], place: NDArray[np.int64], stowed: int
+) -> tuple[float, list[float]]:
+    """Drive one route.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    robot
+        Who drives.
+    tasks
+        Its tasks in their order.
+    place
+        Where the pod of each task is stored, shape (T,).
+    stowed
+        Where the pod it carries at first is stored, or `NONE`.
+
+    Returns
+    -------
+    Driving time, in s, and the arrival at each task's station, in s.
+    """
+    time_s, driving_s = float(data.ready_s[robot]), 0.0
+    if stowed != NONE:
+        driving_s = float(data.stow_s[robot, stowed])
+        time_s += driving_s
+    at, arrivals = stowed, []
+    for task in tasks:
+        inward_s = approach_s(data, robot, at, task) + float(data.bring_s[task])
+        at = int(place[task])
+        outward_s = float(data.store_s[task, at])
+        arrivals.append(max(time_s + inward_s, float(data.earliest_s[task])))
+        time_s = arrivals[-1] + float(data.service_s[task]) + outward_s
+        driving_s += inward_s + outward_s
+    return driving_s, arrivals
+
+
+def lateness_s(data: Sequence, task: int, arrival_s: float) -> float:
+    """Return the weighted lateness of a task; infinite after the end of its window.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    task
+        The task.
+    arrival_s
+        When its pod is at the station, in s.
+    """
+    if arrival_s > data.latest_s[task] + SLACK_S:
+        return math.inf
+    return data.late_weight * max(0.0, arrival_s - float(data.due_s[task]))
+
+
+def arrivals_s(data: Sequence, routes: Routes) -> NDArray[np.float64]:
+    """Return when the pod of each task is at its station, shape (T,), in s; nan if it is left.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    routes
+        What the robots do.
+    """
+    arrive = np.full(data.tasks, np.nan)
+    for robot, tasks in enumerate(routes.tasks):
+        stowed = int(routes.robot_place[robot])
+        arrive[list(tasks)] = follow(data, robot, tasks, routes.place, stowed)[1]
+    return arrive
+
+
+def objective(data: Sequence, routes: Routes) -> float:
+    """Return driving, weighted lateness and the cost of what is left, in s.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    routes
+        What the robots do.
+    """
+    parts = [float(data.skip_s[task]) for task in np.flatnonzero(routes.place == NONE)]
+    for robot, tasks in enumerate(routes.tasks):
+        stowed = int(routes.robot_place[robot])
+        driving_s, arrivals = follow(data, robot, tasks, routes.place, stowed)
+        parts.append(driving_s)
+        parts += [lateness_s(data, task, at) for task, at in zip(tasks, arrivals, strict=True)]
+    return math.fsum(parts)
+
+
+def violations(data: Sequence, routes: Routes) -> list[str]:
+    """Say what is wrong with routes; empty if nothing is.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    routes
+        What the robots do.
+    """
+    done = [task for tasks in routes.tasks for task in tasks]
+    stored = np.concatenate([routes.place, routes.robot_place])
+    if len(routes.tasks) != data.robots or stored.shape != (data.tasks + data.robots,):
+        return ["not one route for every robot"]
+    if not ((stored >= NONE) & (stored < data.places)).all():
+        return ["a place that does not exist"]
+    found = []
+    if sorted(done) != np.flatnonzero(routes.place != NONE).tolist():
+        found.append("not one robot for every task that is done")
+    if ((routes.robot_place != NONE) != data.carrying).any():
+        found.append("a pod that is not stored, or one that does not exist")
+    used = stored[stored != NONE]
+    if len(np.unique(used)) < len(used):
+        found.append("two pods on one place")
+    if not found and not math.isfinite(objective(data, routes)):
+        found.append("a way that is not allowed, a window missed, or a task left that must be done")
+    return found
