@@ -48,6 +48,12 @@ class Controller(Generic[P]):
         Further events after which this controller wants to be asked.
     hears
         Events of which `hear` is told at once, decision or not.
+    waits_for
+        Problems whose decision it waits for; two rules that wait for each other are refused.
+    decides
+        Further problems whose decisions it takes; a dummy has to stand in for each of them.
+    is_dummy
+        Whether it decides nothing and leaves the decision to another controller.
     """
 
     problem: ClassVar[Problem]
@@ -55,6 +61,9 @@ class Controller(Generic[P]):
     triggers: ClassVar[frozenset[Trigger]] = frozenset()
     subscriptions: ClassVar[frozenset[Trigger]] = frozenset()
     hears: ClassVar[frozenset[Trigger]] = frozenset()
+    waits_for: ClassVar[frozenset[Problem]] = frozenset()
+    decides: ClassVar[frozenset[Problem]] = frozenset()
+    is_dummy: ClassVar[bool] = False
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
         self.parameters = parameters

@@ -5,12 +5,24 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
+    from rmfs.control.choices import Choice
     from rmfs.world.orders import Bundle, Order
     from rmfs.world.robots import Robot
 
 
 class AssignOrder(NamedTuple):
     """POA: put an order of the backlog on a pick station."""
+
+    order: Order
+    station: int
+
+
+class QueueOrder(NamedTuple):
+    """POA: let an order of the backlog join the pool of a pick station.
+
+    It stays in the backlog, but pods can be bound to it; only to this station it can be assigned.
+    Station -1 takes it out of the pool it is in; pods bound to it are free of it then.
+    """
 
     order: Order
     station: int
@@ -53,9 +65,20 @@ class BringForBundles(NamedTuple):
 
 
 class Park(NamedTuple):
-    """TA: store the pod the robot carries at a place."""
+    """TA: store the pod the robot carries at a place.
+
+    In a prepared task the place may be -1: PSA is asked when its turn comes.
+    """
 
     robot: Robot
+    place: int
+
+
+class Reposition(NamedTuple):
+    """TA: fetch a pod that is at hand and store it at another place, which is empty."""
+
+    robot: Robot
+    pod: int
     place: int
 
 
@@ -66,6 +89,21 @@ class Rest(NamedTuple):
     place: int
 
 
+TaskDecision = BringForPicks | BringForBundles | Park | Reposition | Rest
+
+
+class Prepare(NamedTuple):
+    """TA: what a robot is to do after its present task, one after another; the last word counts.
+
+    Prepared tasks keep nothing for the robot. One that is impossible when its turn comes (the pod
+    is claimed, the place taken, the work done by others) is passed over; after the last one TA is
+    asked as usual.
+    """
+
+    robot: Robot
+    tasks: tuple[TaskDecision, ...]
+
+
 class SwitchStation(NamedTuple):
     """SA: let a station take new work, or stop it."""
 
@@ -73,5 +111,20 @@ class SwitchStation(NamedTuple):
     active: bool
 
 
-TaskDecision = BringForPicks | BringForBundles | Park | Rest
-Decision = AssignOrder | SendBundle | PromiseBundle | ReleasePod | TaskDecision | SwitchStation
+class Exchange(NamedTuple):
+    """MM: install another controller for its problem."""
+
+    choice: Choice
+
+
+Decision = (
+    AssignOrder
+    | QueueOrder
+    | SendBundle
+    | PromiseBundle
+    | ReleasePod
+    | TaskDecision
+    | Prepare
+    | SwitchStation
+    | Exchange
+)

@@ -17,6 +17,7 @@ class Problem(StrEnum):
     SA = "sa"
     MM = "mm"
     PP = "pp"
+    REPOSITIONING = "repositioning"
 
     @property
     def meaning(self) -> str:
@@ -34,6 +35,7 @@ _MEANINGS = {
     Problem.SA: "station activation: which stations take new work",
     Problem.MM: "method management: exchange of controllers in a running system",
     Problem.PP: "path planning",
+    Problem.REPOSITIONING: "repositioning: idle pod -> another storage place",
 }
 
 
@@ -72,3 +74,5 @@ class Trigger(IntEnum):
     """A robot starts to lift a pod [pod]."""
     POD_AT_STATION = 15
     """A robot with its pod reached the head of a queue [station]."""
+    ORDER_QUEUED = 16
+    """An order of the backlog joined the pool of a pick station [Order]."""

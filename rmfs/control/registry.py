@@ -22,27 +22,75 @@ GROUP = "rmfs.controllers"
 _BUILT_IN: dict[Problem, dict[str, str]] = {
     Problem.POA: {
         "pod-match": "rmfs.control.poa.pod_match:PodMatch",
-        "random": "rmfs.control.poa.random:RandomOrder",
+        "lines-in-common": "rmfs.control.poa.lines_in_common:LinesInCommon",
+        "foresight": "rmfs.control.poa.foresight:Foresight",
+        "queue": "rmfs.control.poa.queue:Queue",
+        "related": "rmfs.control.poa.related:Related",
+        "near-best-pod": "rmfs.control.poa.near_best_pod:NearBestPod",
+        "workload": "rmfs.control.poa.workload:Workload",
+        "first-come": "rmfs.control.poa.order_rules:FirstCome",
+        "due-time": "rmfs.control.poa.order_rules:DueTime",
+        "frequency-age": "rmfs.control.poa.order_rules:FrequencyAge",
+        "random": "rmfs.control.poa.order_rules:RandomOrder",
+        "dummy": "rmfs.control.dummies:DummyPOA",
     },
     Problem.ROA: {
         "same-pod": "rmfs.control.roa.same_pod:SamePod",
         "random": "rmfs.control.roa.random:RandomStation",
+        "dummy": "rmfs.control.dummies:DummyROA",
     },
     Problem.RPS: {
         "emptiest": "rmfs.control.rps.emptiest:Emptiest",
+        "least-demand": "rmfs.control.rps.least_demand:LeastDemand",
+        "correlative": "rmfs.control.rps.correlative:Correlative",
+        "turnover": "rmfs.control.rps.turnover:Turnover",
+        "nearest": "rmfs.control.rps.located:Nearest",
+        "reactive": "rmfs.control.rps.located:Reactive",
         "random": "rmfs.control.rps.random:RandomPod",
+        "dummy": "rmfs.control.dummies:DummyRPS",
     },
     Problem.PPS: {
         "lexicographic": "rmfs.control.pps.lexicographic:Lexicographic",
         "random": "rmfs.control.pps.random:RandomPod",
+        "dummy": "rmfs.control.dummies:DummyPPS",
     },
     Problem.PSA: {
         "nearest": "rmfs.control.psa.nearest:Nearest",
         "random": "rmfs.control.psa.random:RandomPlace",
+        "fixed": "rmfs.control.psa.fixed:Fixed",
+        "station-based": "rmfs.control.psa.station_based:StationBased",
+        "turnover": "rmfs.control.psa.turnover:Turnover",
+        "cache": "rmfs.control.psa.cache:Cache",
+        "utility": "rmfs.control.psa.utility:Utility",
+        "dummy": "rmfs.control.dummies:DummyPSA",
     },
-    Problem.TA: {"balanced": "rmfs.control.ta.balanced:Balanced"},
-    Problem.SA: {"all": "rmfs.control.sa.all:AllStations"},
-    Problem.MM: {"none": "rmfs.control.mm.none:NoExchange"},
+    Problem.TA: {
+        "balanced": "rmfs.control.ta.balanced:Balanced",
+        "constant-ratio": "rmfs.control.ta.constant_ratio:ConstantRatio",
+        "random": "rmfs.control.ta.random:RandomTasks",
+        "brute-force": "rmfs.control.ta.brute_force:BruteForce",
+        "swarm": "rmfs.control.ta.swarm:Swarm",
+        "dummy": "rmfs.control.dummies:DummyTA",
+    },
+    Problem.SA: {
+        "all": "rmfs.control.sa.all:AllStations",
+        "backlog-threshold": "rmfs.control.sa.backlog_threshold:BacklogThreshold",
+        "constant-ratio": "rmfs.control.sa.constant_ratio:ConstantRatio",
+        "work-shifts": "rmfs.control.sa.work_shifts:WorkShifts",
+        "dummy": "rmfs.control.dummies:DummySA",
+    },
+    Problem.MM: {
+        "none": "rmfs.control.mm.none:NoExchange",
+        "scheduled": "rmfs.control.mm.scheduled:Scheduled",
+        "random": "rmfs.control.mm.random:RandomExchange",
+    },
+    Problem.REPOSITIONING: {
+        "none": "rmfs.control.repositioning.none:NoMoves",
+        "cache": "rmfs.control.repositioning.cache:Cache",
+        "cache-drop-off": "rmfs.control.repositioning.cache_drop_off:CacheDropOff",
+        "utility": "rmfs.control.repositioning.utility:Utility",
+        "dummy": "rmfs.control.dummies:DummyRepositioning",
+    },
     Problem.PP: {"time-windows": "rmfs.control.pp.time_windows:TimeWindows"},
 }
 
@@ -50,6 +98,11 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
 def names(problem: Problem) -> list[str]:
     """Names of all rules for a problem, built-in ones first."""
     return [*_BUILT_IN[problem], *sorted(_installed(problem))]
+
+
+def built_in(problem: Problem) -> list[str]:
+    """Names of the rules that come with rmfs."""
+    return list(_BUILT_IN[problem])
 
 
 def find(problem: Problem, name: str) -> type[Controller[Any]]:

@@ -2,62 +2,23 @@
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import pydantic
 
 from rmfs import config, instances
 from rmfs.config import Model, Table
-from rmfs.control import registry
+from rmfs.control.choices import DEFAULTS, Choice, check_together, choose
 from rmfs.control.problems import Problem
-from rmfs.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rmfs.control.base import Controller, Parameters
+    from rmfs.control.mm import MethodManagement
 
 FORMAT = "rmfs-controllers/1"
-
-DEFAULTS = {
-    Problem.POA: "pod-match",
-    Problem.ROA: "same-pod",
-    Problem.RPS: "emptiest",
-    Problem.PPS: "lexicographic",
-    Problem.PSA: "nearest",
-    Problem.TA: "balanced",
-    Problem.SA: "all",
-    Problem.MM: "none",
-    Problem.PP: "time-windows",
-}
-"""The rule of a problem that a file does not mention."""
-
-
-@dataclass(frozen=True)
-class Choice:
-    """A rule and its parameters, validated.
-
-    Attributes
-    ----------
-    name
-        As in the file: a registered name or `module:Class`.
-    """
-
-    problem: Problem
-    name: str
-    parameters: Parameters
-
-    @property
-    def controller(self) -> type[Controller[Any]]:
-        """The class of the rule."""
-        return registry.find(self.problem, self.name)
-
-    def to_table(self) -> Table:
-        """Name and parameters as they stand in a controllers file."""
-        return {"name": self.name, **self.parameters.model_dump(mode="json")}
 
 
 @dataclass(frozen=True)
@@ -95,6 +56,7 @@ class _File(Model):
     sa: Table | None = None
     mm: Table | None = None
     pp: Table | None = None
+    repositioning: Table | None = None
 
 
 def load(
@@ -126,8 +88,11 @@ def settings(
     """Validate the content of a controllers file; see `load`."""
     file = config.validate(_File, _overridden(table, list(overrides)), source)
     choices = {
-        problem: _choice(problem, getattr(file, problem) or {}, source) for problem in Problem
+        problem: choose(problem, getattr(file, problem) or {}, source) for problem in Problem
     }
+    check_together(choices, source)
+    managing = cast("type[MethodManagement[Any]]", choices[Problem.MM].controller)
+    managing.check(choices, source)
     return ControllerSettings(file.name, file.description, choices)
 
 
@@ -145,25 +110,3 @@ def _overridden(table: Table, overrides: list[tuple[list[str], Any]]) -> Table:
         else:
             others.append((path, value))
     return config.apply_overrides(result, others)
-
-
-def _choice(problem: Problem, table: Table, source: str) -> Choice:
-    parameters = dict(table)
-    name = parameters.pop("name", DEFAULTS[problem])
-    if not isinstance(name, str):
-        raise InputError(f"{source}: {problem}.name: must be a string (given: {name!r})")
-    try:
-        model = registry.find(problem, name).parameters_model
-    except InputError as error:
-        raise InputError(f"{source}: {problem}.name: {error}") from None
-    _refuse_unknown(problem, parameters, [*model.model_fields, "name"], source)
-    validated = config.validate(model, parameters, f"{source}: {problem}")
-    return Choice(problem, name, validated)
-
-
-def _refuse_unknown(problem: Problem, parameters: Table, valid: list[str], source: str) -> None:
-    for key in parameters:
-        if key not in valid:
-            near = difflib.get_close_matches(key, valid, n=1)
-            hint = f"did you mean {near[0]}?" if near else f"valid: {', '.join(sorted(valid))}"
-            raise InputError(f"{source}: unknown key {problem}.{key}; {hint}")

@@ -10,7 +10,8 @@ from rmfs.control.settings import FORMAT
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rmfs.control.settings import Choice, ControllerSettings
+    from rmfs.control.choices import Choice
+    from rmfs.control.settings import ControllerSettings
 
 
 def to_toml(settings: ControllerSettings) -> str:
@@ -27,7 +28,7 @@ def _table(choice: Choice) -> Iterator[str]:
     yield f"[{choice.problem}]  # {choice.problem.meaning}"
     yield f"name = {_value(choice.name)}"
     fields = type(choice.parameters).model_fields
-    for name, value in choice.parameters.model_dump(mode="json").items():
+    for name, value in choice.parameters.model_dump(mode="json", exclude_none=True).items():
         description = fields[name].description
         line = f"{name} = {_value(value)}"
         yield f"{line}  # {' '.join(description.split())}" if description else line

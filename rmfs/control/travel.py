@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
+from rmfs.control.paths import PathLengths
+
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from rmfs.layout.model import Layout
+
+
+Metric = Literal["euclidean", "manhattan", "path", "time"]
+"""Straight distance, distance along the axes, length of the shortest way, and time for it."""
 
 
 class TravelTimes(Protocol):
@@ -31,8 +39,8 @@ class TravelTimes(Protocol):
 class Travel:
     """Travel times and distances between waypoints.
 
-    Exact times come from traffic and are kept for the waypoints asked for: ask for stations, of
-    which there are few. From anywhere else `estimate_s` is meant.
+    Exact times come from traffic and are kept, like distances, for the waypoints asked for: ask for
+    stations, of which there are few. From anywhere else `estimate_s` is meant.
 
     Parameters
     ----------
@@ -51,6 +59,8 @@ class Travel:
 
     def __init__(self, layout: Layout, times: TravelTimes) -> None:
         self._times = times
+        self._paths = PathLengths(layout)
+        self._distances: dict[tuple[int, Metric, bool], NDArray[np.float64]] = {}
         self._x, self._y = layout.x_m, layout.y_m
         self.tier = layout.tier
         self.tiers = len(layout.tiers)
@@ -76,6 +86,77 @@ class Travel:
             times = self._from[waypoint, loaded] = self._times.travel_times_from(waypoint, loaded)
         return times
 
+    def distances_to(
+        self, waypoint: int, metric: Metric, *, loaded: bool = True
+    ) -> NDArray[np.float64]:
+        """How far it is from every waypoint to this one, shape (N,), m or, by time, s."""
+        if metric == "time":
+            return self.to(waypoint, loaded=loaded)
+        if metric == "path":
+            return self._kept(waypoint, metric, loaded, self._paths.to)
+        return self._kept(waypoint, metric, True, self._straight(metric))
+
+    def distances_from(
+        self, waypoint: int, metric: Metric, *, loaded: bool = True
+    ) -> NDArray[np.float64]:
+        """How far it is from this waypoint to every other, shape (N,), m or, by time, s."""
+        if metric == "time":
+            return self.away(waypoint, loaded=loaded)
+        if metric == "path":
+            # keys of ways in the other direction are negative
+            return self._kept(~waypoint, metric, loaded, self._paths.away)
+        return self._kept(waypoint, metric, True, self._straight(metric))
+
+    def between(
+        self,
+        waypoint: int,
+        others: NDArray[np.signedinteger[Any]],
+        metric: Metric,
+        *,
+        loaded: bool = True,
+    ) -> NDArray[np.float64]:
+        """How far it is from a waypoint to others, shape (n,), m or, by time, s.
+
+        Straight distances are worked out each time: to be used where waypoints hardly ever repeat.
+        """
+        if metric == "euclidean":
+            return self.metres(waypoint, others)
+        if metric == "manhattan":
+            return self.manhattan_metres(waypoint, others)
+        distances: NDArray[np.float64] = self.distances_from(waypoint, metric, loaded=loaded)[
+            others
+        ]
+        return distances
+
+    def _kept(
+        self,
+        key: int,
+        metric: Metric,
+        loaded: bool,
+        work_out: Callable[[int, bool], NDArray[np.float64]],
+    ) -> NDArray[np.float64]:
+        distances = self._distances.get((key, metric, loaded))
+        if distances is None:
+            distances = work_out(max(key, ~key), loaded)
+            distances.flags.writeable = False
+            self._distances[key, metric, loaded] = distances
+        return distances
+
+    def _straight(self, metric: Metric) -> Callable[[int, bool], NDArray[np.float64]]:
+        measure = self.metres if metric == "euclidean" else self.manhattan_metres
+        everywhere = np.arange(len(self._x))
+        return lambda waypoint, _: measure(waypoint, everywhere)
+
+    def manhattan_metres(
+        self, waypoint: int, others: NDArray[np.signedinteger[Any]]
+    ) -> NDArray[np.float64]:
+        """Distances along the axes to other waypoints, more on other tiers, shape (n,), m."""
+        distance: NDArray[np.float64] = np.abs(self._x[others] - self._x[waypoint])
+        distance += np.abs(self._y[others] - self._y[waypoint])
+        if self.tiers > 1:
+            distance += self._other_tier_m * (self.tier[others] != self.tier[waypoint])
+        return distance
+
     def estimate_s(self, waypoint: int, others: NDArray[np.int32]) -> NDArray[np.float64]:
         """Estimate times to other waypoints: Manhattan distance at top speed and one turn.
 
@@ -89,13 +170,10 @@ class Travel:
         NDArray
             Seconds, shape (n,).
         """
-        distance: NDArray[np.float64] = np.abs(self._x[others] - self._x[waypoint])
-        distance += np.abs(self._y[others] - self._y[waypoint])
-        if self.tiers > 1:
-            distance += self._other_tier_m * (self.tier[others] != self.tier[waypoint])
-        distance *= self._seconds_per_metre
-        distance += self._quarter_turn_s
-        return distance
+        seconds = self.manhattan_metres(waypoint, others)
+        seconds *= self._seconds_per_metre
+        seconds += self._quarter_turn_s
+        return seconds
 
     def metres(self, waypoint: int, others: NDArray[np.signedinteger[Any]]) -> NDArray[np.float64]:
         """Euclidean distances to other waypoints, more on other tiers, shape (n,), m."""

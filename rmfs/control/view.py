@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+from math import inf
 from typing import TYPE_CHECKING
 
+from rmfs.control.trackers import Trackers
+
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from rmfs.control.travel import Travel
+    from rmfs.scenario import OrderDraft
     from rmfs.world import World
     from rmfs.world.robots import Robot
     from rmfs.world.stations import ReplenishmentStation
@@ -31,16 +38,31 @@ class View:
         `stations` holds both, pick stations first (`rmfs.world.stations`).
     need
         Open units per pick station and SKU, shape (S, K).
+    lines
+        Order lines per pick station and SKU, picked or not, shape (S, K): of the open orders there.
     bundles_waiting
         Assigned bundles not yet in a task, per replenishment station and pod, shape (S, P).
     robots, asking, resting
         All robots; those that need a task; those at rest.
+    queued_need
+        Open units of queued orders per pick station and SKU, shape (S, K).
     travel
         Travel times.
+    end_s
+        When the run ends.
+    trackers
+        What controllers count together (`rmfs.control.trackers`).
     """
 
-    def __init__(self, world: World, travel: Travel) -> None:
+    def __init__(
+        self,
+        world: World,
+        travel: Travel,
+        end_s: float = inf,
+        draw_past_orders: Callable[[], Sequence[OrderDraft]] = tuple,
+    ) -> None:
         self._world = world
+        self._draw_past_orders = draw_past_orders
         self.layout = world.layout
         self.skus = world.skus
         self.inventory = world.inventory
@@ -51,50 +73,55 @@ class View:
         self.replenishment_stations = world.replenishment_stations
         self.stations = world.stations
         self.need = world.need
+        self.lines = world.lines
         self.bundles_waiting = world.bundles_waiting
         self.robots = world.robots
         self.asking = world.asking
         self.resting = world.resting
+        self.queued_need = world.queued_need
         self.travel = travel
+        self.end_s = end_s
+        self.trackers = Trackers(self)
 
     @property
     def now_s(self) -> float:
         """Present simulated time."""
         return self._world.now_s
 
+    @property
+    def orders_created(self) -> int:
+        """Orders that have arrived since time zero."""
+        return self._world.orders_created
+
+    @cached_property
+    def past_orders(self) -> Sequence[OrderDraft]:
+        """Orders from before the run, to learn from (`rmfs.simulation.past`)."""
+        return self._draw_past_orders()
+
     def pod_waypoint(self, pod: int) -> int:
         """Where a pod is: its place, or the next waypoint at which the robot below it stops."""
         place = self.storage.place_of[pod]
         return place if place >= 0 else self.travel.robot_waypoint(self.storage.claimed_by[pod])
 
-    def can_serve(self, pod: int, station: int) -> bool:
-        """Whether there is work for a pod at a station of either kind."""
-        if station < len(self.pick_stations):
-            skus = list(self.pick_stations[station].requests.lines)
-            return self.inventory.serves(pod, skus)
-        return pod in self._replenishment_station(station).waiting
-
-    def work_for(self, pod: int, station: int) -> int:
-        """Open requests a pod can serve at a pick station, or bundles that wait there for it."""
-        if station < len(self.pick_stations):
-            need, available = self.need[station].item, self.inventory.available.item
-            skus = self.pick_stations[station].requests.lines
-            return sum(min(need(sku), available(sku, pod)) for sku in skus)
-        return len(self._replenishment_station(station).waiting.get(pod, ()))
-
-    def work_version(self, station: int) -> tuple[int, int]:
-        """Grows with new work at a station and with pods that come to hand.
+    def work_version(self, station: int) -> tuple[int, ...]:
+        """Changes with new work at a station and with pods that come to hand.
 
         If no pod was found for a station, none will be found before this changes.
         """
         if station < len(self.pick_stations):
-            return self.pick_stations[station].requests.version, self.storage.version
+            target = self.pick_stations[station]
+            if not target.queued:
+                return target.requests.version, self.storage.version
+            # a queued order matters as soon as there is a slot for it
+            pool = target.queued_requests.version, target.free_slots > 0
+            return target.requests.version, self.storage.version, *pool
         return self._replenishment_station(station).version, self.storage.version
 
     def has_open_work(self, station: int) -> bool:
         """Whether there are requests, or bundles, at a station for which no pod is under way."""
         if station < len(self.pick_stations):
-            return self.pick_stations[station].requests.units > 0
+            target = self.pick_stations[station]
+            return target.requests.units > 0 or target.queued_requests.units > 0
         return bool(self._replenishment_station(station).waiting)
 
     def robot_target(self, robot: Robot) -> int:

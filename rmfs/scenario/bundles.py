@@ -28,16 +28,28 @@ class BundleSource:
         The SKUs, with their bundle sizes.
     seed
         The run's seed.
+    return_share
+        Probability that a bundle is a return: one unit that a customer sent back.
+    path
+        Numbers below the stream, for bundles that are counted apart.
     """
 
-    def __init__(self, skus: SkuSet, seed: int) -> None:
-        self._substreams = Substreams(seed, Stream.BUNDLE_CONTENTS)
+    def __init__(
+        self, skus: SkuSet, seed: int, return_share: float = 0.0, path: tuple[int, ...] = ()
+    ) -> None:
+        self._substreams = Substreams(seed, Stream.BUNDLE_CONTENTS, path)
         self._pick = skus.by_popularity.pick
         self._bundles = bundle_of_each(skus)
+        self._space_per_unit: list[float] = skus.space_per_unit.tolist()
+        self._return_share = return_share
 
     def draw(self, ordinal: int) -> BundleDraft:
         """Draw the bundle of an ordinal, 0 or greater."""
-        return self._bundles[self._pick(self._substreams.at(ordinal)())]
+        uniform = self._substreams.at(ordinal)
+        sku = self._pick(uniform())
+        if self._return_share and uniform() < self._return_share:
+            return BundleDraft(sku, 1, self._space_per_unit[sku])
+        return self._bundles[sku]
 
 
 def bundle_of_each(skus: SkuSet) -> list[BundleDraft]:

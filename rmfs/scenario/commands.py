@@ -1,8 +1,10 @@
-"""`rmfs scenario`: list, show and check scenarios."""
+"""`rmfs scenario`: list, show, check, import and export scenarios, and their SKUs."""
 
 from __future__ import annotations
 
-from typing import Annotated
+import math
+from pathlib import Path
+from typing import Annotated, Literal
 
 import typer
 from rich.console import Console
@@ -11,14 +13,31 @@ from rich.table import Table
 from rmfs import instances
 from rmfs.config import parse_override
 from rmfs.errors import InputError
-from rmfs.scenario.loading import load
-from rmfs.scenario.orders import OrderSource
-from rmfs.scenario.skus import SkuSet, sku_set
+from rmfs.scenario.intake import Site, bundle_intake, export_stream, order_intake
+from rmfs.scenario.loading import load, load_with_notes
+from rmfs.scenario.parameters import Scenario, SkuFile, StreamDemand, StreamReplenishment
+from rmfs.scenario.rawsimo import read_xitem
+from rmfs.scenario.skus import SkuSet, write_sku_set
+from rmfs.scenario.sources import bundle_stream, order_stream, sku_set
+from rmfs.scenario.streams import digest
 from rmfs.scenario.toml import to_toml
+from rmfs.scenario.writing import write_scenario
 
-app = typer.Typer(name="scenario", help="List, show and check scenarios.", no_args_is_help=True)
+app = typer.Typer(
+    name="scenario", help="List, show, check, import, export scenarios.", no_args_is_help=True
+)
 
-Name = Annotated[str, typer.Argument(help="A TOML file, or the name of a shipped scenario.")]
+Name = Annotated[
+    str,
+    typer.Argument(
+        metavar="SCENARIO", help="A .toml or .xsett file, or the name of a shipped scenario."
+    ),
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Set a parameter, as in `rmfs run`."),
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace a file that exists.")]
 
 
 @app.command("list")
@@ -33,25 +52,93 @@ def list_scenarios() -> None:
 
 
 @app.command()
-def show(
-    scenario: Name,
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Set a parameter, as in `rmfs run`."),
-    ] = None,
-) -> None:
+def show(scenario: Name, settings: Settings = None) -> None:
     """Print all parameters of a scenario as TOML, defaults included and explained."""
-    overrides = [_below_scenario(text) for text in settings or []]
-    typer.echo(to_toml(load(scenario, overrides)), nl=False)
+    typer.echo(to_toml(_loaded(scenario, settings)), nl=False)
 
 
 @app.command()
-def check(scenario: Name) -> None:
-    """Read a scenario and draw its SKUs, and say what is wrong or what it holds."""
-    config = load(scenario)
+def check(scenario: Name, settings: Settings = None) -> None:
+    """Read a scenario and its files, and say what is wrong or what it holds."""
+    config = _loaded(scenario, settings)
     skus = sku_set(config.skus)
-    OrderSource(config.orders, skus, seed=0, source=scenario)
+    anywhere = Site(1, 1, capacity=math.inf, largest_pod=math.inf)
+    order_intake(config, skus, anywhere, seed=0)
+    bundle_intake(config, skus, anywhere, seed=0)
     typer.echo(f"{scenario}: ok, {summary(skus)}")
+    if isinstance(config.demand, StreamDemand):
+        orders = order_stream(config.demand, skus)
+        typer.echo(f"{len(orders)} orders, digest {digest(orders, skus)}")
+    if isinstance(config.replenishment, StreamReplenishment):
+        bundles = bundle_stream(config.replenishment, skus, math.inf)
+        typer.echo(f"{len(bundles)} bundles, digest {digest(bundles, skus)}")
+
+
+@app.command("import")
+def import_command(
+    path: Annotated[Path, typer.Argument(metavar="FILE", help="A RAWSim-O .xsett.")],
+    out: Annotated[
+        Path | None, typer.Option(help="The .toml file to write; default: NAME.toml.")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Turn a RAWSim-O scenario into one of ours, with its SKUs and orders beside it."""
+    if path.suffix.lower() != ".xsett":
+        raise InputError(f"{path}: expected a .xsett file")
+    target = out if out is not None else Path(f"{path.stem}.toml")
+    _vacant(target, force=force)
+    for written in write_scenario(_loaded(str(path), None), target):
+        typer.echo(f"{written}: written")
+
+
+@app.command()
+def export(
+    scenario: Name,
+    path: Annotated[Path, typer.Argument(metavar="FILE", help="The .csv or .parquet to write.")],
+    what: Annotated[
+        Literal["orders", "bundles"], typer.Option(help="Which stream to write.")
+    ] = "orders",
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all random streams.")] = 0,
+    pick_stations: Annotated[int, typer.Option(min=1, help="For rates per station.")] = 4,
+    replenishment_stations: Annotated[int, typer.Option(min=1, help="For rates per station.")] = 4,
+    settings: Settings = None,
+    force: Force = False,
+) -> None:
+    """Write the orders or bundles of a scenario, where they do not depend on the run."""
+    _vacant(path, force=force)
+    site = Site(pick_stations, replenishment_stations, capacity=math.inf, largest_pod=math.inf)
+    written = export_stream(_loaded(scenario, settings), what, path, site, seed)
+    typer.echo(f"{written.path}: {written.number} {what}, digest {written.digest}")
+
+
+@app.command("sku-set")
+def sku_set_command(
+    scenario: Annotated[
+        str,
+        typer.Argument(
+            metavar="SCENARIO", help="A scenario, or a SKU set: .json, .xgenc or .xitem."
+        ),
+    ],
+    out: Annotated[Path | None, typer.Option(help="The .json file (rmfs-skus/1) to write.")] = None,
+    picture: Annotated[
+        Path | None, typer.Option(help="The .svg, .png or .pdf with the popularity curve to write.")
+    ] = None,
+    settings: Settings = None,
+    force: Force = False,
+) -> None:
+    """Describe the SKUs of a scenario or file; write them, or a picture of their popularity."""
+    skus = _skus(scenario, settings)
+    typer.echo(f"{scenario}: {summary(skus)}, digest {skus.digest()}")
+    if out is not None:
+        _vacant(out, force=force)
+        write_sku_set(skus, out)
+        typer.echo(f"{out}: written")
+    if picture is not None:
+        from rmfs.scenario.skus.picture import save_picture  # matplotlib is slow to import
+
+        _vacant(picture, force=force)
+        save_picture(skus, picture)
+        typer.echo(f"{picture}: written")
 
 
 def summary(skus: SkuSet) -> str:
@@ -65,9 +152,38 @@ def summary(skus: SkuSet) -> str:
     )
 
 
+def _skus(scenario: str, settings: list[str] | None) -> SkuSet:
+    path = Path(scenario)
+    if path.suffix.lower() not in (".json", ".xgenc", ".xitem"):
+        return sku_set(_loaded(scenario, settings).skus)
+    if not path.is_file():
+        raise InputError(f"{path}: no such file")
+    if path.suffix.lower() == ".xitem":
+        _print_notes(read_xitem(path).notes)
+    return sku_set(SkuFile(file=path))
+
+
+def _loaded(scenario: str, settings: list[str] | None) -> Scenario:
+    """Load a scenario and print the remarks of its import."""
+    config, notes = load_with_notes(scenario, [_below_scenario(text) for text in settings or []])
+    _print_notes(notes)
+    return config
+
+
 def _below_scenario(text: str) -> tuple[list[str], object]:
     """Read one `--set`; its key starts with `scenario`, as everywhere."""
     path, value = parse_override(text)
     if path[0] != "scenario" or len(path) == 1:
         raise InputError(f"--set {text}: expected a key such as scenario.duration_s")
     return path[1:], value
+
+
+def _print_notes(notes: list[str] | tuple[str, ...]) -> None:
+    # beside the output proper, which may be TOML
+    for note in notes:
+        typer.echo(f"note: {note}", err=True)
+
+
+def _vacant(path: Path, *, force: bool) -> None:
+    if path.exists() and not force:
+        raise InputError(f"{path}: exists already; --force replaces it")

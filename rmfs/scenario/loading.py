@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rmfs.config import apply_overrides, read_toml, validate
 from rmfs.instances import locate
 from rmfs.scenario.parameters import Scenario
+from rmfs.scenario.rawsimo import read_xsett
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -15,16 +16,31 @@ if TYPE_CHECKING:
     from rmfs.config import Table
 
 
+_FILES = (("skus", "file"), ("skus", "words"), ("demand", "file"), ("replenishment", "file"))
+"""Keys that name files."""
+
+
 def load(name_or_path: str | Path, overrides: Sequence[tuple[Sequence[str], Any]] = ()) -> Scenario:
-    """Read a scenario.
+    """Read a scenario; see `load_with_notes`."""
+    return load_with_notes(name_or_path, overrides)[0]
+
+
+def load_with_notes(
+    name_or_path: str | Path, overrides: Sequence[tuple[Sequence[str], Any]] = ()
+) -> tuple[Scenario, list[str]]:
+    """Read a scenario and the remarks of its import.
 
     Parameters
     ----------
     name_or_path
-        A TOML file, or the name of a shipped scenario.
+        A TOML file, a file of RAWSim-O (.xsett), or the name of a shipped scenario.
     overrides
         Pairs of a path of keys and a value, for example `(["duration_s"], 7200)`; they replace
         what the file says before it is checked.
+
+    Returns
+    -------
+    The scenario, and remarks on what an import left out or does differently.
 
     Raises
     ------
@@ -32,18 +48,30 @@ def load(name_or_path: str | Path, overrides: Sequence[tuple[Sequence[str], Any]
         One line that names the file and everything wrong in it.
     """
     path = locate("scenarios", str(name_or_path))
-    table = read_toml(path)
-    table.setdefault("name", path.stem)
-    _anchor_sku_file(table, path.resolve().parent)
+    notes: list[str] = []
+    if path.suffix.lower() == ".xsett":
+        read = read_xsett(path)
+        table, notes = read.table, read.notes
+    else:
+        table = read_toml(path)
+        table.setdefault("name", path.stem)
+        _anchor_files(table, path.resolve().parent)
     table = apply_overrides(table, [(list(keys), value) for keys, value in overrides])
-    return validate(Scenario, table, str(path))
+    return validate(Scenario, table, str(path)), notes
 
 
-def _anchor_sku_file(table: Table, folder: Path) -> None:
-    """Make the path of a SKU file absolute: in a scenario it is relative to the scenario's folder.
+def named_files(scenario: Scenario) -> dict[str, Path]:
+    """Return the files that a scenario names, by their keys, such as `demand.file`."""
+    found = {f"{name}.{key}": getattr(getattr(scenario, name), key, None) for name, key in _FILES}
+    return {key: path for key, path in found.items() if path is not None}
 
-    In an override it is relative to the working directory, as every path on the command line.
+
+def _anchor_files(table: Table, folder: Path) -> None:
+    """Make paths absolute: in a scenario file they are relative to its folder.
+
+    In an override they are relative to the working directory, as every path on the command line.
     """
-    skus = table.get("skus")
-    if isinstance(skus, dict) and isinstance(skus.get("file"), str):
-        skus["file"] = str(folder / skus["file"])
+    for name, key in _FILES:
+        block = table.get(name)
+        if isinstance(block, dict) and isinstance(block.get(key), str):
+            block[key] = str(folder / block[key])

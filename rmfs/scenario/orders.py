@@ -62,6 +62,8 @@ class OrderSource:
         The run's seed.
     source
         Name of the scenario, for messages.
+    path
+        Numbers below the stream, for orders that are counted apart.
 
     Raises
     ------
@@ -69,12 +71,19 @@ class OrderSource:
         If an order may need more lines than there are SKUs.
     """
 
-    def __init__(self, config: Orders, skus: SkuSet, seed: int, source: str = "orders") -> None:
+    def __init__(
+        self,
+        config: Orders,
+        skus: SkuSet,
+        seed: int,
+        source: str = "orders",
+        path: tuple[int, ...] = (),
+    ) -> None:
         try:
             not_above_skus(config.lines.max, len(skus))
         except ValueError as error:
             raise InputError(f"{source}: orders: {error}") from None
-        self._substreams = Substreams(seed, Stream.ORDER_CONTENTS)
+        self._substreams = Substreams(seed, Stream.ORDER_CONTENTS, path)
         self._lines = config.lines.sampler()
         self._units = config.units_per_line.sampler()
         self._due = config.due.sampler()
@@ -118,7 +127,11 @@ class OrderSource:
                     redraws += 1
                 number = uniform()
             else:
-                found = self._among_qualifying(sampler, chosen, uncommitted >= wanted, number)
+                enough = uncommitted >= wanted
+                enough[chosen] = False
+                found = sampler.pick_among(enough, number)
+                if found is None and related[line]:
+                    found = self._by_popularity.pick_among(enough, number)
                 if found is None:
                     return None
                 sku = found
@@ -135,11 +148,3 @@ class OrderSource:
         if not related or self._by_affinity is None:
             return self._by_popularity
         return self._by_affinity(chosen[-1]) or self._by_popularity
-
-    @staticmethod
-    def _among_qualifying(
-        sampler: Categorical, chosen: list[int], enough: NDArray[np.bool_], number: float
-    ) -> int | None:
-        """Draw at once from the SKUs that qualify; None if there are none."""
-        enough[chosen] = False
-        return sampler.pick_among(enough, number)

@@ -26,10 +26,12 @@ class Substreams:
         The run's seed, 0 or greater.
     stream
         Which stream of the tree.
+    path
+        Further numbers below the stream: each has substreams of its own.
     """
 
-    def __init__(self, seed: int, stream: Stream) -> None:
-        sequence = np.random.SeedSequence(seed, spawn_key=(int(stream),))
+    def __init__(self, seed: int, stream: Stream, path: tuple[int, ...] = ()) -> None:
+        sequence = np.random.SeedSequence(seed, spawn_key=(int(stream), *path))
         self._generator = np.random.Philox(key=sequence.generate_state(2, np.uint64))
         self._uniform: Callable[[], float] = np.random.Generator(self._generator).random
         self._start = self._generator.state

@@ -47,4 +47,9 @@ def _value(value: Any) -> str:
     if isinstance(value, (str, Path)):
         # a JSON string is a TOML string, but for a character that JSON leaves as it is
         return json.dumps(str(value), ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, (tuple, list)):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, dict):
+        pairs = (f"{_value(str(key))} = {_value(item)}" for key, item in value.items())
+        return f"{{ {', '.join(pairs)} }}"
     raise TypeError(f"no TOML value: {value!r}")

@@ -4,15 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.control.decisions import BringForBundles, BringForPicks, Park, Rest
+from rmfs.control.decisions import (
+    BringForBundles,
+    BringForPicks,
+    Park,
+    Prepare,
+    Reposition,
+    Rest,
+    TaskDecision,
+)
 from rmfs.control.problems import Problem, Trigger
 from rmfs.traffic import Step
-from rmfs.world.tasks import TaskKind
+from rmfs.world.tasks import Task, TaskKind
 
 if TYPE_CHECKING:
+    from rmfs.control.ta import Consult
     from rmfs.simulation.simulation import Simulation
     from rmfs.world.robots import Robot
-    from rmfs.world.tasks import Task
 
 # plain numbers for the hot path
 _DRIVE, _LIFT, _SET_DOWN, _STATION = (
@@ -41,6 +49,7 @@ class Dispatch:
         """Bring a pod, or go on with the one carried, to a pick station."""
         robot = decision.robot
         task = self._world.start_pick(robot, decision.pod, decision.station)
+        self._simulation.late_binding.task_started(task)
         self._bring(robot, task)
 
     def bring_for_bundles(self, decision: BringForBundles) -> None:
@@ -55,6 +64,13 @@ class Dispatch:
         task = self._world.start_park(robot, place)
         self._tell(task)
         self._command(robot, place, [(_DRIVE, place), (_SET_DOWN, robot.pod)])
+
+    def reposition(self, decision: Reposition) -> None:
+        """Move a stored pod to another place."""
+        robot, pod, place = decision
+        task = self._world.start_reposition(robot, pod, place)
+        self._tell(task)
+        self._fetch(robot)
 
     def rest(self, decision: Rest) -> None:
         """Let a robot wait at a place."""
@@ -85,7 +101,11 @@ class Dispatch:
             self._send_away(self._world.robots[keeper])
             return
         self._storage.keep(robot, place)
-        program = [(_DRIVE, place), (_LIFT, task.pod), (_STATION, task.station)]
+        program = [(_DRIVE, place), (_LIFT, task.pod)]
+        if task.kind is TaskKind.REPOSITION:
+            program += [(_DRIVE, task.place), (_SET_DOWN, task.pod)]
+        else:
+            program.append((_STATION, task.station))
         self._command(robot, place, program)
 
     def _send_away(self, keeper: Robot) -> None:
@@ -115,6 +135,53 @@ class Dispatch:
             self._world.now_s, task.robot, task.kind.value, task.station
         )
 
+    # --- tasks prepared ahead -------------------------------------------------------------------
+
+    def prepare(self, decision: Prepare) -> None:
+        """Remember what a robot is to do after its present task."""
+        robot, tasks = decision
+        robot.prepared.clear()
+        robot.prepared.extend(_planned(task) for task in tasks)
+
+    def start_prepared(self, robot: Robot, consult: Consult) -> None:
+        """Start the first prepared task of a robot that is possible; pass over those before it."""
+        while robot.prepared:
+            task = robot.prepared.popleft()
+            if task.kind is TaskKind.PARK and task.place < 0 and robot.pod >= 0:
+                task.place = consult.place_for(robot)
+            if self._is_possible(robot, task, consult):
+                self._start(robot, task)
+                return
+            self._world.tasks_dropped += 1
+
+    def _is_possible(self, robot: Robot, task: Task, consult: Consult) -> bool:
+        storage, place, pod = self._storage, task.place, task.pod
+        if task.kind is TaskKind.PARK:
+            return robot.pod >= 0 and place >= 0 and self._is_empty(place)
+        if task.kind is TaskKind.REST:
+            free = storage.kept_by[place] in (-1, robot.index)
+            return robot.pod < 0 and free
+        if pod != robot.pod and (robot.pod >= 0 or not storage.is_at_hand[pod]):
+            return False
+        if task.kind is TaskKind.REPOSITION:
+            return robot.pod < 0 and self._is_empty(place)
+        return consult.serves(pod, task.station)
+
+    def _is_empty(self, place: int) -> bool:
+        return bool(self._storage.is_empty[self._storage.place_index[place]])
+
+    def _start(self, robot: Robot, task: Task) -> None:
+        if task.kind is TaskKind.PICK:
+            self.bring_for_picks(BringForPicks(robot, task.pod, task.station))
+        elif task.kind is TaskKind.REPLENISH:
+            self.bring_for_bundles(BringForBundles(robot, task.pod, task.station))
+        elif task.kind is TaskKind.PARK:
+            self.park(Park(robot, task.place))
+        elif task.kind is TaskKind.REPOSITION:
+            self.reposition(Reposition(robot, task.pod, task.place))
+        else:
+            self.rest(Rest(robot, task.place))
+
     # --- reports of traffic ---------------------------------------------------------------------
 
     def departed(self, index: int, _place: int = -1) -> None:
@@ -140,16 +207,17 @@ class Dispatch:
         return self._world.robots[keeper].waypoint == place
 
     def lift_started(self, index: int, pod: int) -> None:
-        """A robot lifts its pod; next it goes to the station of its task."""
+        """A robot lifts its pod; next it goes to the station, or the place, of its task."""
         world = self._world
         robot = world.robots[index]
         assert robot.task is not None
-        place = robot.waypoint
+        place, station = robot.waypoint, robot.task.station
         world.lift(robot, pod)
-        robot.waypoint = world.stations[robot.task.station].waypoint
+        robot.waypoint = world.stations[station].waypoint if station >= 0 else robot.task.place
         robot.tier = self._tier[robot.waypoint]
         self._simulation.observers.pod_lifted(world.now_s, pod, index, place)
-        self._simulation.late_binding.pod_lifted(pod)
+        if station >= 0:
+            self._simulation.late_binding.pod_lifted(pod)
         self._simulation.phase.signal(Trigger.POD_LIFTED, pod)
 
     def at_head(self, index: int, station: int) -> None:
@@ -170,7 +238,23 @@ class Dispatch:
         self._simulation.observers.pod_set_down(self._world.now_s, pod, index, robot.waypoint)
 
     def idle(self, index: int, _waypoint: int) -> None:
-        """A robot has done all it was commanded; one that parked a pod needs a task."""
+        """A robot has done all it was commanded; one that stored a pod needs a task."""
         task = self._world.robots[index].task
-        if task is not None and task.kind is TaskKind.PARK:
+        if task is not None and task.kind in (TaskKind.PARK, TaskKind.REPOSITION):
             self._simulation.end_task(index)
+
+
+def _planned(decision: TaskDecision) -> Task:
+    """Make of a decision a task that has not begun."""
+    robot = decision.robot.index
+    match decision:
+        case BringForPicks(_, pod, station):
+            return Task(TaskKind.PICK, robot, pod, station)
+        case BringForBundles(_, pod, station):
+            return Task(TaskKind.REPLENISH, robot, pod, station)
+        case Park(_, place):
+            return Task(TaskKind.PARK, robot, place=place)
+        case Reposition(_, pod, place):
+            return Task(TaskKind.REPOSITION, robot, pod, place=place)
+        case Rest(_, place):
+            return Task(TaskKind.REST, robot, place=place)

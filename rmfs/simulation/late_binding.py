@@ -8,6 +8,8 @@ from rmfs.control.problems import Problem
 from rmfs.world.tasks import TaskKind
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rmfs.control.travel import Travel
     from rmfs.simulation.panel import Panel
     from rmfs.world import World
@@ -21,7 +23,8 @@ class LateBinding:
 
     A task is extended only while its pod is carried and at least one of its requests is left; a pod
     that has none left is looked at when its robot asks for a task. Of several pods the one that
-    will be at the station first gets the work. PPS switches this on and off.
+    will be at the station first gets the work. PPS switches this on and off, and says whether
+    requests of queued orders are bound too.
     """
 
     def __init__(self, world: World, travel: Travel, panel: Panel) -> None:
@@ -29,12 +32,17 @@ class LateBinding:
         self._travel = travel
         self._panel = panel
         self._orders: list[Order] = []
+        self._queued: list[Order] = []
         self._bundles: list[Bundle] = []
         self._pods: list[int] = []
 
     def order_assigned(self, order: Order) -> None:
         """Remember an order put on a pick station."""
         self._orders.append(order)
+
+    def order_queued(self, order: Order) -> None:
+        """Remember an order that joined a pool."""
+        self._queued.append(order)
 
     def bundle_assigned(self, bundle: Bundle) -> None:
         """Remember a bundle assigned to station and pod."""
@@ -43,6 +51,12 @@ class LateBinding:
     def pod_lifted(self, pod: int) -> None:
         """Remember a pod that has just been lifted for a task."""
         self._pods.append(pod)
+
+    def task_started(self, task: Task) -> None:
+        """Give a task that has just begun the requests of queued orders, after all others."""
+        queued = self._world.pick_stations[task.station].queued
+        if queued:
+            self._bind_queued(task, queued.values(), late_bound=False)
 
     def bind(self) -> None:
         """Extend tasks by what has come up since the last time."""
@@ -53,10 +67,13 @@ class LateBinding:
         if given.late_picks:
             for order in self._orders:
                 self._bind_order(order)
+            for order in self._queued:
+                self._offer_queued(order)
         for pod in self._pods:
             self._extend(pod, given.late_picks, given.late_bundles)
         self._bundles.clear()
         self._orders.clear()
+        self._queued.clear()
         self._pods.clear()
 
     def _bind_order(self, order: Order) -> None:
@@ -88,6 +105,27 @@ class LateBinding:
             available = self._world.inventory.available.item
             for sku in [sku for sku in requests.lines if available(sku, pod)]:
                 self._world.extend_pick(task, sku)
+            queued = self._world.pick_stations[task.station].queued
+            if queued:
+                self._bind_queued(task, queued.values())
+
+    def _offer_queued(self, order: Order) -> None:
+        """Bind a queued order to pods on their way to its station."""
+        if order.queued_at < 0:
+            return
+        station = self._world.pick_stations[order.queued_at]
+        tasks = [task for task in station.tasks.values() if task.picks and self._is_carried(task)]
+        self._sort_by_arrival(tasks, station)
+        for task in tasks:
+            self._bind_queued(task, [order])
+
+    def _bind_queued(self, task: Task, orders: Iterable[Order], late_bound: bool = True) -> None:
+        mode = self._panel[Problem.PPS].parameters.reserve
+        if mode == "assigned":
+            return
+        whole = mode == "assigned-and-completable"
+        for order in orders:
+            self._world.extend_queued(task, order, whole=whole, late_bound=late_bound)
 
     def _extend_replenish(self, station: int, pod: int) -> None:
         task = self._world.stations[station].tasks.get(pod)

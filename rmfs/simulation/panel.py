@@ -11,7 +11,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rmfs.control.base import Controller
-    from rmfs.control.settings import Choice, ControllerSettings
+    from rmfs.control.choices import Choice
+    from rmfs.control.settings import ControllerSettings
+    from rmfs.control.trackers import Tracker
     from rmfs.control.view import View
 
 _ORDER = list(Problem)
@@ -42,6 +44,7 @@ class Panel:
         self._view = view
         self._seed = seed
         self._installed: dict[Problem, Controller[Any]] = {}
+        self._consulted: dict[Problem, Controller[Any]] = {}
         self._generations = dict.fromkeys(Problem, 0)
         self.calls: list[frozenset[Problem]] = []
         self.listeners: list[list[Callable[[Trigger, Any], None]]] = []
@@ -52,6 +55,14 @@ class Panel:
     def __getitem__(self, problem: Problem) -> Any:
         """Look up the controller of a problem."""
         return self._installed[problem]
+
+    def consulted(self, problem: Problem) -> Any:
+        """Look up who answers TA's questions about a problem: whoever decides it.
+
+        If a dummy is installed, it is the joint controller that takes the dummy's decision; that
+        one must then have the methods of the problem's protocol as well.
+        """
+        return self._consulted[problem]
 
     def install(self, choice: Choice) -> None:
         """Exchange the controller of a problem."""
@@ -66,10 +77,15 @@ class Panel:
         self._installed[problem] = choice.controller(choice.parameters, self._view, rng)
 
     def _connect(self) -> None:
-        """Work out who is asked after, and told of, each trigger."""
+        """Work out who is asked after, and told of, each trigger, and who decides what."""
+        self._consulted = dict(self._installed)
+        for controller in self._installed.values():
+            for problem in controller.decides:
+                self._consulted[problem] = controller
         everyone = self._installed.items()
         self.calls = [
             frozenset(p for p, c in everyone if trigger in c.triggers | c.subscriptions)
             for trigger in Trigger
         ]
-        self.listeners = [[c.hear for _, c in everyone if t in c.hears] for t in Trigger]
+        told: list[Controller[Any] | Tracker] = [*self._view.trackers, *self._installed.values()]
+        self.listeners = [[one.hear for one in told if t in one.hears] for t in Trigger]

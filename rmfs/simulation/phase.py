@@ -15,18 +15,21 @@ from rmfs.simulation.statistics import DecisionStatistics
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
+    from rmfs.control.choices import Choice
     from rmfs.control.pps import PodSelection
     from rmfs.control.psa import PodStorageAssignment
-    from rmfs.control.settings import Choice, ControllerSettings
+    from rmfs.control.repositioning import Move, Repositioning
+    from rmfs.control.settings import ControllerSettings
     from rmfs.simulation.simulation import Simulation
     from rmfs.world.orders import Bundle
     from rmfs.world.robots import Robot
 
 # the steps of the phase in their order; the earliest one that is due comes next
-_SUPPLY = 0
+_MANAGE = 0
+_SUPPLY = 1
 _ASKED = (Problem.SA, Problem.RPS, Problem.ROA, Problem.POA)
-_LATE_BINDING = len(_ASKED) + 1
-_TASKS = len(_ASKED) + 2
+_LATE_BINDING = _SUPPLY + len(_ASKED) + 1
+_TASKS = _LATE_BINDING + 1
 
 _SUPPLY_AFTER = frozenset(
     {
@@ -38,15 +41,16 @@ _SUPPLY_AFTER = frozenset(
     }
 )
 _LATE_BINDING_AFTER = frozenset(
-    {Trigger.ORDER_ASSIGNED, Trigger.BUNDLE_ASSIGNED, Trigger.POD_LIFTED}
+    {Trigger.ORDER_ASSIGNED, Trigger.ORDER_QUEUED, Trigger.BUNDLE_ASSIGNED, Trigger.POD_LIFTED}
 )
 
 
 class DecisionPhase:
     """Knows what is due, asks the controllers, and applies what they say.
 
-    The order is supply, SA, RPS, ROA, POA, late binding, TA; whatever a step makes due is done
-    before anything later in this order.
+    The order is MM, supply, SA, RPS, ROA, POA, late binding, TA; whatever a step makes due is done
+    before anything later in this order. PPS, PSA and repositioning are asked by TA; it is also
+    asked when repositioning wants to be.
 
     Attributes
     ----------
@@ -67,11 +71,12 @@ class DecisionPhase:
         self.statistics: dict[Problem, DecisionStatistics] = {
             problem: DecisionStatistics(str(problem), choice.name)
             for problem, choice in settings.choices.items()
-            if problem not in (Problem.MM, Problem.PP)
+            if problem is not Problem.PP
         }
         self._consult = _Consult(self, simulation)
         self._step_of = {problem: step for step, problem in enumerate(_ASKED, start=_SUPPLY + 1)}
-        self._step_of[Problem.TA] = _TASKS
+        self._step_of[Problem.MM] = _MANAGE
+        self._step_of[Problem.TA] = self._step_of[Problem.REPOSITIONING] = _TASKS
         self._masks: list[int] = []
         dispatch = simulation.dispatch
         self._apply: dict[type, Callable[[Any], None]] = {
@@ -80,17 +85,39 @@ class DecisionPhase:
             say.ReleasePod: self._release_pod,
             say.SendBundle: self._send_bundle,
             say.AssignOrder: self._assign_order,
+            say.QueueOrder: self._queue_order,
             say.BringForPicks: dispatch.bring_for_picks,
             say.BringForBundles: dispatch.bring_for_bundles,
             say.Park: dispatch.park,
+            say.Reposition: dispatch.reposition,
             say.Rest: dispatch.rest,
+            say.Prepare: self._prepare,
+            say.Exchange: self._exchange,
         }
         self._connect()
 
     def exchange(self, choice: Choice) -> None:
-        """Install another controller for a problem; it is asked in the phase of this instant."""
-        problem = choice.problem
+        """Install another controller for a problem; it is asked in the phase of this instant.
+
+        What the former one has promised lives in the world and is carried on with: bundles on pods
+        and at stations, orders and robots at work. Given back is what only the former one knew
+        what to do with: pools of queued orders, tasks prepared ahead, and bundles held back, if
+        nobody is left who would release them.
+        """
+        problem, new = choice.problem, choice.controller
+        if type(self._panel[problem]) is not new:
+            if problem is Problem.POA:
+                self._world.unqueue_all()
+            elif problem is Problem.TA:
+                for robot in self._world.robots:
+                    robot.prepared.clear()
+            elif problem is Problem.RPS and new.is_dummy:
+                for pod in list(self._world.bundles.unreleased):
+                    self._release_pod(say.ReleasePod(pod))
         self._panel.install(choice)
+        self._simulation.observers.controller_exchanged(
+            self._world.now_s, problem.value, choice.name
+        )
         self._cancel_alarm(problem)
         self._connect()
         if problem in self.statistics:
@@ -104,7 +131,9 @@ class DecisionPhase:
         step_of = self._step_of
         self._masks = []
         for trigger in Trigger:
-            mask = sum(1 << step_of[p] for p in self._panel.calls[trigger] if p in step_of)
+            mask = 0
+            for problem in self._panel.calls[trigger] & step_of.keys():
+                mask |= 1 << step_of[problem]
             mask |= (trigger in _SUPPLY_AFTER) << _SUPPLY
             mask |= (trigger in _LATE_BINDING_AFTER) << _LATE_BINDING
             self._masks.append(mask)
@@ -150,14 +179,27 @@ class DecisionPhase:
     def _do(self, step: int) -> None:
         if step == _SUPPLY:
             self._simulation.supply.top_up()
+        elif step == _MANAGE:
+            self._ask(Problem.MM, self._panel[Problem.MM].decide())
         elif step == _LATE_BINDING:
             self._simulation.late_binding.bind()
         elif step == _TASKS:
-            if self._world.asking or self._world.resting or Problem.TA in self._overdue:
-                self._ask(Problem.TA, self._panel[Problem.TA].decide(self._consult))
+            self._give_tasks()
         else:
-            problem = _ASKED[step - 1]
+            problem = _ASKED[step - _SUPPLY - 1]
             self._ask(problem, self._panel[problem].decide())
+
+    def _give_tasks(self) -> None:
+        """Start tasks prepared ahead, then ask TA, with whom repositioning is asked as well."""
+        world = self._world
+        for robot in list(world.asking.values()):
+            if robot.prepared:
+                self._simulation.dispatch.start_prepared(robot, self._consult)
+        if world.asking or world.resting or Problem.TA in self._overdue:
+            self._ask(Problem.TA, self._panel[Problem.TA].decide(self._consult))
+        self._overdue.discard(Problem.REPOSITIONING)
+        if Problem.REPOSITIONING in self._punctual:
+            self._set_alarm(Problem.REPOSITIONING)
 
     def _ask(self, problem: Problem, given: Iterable[Any]) -> None:
         """Apply decisions one by one, and measure the time it takes to come to them."""
@@ -213,6 +255,16 @@ class DecisionPhase:
 
     # --- applying -------------------------------------------------------------------------------
 
+    def _exchange(self, decision: say.Exchange) -> None:
+        self.exchange(decision.choice)
+
+    def _prepare(self, decision: say.Prepare) -> None:
+        """Remember tasks for later, or start the first if the robot has nothing better to do."""
+        dispatch, robot = self._simulation.dispatch, decision.robot
+        dispatch.prepare(decision)
+        if robot.task is None or robot.index in self._world.resting:
+            dispatch.start_prepared(robot, self._consult)
+
     def _switch_station(self, decision: say.SwitchStation) -> None:
         station = self._world.stations[decision.station]
         if station.active != decision.active:
@@ -251,6 +303,15 @@ class DecisionPhase:
         self._simulation.observers.order_assigned(order)
         self.signal(Trigger.ORDER_ASSIGNED, order)
 
+    def _queue_order(self, decision: say.QueueOrder) -> None:
+        order = decision.order
+        if decision.station < 0:
+            self._world.unqueue_order(order)
+            return
+        self._world.queue_order(order, decision.station)
+        self._simulation.late_binding.order_queued(order)
+        self.signal(Trigger.ORDER_QUEUED, order)
+
 
 class _Consult:
     """Passes TA's questions on to the controllers installed now, and measures them."""
@@ -260,10 +321,15 @@ class _Consult:
         self._world = simulation.world
         self._panel = simulation.panel
 
+    def serves(self, pod: int, station: int) -> bool:
+        """Ask PPS whether there is work for a pod."""
+        pps: PodSelection[Any] = self._panel[Problem.PPS]
+        return pps.serves(pod, station)
+
     def pod_for(self, robot: Robot, station: int) -> int:
         """Ask PPS for a pod."""
         start = perf_counter_ns()
-        pps: PodSelection[Any] = self._panel[Problem.PPS]
+        pps: PodSelection[Any] = self._panel.consulted(Problem.PPS)
         if self._world.is_pick_station(station):
             pod = pps.pick_pod(robot, self._world.pick_stations[station])
         else:
@@ -274,7 +340,7 @@ class _Consult:
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
         """Ask PPS for the next station of a carried pod."""
         start = perf_counter_ns()
-        pps: PodSelection[Any] = self._panel[Problem.PPS]
+        pps: PodSelection[Any] = self._panel.consulted(Problem.PPS)
         station = pps.next_station(robot, stations)
         self._phase.consulted(Problem.PPS, perf_counter_ns() - start, decided=True)
         return station
@@ -282,7 +348,17 @@ class _Consult:
     def place_for(self, robot: Robot) -> int:
         """Ask PSA for a place."""
         start = perf_counter_ns()
-        psa: PodStorageAssignment[Any] = self._panel[Problem.PSA]
+        psa: PodStorageAssignment[Any] = self._panel.consulted(Problem.PSA)
         place = psa.place(robot)
         self._phase.consulted(Problem.PSA, perf_counter_ns() - start, place >= 0)
         return place
+
+    def move_for(self, robot: Robot) -> Move | None:
+        """Ask repositioning for a pod to move, unless it would not answer now."""
+        rule: Repositioning[Any] = self._panel.consulted(Problem.REPOSITIONING)
+        if not rule.is_ready(robot):
+            return None
+        start = perf_counter_ns()
+        move = rule.move(robot)
+        self._phase.consulted(Problem.REPOSITIONING, perf_counter_ns() - start, move is not None)
+        return move

@@ -8,6 +8,7 @@ is shorter than the rest of the transfer. At a replenishment station a bundle ke
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rmfs.control.problems import Trigger
@@ -27,7 +28,8 @@ class PickService:
 
     A unit leaves its pod, and its request is fulfilled, when its pick starts. An order whose last
     unit is picked leaves its slot when the station is done with that unit. (RAWSim-O loses up to
-    one tick of 0.4 s per completed order there.)
+    one tick of 0.4 s per completed order there.) A pod with requests of queued orders only waits
+    for a slot if one is about to be free, then it is let go.
     """
 
     def __init__(
@@ -53,7 +55,22 @@ class PickService:
         if not task.picks:
             simulation.end_task(station.robot)
         elif now_us >= self._busy_until_us:
-            self._pick(task)
+            if task.can_pick:
+                self._pick(task)
+            else:
+                # POA may still assign one of the orders at this instant
+                simulation.after_decisions(partial(self._pick_or_leave, task))
+        elif not self._finished and not task.can_pick:
+            simulation.after_decisions(partial(self._pick_or_leave, task))
+
+    def _pick_or_leave(self, task: Task) -> None:
+        """Let a pod go that is here for queued orders only; their requests are open again."""
+        robots, here = self._simulation.world.robots, self._station.robot
+        if here < 0 or robots[here].task is not task:
+            return
+        if not task.can_pick:
+            self._simulation.world.give_back(task)
+        self.go_on()
 
     def _pick(self, task: Task) -> None:
         """Start the next pick of a task."""

@@ -15,6 +15,7 @@ from rmfs.simulation.late_binding import LateBinding
 from rmfs.simulation.observers import Observers
 from rmfs.simulation.pacing import Instant
 from rmfs.simulation.panel import Panel
+from rmfs.simulation.past import past_orders
 from rmfs.simulation.phase import DecisionPhase
 from rmfs.simulation.service import PickService, ReplenishmentService
 from rmfs.simulation.supply import Supply
@@ -91,7 +92,12 @@ class Simulation:
         self.traffic = traffic if traffic is not None else Traffic(layout)
         self.world = _stocked_world(layout, scenario, seed)
         travel = Travel(layout, self.traffic)
-        self.view = View(self.world, travel)
+        self.view = View(
+            self.world,
+            travel,
+            self.end_s,
+            lambda: past_orders(scenario, self.world.skus, seed),
+        )
         self.panel = Panel(controllers, self.view, seed)
         self.dispatch = Dispatch(self)
         self.phase = DecisionPhase(self, controllers)

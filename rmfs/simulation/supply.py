@@ -5,71 +5,131 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rmfs.control.problems import Trigger
-from rmfs.scenario import BundleSource, BundleTopUp, OrderSource, OrderTopUp
+from rmfs.scenario import Site, bundle_intake, order_intake
 from rmfs.world.orders import Bundle, Order
 
 if TYPE_CHECKING:
-    from rmfs.scenario import Scenario
+    from collections.abc import Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rmfs.scenario import BundleArrival, OrderArrival, Scenario, StreamRecorder
     from rmfs.simulation.simulation import Simulation
+    from rmfs.world.stations import PickStation, ReplenishmentStation
 
 
 class Supply:
-    """Keeps both backlogs at a constant length, with the pauses the scenario asks for.
+    """Asks the scenario what comes, at the times it names and after every change.
 
-    Topped up whenever the backlogs or the stock have changed, and when a failed attempt may be
-    repeated.
+    It is what the scenario sees of the run (`rmfs.scenario.State`).
+
+    Parameters
+    ----------
+    recorder
+        Keeps all orders and bundles that come.
     """
 
-    def __init__(self, simulation: Simulation, scenario: Scenario, seed: int) -> None:
+    def __init__(
+        self,
+        simulation: Simulation,
+        scenario: Scenario,
+        seed: int,
+        recorder: StreamRecorder | None = None,
+    ) -> None:
         self._simulation = simulation
-        self._world = simulation.world
-        capacity = simulation.world.inventory.total_capacity
-        skus = simulation.world.skus
-        self._order_source = OrderSource(scenario.orders, skus, seed, source=scenario.name)
-        self._bundle_source = BundleSource(skus, seed)
-        self._order_top_up = OrderTopUp(scenario.demand, capacity)
-        self._bundle_top_up = BundleTopUp(scenario.replenishment, capacity)
-        self._orders_drawn = 0
-        self._bundles_drawn = 0
+        self._world = world = simulation.world
+        layout = simulation.layout
+        site = Site(
+            pick_stations=len(layout.pick_stations),
+            replenishment_stations=len(layout.replenishment_stations),
+            capacity=world.inventory.total_capacity,
+            largest_pod=float(layout.pod_capacity.max(initial=0.0)),
+        )
+        self._orders = order_intake(scenario, world.skus, site, seed, recorder)
+        self._bundles = bundle_intake(scenario, world.skus, site, seed, recorder)
+        self._woken_us = -1
 
     def top_up(self) -> None:
-        """Make orders and bundles until no more are wanted."""
-        self._top_up_orders()
-        self._top_up_bundles()
+        """Make the orders and bundles that come now."""
+        now_us = self._simulation.now_us
+        for order in self._orders.due(now_us, self):
+            self._add_order(order)
+        for bundle in self._bundles.due(now_us, self):
+            self._add_bundle(bundle)
+        self._wake_at(min(self._orders.next_us, self._bundles.next_us))
 
-    def _top_up_orders(self) -> None:
-        world, wants = self._world, self._order_top_up.wants
-        now_s, inventory = world.now_s, world.inventory
-        while wants(now_s, len(world.orders), inventory.stored_space):
-            draft = self._order_source.draw(self._orders_drawn, inventory.uncommitted)
-            self._orders_drawn += 1
-            if draft is None:
-                self._order_top_up.failed(now_s)
-                self._try_again(self._order_top_up.blocked_until_s)
-                return
-            world.order_redraws += draft.redraws
-            order = Order.of(
-                world.orders_created, now_s, now_s + draft.due_offset_s, draft.skus, draft.units
-            )
-            world.add_order(order)
-            self._simulation.observers.order_created(order)
-            self._simulation.phase.signal(Trigger.NEW_ORDER, order)
+    def _add_order(self, arrival: OrderArrival) -> None:
+        world = self._world
+        world.order_redraws += arrival.redraws
+        left = world.inventory.uncommitted.item
+        world.orders_short += any(
+            left(sku) < units for sku, units in zip(arrival.skus, arrival.units, strict=True)
+        )
+        order = Order.of(
+            world.orders_created, world.now_s, arrival.due_s, arrival.skus, arrival.units
+        )
+        world.add_order(order)
+        self._simulation.observers.order_created(order)
+        self._simulation.phase.signal(Trigger.NEW_ORDER, order)
 
-    def _top_up_bundles(self) -> None:
-        world, top_up = self._world, self._bundle_top_up
-        now_s = world.now_s
-        while top_up.wants(now_s, len(world.bundles), world.load):
-            draft = self._bundle_source.draw(self._bundles_drawn)
-            self._bundles_drawn += 1
-            if not top_up.accepts(world.load, draft.space):
-                top_up.failed(now_s)
-                self._try_again(top_up.blocked_until_s)
-                return
-            bundle = Bundle(world.bundles_created, draft.sku, draft.units, draft.space, now_s)
-            world.add_bundle(bundle)
-            self._simulation.observers.bundle_created(bundle)
-            self._simulation.phase.signal(Trigger.NEW_BUNDLE, bundle)
+    def _add_bundle(self, arrival: BundleArrival) -> None:
+        world = self._world
+        bundle = Bundle(
+            world.bundles_created, arrival.sku, arrival.units, arrival.space, world.now_s
+        )
+        world.add_bundle(bundle)
+        self._simulation.observers.bundle_created(bundle)
+        self._simulation.phase.signal(Trigger.NEW_BUNDLE, bundle)
 
-    def _try_again(self, time_s: float) -> None:
-        simulation = self._simulation
-        simulation.agenda.at(simulation.us_at(time_s), simulation.phase.supply_wanted)
+    def _wake_at(self, time_us: int) -> None:
+        """Ask again at a time, unless that has been arranged already."""
+        if time_us != self._woken_us:
+            self._woken_us = time_us
+            self._simulation.agenda.at(time_us, self._simulation.phase.supply_wanted)
+
+    # --- what the scenario sees of the run ------------------------------------------------------
+
+    @property
+    def waiting_orders(self) -> int:
+        """Orders not yet at a station."""
+        return len(self._world.orders)
+
+    @property
+    def waiting_bundles(self) -> int:
+        """Bundles not yet assigned to a station and a pod."""
+        return len(self._world.bundles)
+
+    @property
+    def stored_space(self) -> float:
+        """Space units stored on all pods."""
+        return self._world.inventory.stored_space
+
+    @property
+    def load(self) -> float:
+        """Space units of what is stored, on its way into pods, and waiting."""
+        return self._world.load
+
+    @property
+    def uncommitted(self) -> NDArray[np.int64]:
+        """Units of each SKU stored less those that orders want."""
+        return self._world.inventory.uncommitted
+
+    @property
+    def incoming(self) -> NDArray[np.int64]:
+        """Units of each SKU in bundles that have come and are not stored yet."""
+        return self._world.incoming
+
+    @property
+    def active_pick_share(self) -> float:
+        """Active pick stations / all of them; one is counted at least."""
+        return _active_share(self._world.pick_stations)
+
+    @property
+    def active_replenishment_share(self) -> float:
+        """Active replenishment stations / all of them; one is counted at least."""
+        return _active_share(self._world.replenishment_stations)
+
+
+def _active_share(stations: Sequence[PickStation] | Sequence[ReplenishmentStation]) -> float:
+    return max(1, sum(station.active for station in stations)) / max(1, len(stations))

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rmfs.world.orders import Bundle, Order
+    from rmfs.world.orders import Bundle, Order, OrderLine
 
 
 class OrderBacklog:
@@ -37,6 +37,8 @@ class OrderBacklog:
         self._sku = np.zeros((64, 4), np.int64)
         self._units = np.zeros((64, 4), np.int32)
         self._due_s = np.zeros(64)
+        self._index = np.zeros(64, np.int64)
+        self._queued_at = np.full(64, -1, np.int32)
 
     def __len__(self) -> int:
         return len(self.orders)
@@ -54,7 +56,10 @@ class OrderBacklog:
 
     @property
     def units(self) -> NDArray[np.int32]:
-        """Units of each line, 0 where there is none, shape (B, L)."""
+        """Open units of each line, 0 where there is none, shape (B, L).
+
+        All units are open unless the order is queued and a pod was bound to it.
+        """
         return self._units[: len(self.at_row)]
 
     @property
@@ -62,14 +67,26 @@ class OrderBacklog:
         """Due time of each order, shape (B,)."""
         return self._due_s[: len(self.at_row)]
 
+    @property
+    def index(self) -> NDArray[np.int64]:
+        """Ordinal of arrival of each order, shape (B,)."""
+        return self._index[: len(self.at_row)]
+
+    @property
+    def queued_at(self) -> NDArray[np.int32]:
+        """Pick station in whose pool each order is queued, or -1, shape (B,)."""
+        return self._queued_at[: len(self.at_row)]
+
     def add(self, order: Order) -> None:
         """Take in an order."""
         row = len(self.at_row)
         self._make_room(row + 1, len(order.lines))
         for column, line in enumerate(order.lines):
             self._sku[row, column] = line.sku
-            self._units[row, column] = line.units
+            self._units[row, column] = line.open_units
         self._due_s[row] = order.due_s
+        self._index[row] = order.index
+        self._queued_at[row] = order.queued_at
         self.at_row.append(order)
         self._row_of[order.index] = row
         self.orders[order.index] = order
@@ -86,8 +103,19 @@ class OrderBacklog:
             self._sku[row] = self._sku[end]
             self._units[row] = self._units[end]
             self._due_s[row] = self._due_s[end]
+            self._index[row] = self._index[end]
+            self._queued_at[row] = self._queued_at[end]
         self._sku[end] = 0
         self._units[end] = 0
+
+    def changed(self, line: OrderLine) -> None:
+        """Take note that the open units of a line have changed."""
+        order = line.order
+        self._units[self._row_of[order.index], order.lines.index(line)] = line.open_units
+
+    def queue_changed(self, order: Order) -> None:
+        """Take note that an order has joined or left a pool."""
+        self._queued_at[self._row_of[order.index]] = order.queued_at
 
     def after(self, index: int) -> list[Order]:
         """Orders that arrived after the one of this index, latest first."""
@@ -113,7 +141,9 @@ class OrderBacklog:
         pad = ((0, more[0]), wider)
         self._sku = np.pad(self._sku, pad)
         self._units = np.pad(self._units, pad)
+        self._index = np.pad(self._index, pad[0])
         self._due_s = np.pad(self._due_s, pad[0])
+        self._queued_at = np.pad(self._queued_at, pad[0], constant_values=-1)
 
 
 class BundleBacklog:

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
+_SLOTS = 8
+"""SKUs per pod for which there is room in `skus_on` at first."""
+
+
 def read_only(array: NDArray[np.generic]) -> NDArray:  # type: ignore[type-arg]
     """Return a view of an array through which it cannot be changed."""
     view = array.view()
@@ -55,6 +59,10 @@ class Inventory:
         only if orders exceed the stock.
     free_stock
         As `uncommitted`, but orders in the backlog want nothing yet, shape (K,).
+    ordered
+        Units ordered since time zero, shape (K,).
+    wanted
+        Units ordered and not yet picked, whether bound or not, shape (K,).
     """
 
     def __init__(
@@ -72,6 +80,10 @@ class Inventory:
         self._inbound = np.zeros((pick_stations, skus), np.int32)
         self._uncommitted = np.zeros(skus, np.int64)
         self._free_stock = np.zeros(skus, np.int64)
+        self._ordered = np.zeros(skus, np.int64)
+        self._skus_on = np.full((pods, _SLOTS), skus, np.int32)
+        self._kinds_on = [0] * pods
+        self._wanted = np.zeros(skus, np.int64)
         self.contained: NDArray[np.int32] = read_only(self._contained)
         self.available: NDArray[np.int32] = read_only(self._available)
         self.used: NDArray[np.float64] = read_only(self._used)
@@ -80,6 +92,8 @@ class Inventory:
         self.inbound: NDArray[np.int32] = read_only(self._inbound)
         self.uncommitted: NDArray[np.int64] = read_only(self._uncommitted)
         self.free_stock: NDArray[np.int64] = read_only(self._free_stock)
+        self.ordered: NDArray[np.int64] = read_only(self._ordered)
+        self.wanted: NDArray[np.int64] = read_only(self._wanted)
         self.capacity: NDArray[np.float64] = read_only(capacity.astype(np.float64))
         self.unit_space: NDArray[np.float64] = read_only(unit_space.astype(np.float64))
         self._unit_space_list: list[float] = unit_space.tolist()
@@ -88,10 +102,21 @@ class Inventory:
         self.stored_space = 0.0
         self.promised_space = 0.0
 
+    @property
+    def skus_on(self) -> NDArray[np.int32]:
+        """The SKUs each pod contains, in no order, filled up with K, shape (P, M).
+
+        With K + 1 weights, the last of them 0, `weights[skus_on].sum(axis=1)` is a sum per pod.
+        """
+        return read_only(self._skus_on)
+
     def stock(self, pod: int, sku: int, units: int) -> None:
         """Put units on a pod that were not promised: the stock at time zero."""
         space = units * self._unit_space_list[sku]
-        self._contained[sku, pod] += units
+        before = self._contained.item(sku, pod)
+        if not before and units:
+            self._list_sku(pod, sku)
+        self._contained[sku, pod] = before + units
         self._available[sku, pod] += units
         self._used[pod] += space
         self._load[pod] += space
@@ -130,9 +155,14 @@ class Inventory:
     def demand(self, sku: int, units: int) -> None:
         """Commit stock to a new order in the backlog."""
         self._uncommitted[sku] -= units
+        self._wanted[sku] += units
+        self._ordered[sku] += units
 
     def commit(self, sku: int, units: int) -> None:
-        """Commit stock to an order that now is on a station."""
+        """Commit stock to an order that now is on a station, or to which a pod was bound.
+
+        A negative number takes it back.
+        """
         self._free_stock[sku] -= units
 
     def bind(self, pod: int, sku: int, units: int) -> None:
@@ -151,10 +181,21 @@ class Inventory:
         if station >= 0:
             self._inbound[station, sku] -= units
 
+    def unbind(self, pod: int, sku: int, units: int) -> None:
+        """Make units available again whose requests will not be fulfilled from this pod."""
+        self._available[sku, pod] += units
+        station = self._inbound_station[pod]
+        if station >= 0:
+            self._inbound[station, sku] += units
+
     def pick(self, pod: int, sku: int) -> None:
         """Take one bound unit from a pod."""
         space = self._unit_space_list[sku]
-        self._contained[sku, pod] -= 1
+        self._wanted[sku] -= 1
+        left = self._contained.item(sku, pod) - 1
+        self._contained[sku, pod] = left
+        if not left:
+            self._unlist_sku(pod, sku)
         self._used[pod] -= space
         self._load[pod] -= space
         self.stored_space -= space
@@ -173,3 +214,20 @@ class Inventory:
         """Whether a unit of any of these SKUs is available on the pod."""
         available = self._available.item
         return any(available(sku, pod) for sku in skus)
+
+    def _list_sku(self, pod: int, sku: int) -> None:
+        """Take note of the first unit of a SKU on a pod."""
+        count = self._kinds_on[pod]
+        if count == self._skus_on.shape[1]:
+            pad = ((0, 0), (0, count))
+            self._skus_on = np.pad(self._skus_on, pad, constant_values=len(self._contained))
+        self._skus_on[pod, count] = sku
+        self._kinds_on[pod] = count + 1
+
+    def _unlist_sku(self, pod: int, sku: int) -> None:
+        """Take note that the last unit of a SKU has left a pod."""
+        row = self._skus_on[pod]
+        last = self._kinds_on[pod] - 1
+        row[row.tolist().index(sku)] = row[last]
+        row[last] = len(self._contained)
+        self._kinds_on[pod] = last

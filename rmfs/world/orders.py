@@ -48,6 +48,8 @@ class Order:
         Sums over the lines.
     station
         The pick station, or -1 while in the backlog.
+    queued_at
+        The pick station in whose pool an order of the backlog is queued, or -1.
     """
 
     index: int
@@ -59,6 +61,8 @@ class Order:
     station: int = -1
     assigned_s: float = nan
     completed_s: float = nan
+    queued_at: int = -1
+    queued_s: float = nan
 
     @classmethod
     def of(

@@ -1,4 +1,4 @@
-"""The open extract requests of a pick station, by SKU."""
+"""The open extract requests of the orders on a pick station, or in its pool, by SKU."""
 
 from __future__ import annotations
 
@@ -38,11 +38,33 @@ class OpenRequests:
         self.version = 0
 
     def add(self, order: Order) -> None:
-        """Open all requests of an order."""
+        """Take in the requests of an order that are open."""
         for line in order.lines:
-            self.lines.setdefault(line.sku, deque()).append(line)
-            self._need[line.sku] += line.open_units
+            if line.open_units:
+                self.lines.setdefault(line.sku, deque()).append(line)
+                self._need[line.sku] += line.open_units
         self.units += order.open_units
+        self.version += 1
+
+    def remove(self, order: Order) -> None:
+        """Let go of the open requests of an order."""
+        for line in order.lines:
+            if line.open_units:
+                waiting = self.lines[line.sku]
+                waiting.remove(line)
+                if not waiting:
+                    del self.lines[line.sku]
+                self._need[line.sku] -= line.open_units
+        self.units -= order.open_units
+
+    def reopen(self, line: OrderLine) -> None:
+        """Open one request of a line again; its line comes first."""
+        if not line.open_units:
+            self.lines.setdefault(line.sku, deque()).appendleft(line)
+        line.open_units += 1
+        line.order.open_units += 1
+        self._need[line.sku] += 1
+        self.units += 1
         self.version += 1
 
     def take(self, sku: int, at_most: int) -> list[OrderLine]:
@@ -69,3 +91,18 @@ class OpenRequests:
             self._need[sku] -= len(taken)
             self.units -= len(taken)
         return taken
+
+    def take_line(self, line: OrderLine, at_most: int) -> int:
+        """Close open requests of one line; returns how many, at most so many."""
+        count = min(line.open_units, at_most)
+        if count:
+            line.open_units -= count
+            line.order.open_units -= count
+            if not line.open_units:
+                waiting = self.lines[line.sku]
+                waiting.remove(line)
+                if not waiting:
+                    del self.lines[line.sku]
+            self._need[line.sku] -= count
+            self.units -= count
+        return count

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -30,6 +31,9 @@ class Robot:
         The station at whose head it stands, or -1.
     places
         Storage places it stands at, or is going to stand at: nobody else may be sent there.
+    prepared
+        Tasks it is to have after its present one, as far as they are possible then; nothing is kept
+        for them.
     """
 
     index: int
@@ -39,6 +43,7 @@ class Robot:
     task: Task | None = None
     station: int = -1
     places: list[int] = field(default_factory=list)
+    prepared: deque[Task] = field(default_factory=deque)
 
     @property
     def is_free(self) -> bool:

@@ -56,15 +56,26 @@ class PickStation(_Station):
         The open orders by index, in the order of their assignment.
     requests
         Their requests not yet bound to a pod.
+    queued
+        The pool: orders of the backlog that are to come here, in the order in which they joined.
+    queued_requests
+        Requests of the pool not yet bound to a pod.
     """
 
     def __init__(
-        self, index: int, layout: PickStationLayout, tier: int, need: NDArray[np.int32]
+        self,
+        index: int,
+        layout: PickStationLayout,
+        tier: int,
+        need: NDArray[np.int32],
+        queued_need: NDArray[np.int32],
     ) -> None:
         super().__init__(index, layout.waypoint, tier)
         self.slots = layout.order_slots
         self.orders: dict[int, Order] = {}
         self.requests = OpenRequests(need)
+        self.queued: dict[int, Order] = {}
+        self.queued_requests = OpenRequests(queued_need)
 
     @property
     def free_slots(self) -> int:
@@ -86,6 +97,8 @@ class ReplenishmentStation(_Station):
         Space units of bundles that may be assigned at once.
     used
         Space units of the bundles assigned, or reserved by ROA, whose transfer has not begun.
+    bundles
+        How many these are.
     waiting
         Per pod, the bundles assigned but not yet in a robot's task; oldest pod first.
     version
@@ -102,6 +115,7 @@ class ReplenishmentStation(_Station):
         super().__init__(index, layout.waypoint, tier)
         self.capacity = layout.capacity
         self.used = 0.0
+        self.bundles = 0
         self.waiting: dict[int, list[Bundle]] = {}
         self.version = 0
         self._waiting_count = waiting_count

@@ -51,6 +51,8 @@ class Storage:
     is_restful
         Places beneath a stored, unclaimed pod that no robot keeps: a robot may rest there,
         shape (L,).
+    is_stored
+        Pods at a place, not on a robot, shape (P,).
     is_at_hand
         Pods that a robot may be sent to: stored, unclaimed, and nobody beneath them but a robot
         without work, shape (P,).
@@ -75,10 +77,12 @@ class Storage:
         self._pod_waypoint = layout.pod_waypoint.astype(np.int32)
         self._is_empty = np.zeros(len(self.places), np.bool_)
         self._is_restful = np.zeros(len(self.places), np.bool_)
+        self._is_stored = np.ones(layout.pods, np.bool_)
         self._is_at_hand = np.zeros(layout.pods, np.bool_)
         self.pod_waypoint: NDArray[np.int32] = read_only(self._pod_waypoint)
         self.is_empty: NDArray[np.bool_] = read_only(self._is_empty)
         self.is_restful: NDArray[np.bool_] = read_only(self._is_restful)
+        self.is_stored: NDArray[np.bool_] = read_only(self._is_stored)
         self.is_at_hand: NDArray[np.bool_] = read_only(self._is_at_hand)
         self.version = 0
         for place in self.places.tolist():
@@ -128,9 +132,10 @@ class Storage:
         ----------
         rest
             Where the robot's present plan ends; a place it is told to go to, but has no plan for
-            yet, is kept as well.
+            yet, is kept as well, and so is the place of its task.
         """
-        left = [place for place in robot.places if place not in (robot.waypoint, rest)]
+        goal = robot.task.place if robot.task is not None else -1
+        left = [place for place in robot.places if place not in (robot.waypoint, rest, goal)]
         for place in left:
             robot.places.remove(place)
             self.kept_by[place] = -1
@@ -142,6 +147,7 @@ class Storage:
         place = self.place_of[pod]
         self.place_of[pod] = -1
         self.pod_at[place] = -1
+        self._is_stored[pod] = False
         self._is_at_hand[pod] = False
         self._refresh(place)
 
@@ -157,6 +163,7 @@ class Storage:
             raise ValueError(f"pod {self.pod_at[place]} is already stored at {place}")
         self.place_of[pod] = place
         self.pod_at[place] = pod
+        self._is_stored[pod] = True
         self._pod_waypoint[pod] = place
         self.claimed_by[pod] = -1
         self._refresh(place)

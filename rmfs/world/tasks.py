@@ -17,6 +17,7 @@ class TaskKind(StrEnum):
     PICK = "pick"
     REPLENISH = "replenish"
     PARK = "park"
+    REPOSITION = "reposition"
     REST = "rest"
 
 
@@ -34,11 +35,11 @@ class Task:
     Attributes
     ----------
     pod
-        The pod to bring, or the pod to park; -1 for rest.
+        The pod to bring, to park or to reposition; -1 for rest.
     station
         Where the pod is to be served, or -1.
     place
-        Where the pod is to be parked, or the robot is to rest; a waypoint, or -1.
+        Where the pod is to be stored, or the robot is to rest; a waypoint, or -1.
     picks
         Units still to be picked.
     bundles
@@ -52,3 +53,8 @@ class Task:
     place: int = -1
     picks: deque[Pick] = field(default_factory=deque)
     bundles: deque[Bundle] = field(default_factory=deque)
+
+    @property
+    def can_pick(self) -> bool:
+        """Whether the order of one of its picks is on the station (others are still queued)."""
+        return any(pick.line.order.station >= 0 for pick in self.picks)

@@ -11,7 +11,10 @@ from rmfs.world.tasks import TaskKind
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from numpy.typing import NDArray
+
     from rmfs.world.orders import Order
+    from rmfs.world.requests import OpenRequests
     from rmfs.world.world import World
 
 
@@ -61,6 +64,9 @@ def _stock(world: World) -> None:
     _check(np.array_equal(inventory.load, used + inventory.promised), "load per pod")
     _check(bool(np.all(inventory.load <= inventory.capacity)), "no pod overfilled")
     _check(inventory.stored_space == used.sum(), "space used in total")
+    for pod, row in enumerate(inventory.skus_on.tolist()):
+        listed = sorted(sku for sku in row if sku < len(contained))
+        _check(listed == contained[:, pod].nonzero()[0].tolist(), f"SKUs listed on pod {pod}")
     for station in world.pick_stations:
         inbound = inventory.available[:, list(station.tasks)].sum(axis=1)
         _check(np.array_equal(inventory.inbound[station.index], inbound), "inbound units")
@@ -75,22 +81,37 @@ def _requests(world: World) -> None:
             _check(task.kind is TaskKind.PICK, "kind of task at a pick station")
             for pick in task.picks:
                 bound[id(pick.line)] = bound.get(id(pick.line), 0) + 1
-        need = np.zeros_like(world.need[station.index])
-        for order in station.orders.values():
-            for line in order.lines:
-                total = line.open_units + bound.pop(id(line), 0) + line.picked_units
-                _check(total == line.units, f"requests of order {order.index}, SKU {line.sku}")
-                need[line.sku] += line.open_units
-            _check(order.open_units == sum(line.open_units for line in order.lines), "open units")
-            unpicked = sum(line.units - line.picked_units for line in order.lines)
-            _check(order.unpicked_units == unpicked, "unpicked units")
+        _open(station.orders.values(), bound, world.need[station.index], station.requests)
+        queued = station.queued.values()
+        _check(all(order.queued_at == station.index for order in queued), "pool of an order")
+        _check(all(order in world.orders for order in queued), "queued orders are in the backlog")
+        _open(queued, bound, world.queued_need[station.index], station.queued_requests)
         _check(not bound, "bound requests belong to orders of the station")
-        _check(np.array_equal(world.need[station.index], need), "open units per SKU")
-        _check(station.requests.units == need.sum(), "open units of the station")
-        pooled = np.zeros_like(need)
-        for sku, lines in station.requests.lines.items():
-            pooled[sku] = sum(line.open_units for line in lines)
-        _check(np.array_equal(pooled, need), "pool of open requests")
+        lines = np.zeros_like(world.lines[station.index])
+        for order in station.orders.values():
+            lines[[line.sku for line in order.lines]] += 1
+        _check(np.array_equal(world.lines[station.index], lines), "order lines per SKU")
+
+
+def _open(
+    orders: Iterable[Order], bound: dict[int, int], told: NDArray[np.int32], requests: OpenRequests
+) -> None:
+    """Compare counts of open requests with those of the orders themselves."""
+    need = np.zeros_like(told)
+    for order in orders:
+        for line in order.lines:
+            total = line.open_units + bound.pop(id(line), 0) + line.picked_units
+            _check(total == line.units, f"requests of order {order.index}, SKU {line.sku}")
+            need[line.sku] += line.open_units
+        _check(order.open_units == sum(line.open_units for line in order.lines), "open units")
+        unpicked = sum(line.units - line.picked_units for line in order.lines)
+        _check(order.unpicked_units == unpicked, "unpicked units")
+    _check(np.array_equal(told, need), "open units per SKU")
+    _check(requests.units == need.sum(), "open units of the station")
+    pooled = np.zeros_like(need)
+    for sku, lines in requests.lines.items():
+        pooled[sku] = sum(line.open_units for line in lines)
+    _check(np.array_equal(pooled, need), "pool of open requests")
 
 
 def _demand(world: World) -> None:
@@ -101,15 +122,29 @@ def _demand(world: World) -> None:
     waiting = np.zeros_like(free)
     for order in world.orders:
         for line in order.lines:
-            waiting[line.sku] += line.units
+            waiting[line.sku] += line.open_units
     _check(np.array_equal(inventory.uncommitted, free - waiting), "uncommitted stock")
     _check(int(world.orders.units.sum()) == waiting.sum(), "matrix of the backlog")
+    arrivals = [order.index for order in world.orders.at_row]
+    _check(world.orders.index.tolist() == arrivals, "arrivals of the backlog")
+    queued_at = [order.queued_at for order in world.orders.at_row]
+    _check(world.orders.queued_at.tolist() == queued_at, "pools in the matrix of the backlog")
+    wanted = waiting.copy()
+    for station in world.pick_stations:
+        for order in station.orders.values():
+            for line in order.lines:
+                wanted[line.sku] += line.units - line.picked_units
+        for order in station.queued.values():
+            for line in order.lines:
+                wanted[line.sku] += line.units - line.picked_units - line.open_units
+    _check(np.array_equal(inventory.wanted, wanted), "units ordered and not yet picked")
 
 
 def _bundles(world: World) -> None:
     """Every bundle not stored is in the backlog, waits at a station, or is in a task."""
     promised = np.zeros_like(world.inventory.promised)
     used = dict.fromkeys((s.index for s in world.replenishment_stations), 0.0)
+    reserved = dict.fromkeys(used, 0)
     alive, space = 0, 0.0
     assigned = [
         bundle
@@ -124,6 +159,7 @@ def _bundles(world: World) -> None:
             promised[bundle.pod] += bundle.space
         if bundle.station >= 0:
             used[bundle.station] += bundle.space
+            reserved[bundle.station] += 1
     _check(alive == world.bundles_created - world.bundles_stored, "number of bundles")
     _check(world.unstored_space == space, "space of bundles not stored")
     _check(np.array_equal(world.inventory.promised, promised), "space promised")
@@ -131,6 +167,7 @@ def _bundles(world: World) -> None:
     _check(world.bundles.space == sum(b.space for b in world.bundles), "space of the backlog")
     for station in world.replenishment_stations:
         _check(station.used == used[station.index], f"space used at station {station.index}")
+        _check(station.bundles == reserved[station.index], "bundles reserved at a station")
         _check(station.used <= station.capacity, f"capacity of station {station.index}")
         row = world.bundles_waiting[station.index - len(world.pick_stations)]
         counts = {pod: len(bundles) for pod, bundles in station.waiting.items()}
@@ -144,6 +181,7 @@ def _places(world: World) -> None:
     carried = {robot.pod: robot.index for robot in world.robots if robot.pod >= 0}
     for pod, place in enumerate(storage.place_of):
         _check((place >= 0) != (pod in carried), f"pod {pod} is stored or carried")
+        _check(storage.is_stored[pod] == (place >= 0), "pods stored")
         if place >= 0:
             _check(storage.pod_at[place] == pod, f"place of pod {pod}")
         else:

@@ -46,6 +46,10 @@ class World:
         In the order of the layout; `stations` has both, in the common numbering.
     need
         Open units per pick station and SKU, shape (S, K).
+    queued_need
+        The same for queued orders, shape (S, K).
+    lines
+        Order lines per pick station and SKU, picked or not, shape (S, K): of the open orders there.
     bundles_waiting
         Assigned bundles not yet in a task, per replenishment station and pod, shape (S, P).
     robots
@@ -61,6 +65,8 @@ class World:
         Space units of all bundles created and not yet stored.
     order_redraws
         How often an order was drawn anew because stock could not serve the first draw.
+    tasks_dropped
+        How many prepared tasks were impossible when their turn came.
     """
 
     def __init__(self, layout: Layout, skus: SkuSet) -> None:
@@ -80,11 +86,15 @@ class World:
         self.orders = OrderBacklog()
         self.bundles = BundleBacklog()
         need = np.zeros((len(layout.pick_stations), len(skus)), np.int32)
+        queued_need = np.zeros_like(need)
+        self._lines = np.zeros_like(need)
         waiting = np.zeros((len(layout.replenishment_stations), layout.pods), np.int32)
         self.need: NDArray[np.int32] = read_only(need)
+        self.lines: NDArray[np.int32] = read_only(self._lines)
+        self.queued_need: NDArray[np.int32] = read_only(queued_need)
         self.bundles_waiting: NDArray[np.int32] = read_only(waiting)
         self.pick_stations = [
-            PickStation(i, station, tier[station.waypoint], need[i])
+            PickStation(i, station, tier[station.waypoint], need[i], queued_need[i])
             for i, station in enumerate(layout.pick_stations)
         ]
         self.replenishment_stations = [
@@ -97,6 +107,7 @@ class World:
             *self.pick_stations,
             *self.replenishment_stations,
         ]
+        self.tasks_dropped = 0
         self.orders_created = 0
         self.order_redraws = 0
         self.orders_completed = 0
@@ -105,6 +116,9 @@ class World:
         self.units_picked = 0
         self.units_stored = 0
         self.unstored_space = 0.0
+        self.orders_short = 0
+        self._incoming = np.zeros(len(skus), np.int64)
+        self.incoming: NDArray[np.int64] = read_only(self._incoming)
         self.units_initial = 0
 
     # --- stock and work that appear ---------------------------------------------------------
@@ -127,27 +141,74 @@ class World:
         self.bundles.add(bundle)
         self.bundles_created += 1
         self.unstored_space += bundle.space
+        self._incoming[bundle.sku] += bundle.units
 
     # --- orders ---------------------------------------------------------------------------------
 
+    def queue_order(self, order: Order, station: int) -> None:
+        """Let an order of the backlog join the pool of a pick station.
+
+        It needs no slot and keeps its place in the backlog, but pods can be bound to it.
+        """
+        if order.queued_at >= 0:
+            raise ValueError(f"order {order.index} is queued at station {order.queued_at} already")
+        if order not in self.orders:
+            raise ValueError(f"order {order.index} is not in the backlog")
+        target = self.pick_stations[station]
+        target.queued[order.index] = order
+        target.queued_requests.add(order)
+        order.queued_at = station
+        order.queued_s = self.now_s
+        self.orders.queue_changed(order)
+
+    def unqueue_all(self) -> None:
+        """Empty all pools."""
+        for station in self.pick_stations:
+            for order in list(station.queued.values()):
+                self.unqueue_order(order)
+
+    def unqueue_order(self, order: Order) -> None:
+        """Take an order out of its pool; requests bound to pods are open again."""
+        station = self.pick_stations[order.queued_at]
+        for task in station.tasks.values():
+            self._give_back(task, [pick for pick in task.picks if pick.line.order is order])
+        self._leave_pool(order)
+        self.orders.queue_changed(order)
+
     def assign_order(self, order: Order, station: int) -> None:
-        """Put an order of the backlog on a pick station and open its extract requests."""
+        """Put an order of the backlog on a pick station and open its extract requests.
+
+        Requests of a queued order to which pods were bound meanwhile stay bound.
+        """
         target = self.pick_stations[station]
         if not target.active or target.free_slots <= 0:
             raise ValueError(f"station {station} takes no order now")
+        if order.queued_at >= 0:
+            if order.queued_at != station:
+                raise ValueError(f"order {order.index} is queued at station {order.queued_at}")
+            self._leave_pool(order)
         self.orders.remove(order)
         order.station = station
         order.assigned_s = self.now_s
         target.orders[order.index] = order
         target.requests.add(order)
         for line in order.lines:
-            self.inventory.commit(line.sku, line.units)
+            self._lines[station, line.sku] += 1
+            self.inventory.commit(line.sku, line.open_units)
+
+    def _leave_pool(self, order: Order) -> None:
+        station = self.pick_stations[order.queued_at]
+        del station.queued[order.index]
+        station.queued_requests.remove(order)
+        order.queued_at = -1
 
     def complete_order(self, order: Order) -> None:
         """Take an order whose units are all picked off its station."""
         if order.unpicked_units:
             raise ValueError(f"order {order.index} lacks {order.unpicked_units} units")
         del self.pick_stations[order.station].orders[order.index]
+        for line in order.lines:
+            self._lines[order.station, line.sku] -= 1
         order.completed_s = self.now_s
         self.orders_completed += 1
 
@@ -179,6 +240,7 @@ class World:
         if not target.active or bundle.space > target.free_space:
             raise ValueError(f"station {station} takes no bundle of {bundle.space:g} space units")
         target.used += bundle.space
+        target.bundles += 1
         bundle.station = station
         self.bundles.station_chosen(bundle)
         if bundle.released:
@@ -212,6 +274,52 @@ class World:
             task.picks.extend([Pick(line, late_bound) for line in lines])
         return len(lines)
 
+    def extend_queued(
+        self, task: Task, order: Order, *, whole: bool, late_bound: bool = True
+    ) -> int:
+        """Bind open requests of a queued order to the pod of a task; returns how many.
+
+        None if the pod is at the station already: it could only be sent away with them.
+
+        Parameters
+        ----------
+        whole
+            Only if the pod serves all open requests of the order.
+        """
+        if self.robots[task.robot].station == task.station:
+            return 0
+        available = self.inventory.available.item
+        lines = [line for line in order.lines if line.open_units]
+        if whole and any(available(line.sku, task.pod) < line.open_units for line in lines):
+            return 0
+        pool = self.pick_stations[task.station].queued_requests
+        bound = 0
+        for line in lines:
+            count = pool.take_line(line, available(line.sku, task.pod))
+            if count:
+                self.inventory.bind(task.pod, line.sku, count)
+                self.inventory.commit(line.sku, count)
+                self.orders.changed(line)
+                task.picks.extend([Pick(line, late_bound)] * count)
+                bound += count
+        return bound
+
+    def give_back(self, task: Task) -> int:
+        """Open the requests of a task again whose orders are still queued; returns how many."""
+        picks = [pick for pick in task.picks if pick.line.order.station < 0]
+        self._give_back(task, picks)
+        return len(picks)
+
+    def _give_back(self, task: Task, picks: list[Pick]) -> None:
+        pool = self.pick_stations[task.station].queued_requests
+        for pick in reversed(picks):
+            line = pick.line
+            task.picks.remove(pick)
+            pool.reopen(line)
+            self.inventory.unbind(task.pod, line.sku, 1)
+            self.inventory.commit(line.sku, -1)
+            self.orders.changed(line)
+
     def start_replenish(self, robot: Robot, pod: int, station: int) -> Task:
         """Make the task to bring a pod to a replenishment station for all its bundles there."""
         task = Task(TaskKind.REPLENISH, robot.index, pod, station)
@@ -234,6 +342,17 @@ class World:
             raise ValueError(f"place {place} holds pod {self.storage.pod_at[place]}")
         self.storage.keep(robot, place)
         self._set_task(robot, task)
+        return task
+
+    def start_reposition(self, robot: Robot, pod: int, place: int) -> Task:
+        """Make the task to fetch a pod and store it at an empty place."""
+        if robot.pod >= 0:
+            raise ValueError(f"robot {robot.index} carries pod {robot.pod} already")
+        if self.storage.pod_at[place] >= 0:
+            raise ValueError(f"place {place} holds pod {self.storage.pod_at[place]}")
+        task = Task(TaskKind.REPOSITION, robot.index, pod, place=place)
+        self.storage.keep(robot, place)
+        self._begin_pod_task(robot, task)
         return task
 
     def start_rest(self, robot: Robot, place: int) -> Task:
@@ -282,8 +401,14 @@ class World:
         self.storage.set_down(pod, place)
 
     def pick_unit(self, task: Task) -> Pick:
-        """Let the next unit of a task leave its pod."""
-        pick = task.picks.popleft()
+        """Let the next unit of a task leave its pod whose order is on the station."""
+        picks = task.picks
+        pick = picks[0]
+        if pick.line.order.station < 0:
+            pick = next(pick for pick in picks if pick.line.order.station >= 0)
+            picks.remove(pick)
+        else:
+            picks.popleft()
         line = pick.line
         self.inventory.pick(task.pod, line.sku)
         line.picked_units += 1
@@ -295,10 +420,13 @@ class World:
         """Let the next bundle of a task go into its pod."""
         bundle = task.bundles.popleft()
         self.inventory.store(task.pod, bundle.sku, bundle.units)
-        self.replenishment_station(task.station).used -= bundle.space
+        station = self.replenishment_station(task.station)
+        station.used -= bundle.space
+        station.bundles -= 1
         bundle.stored_s = self.now_s
         self.bundles_stored += 1
         self.unstored_space -= bundle.space
+        self._incoming[bundle.sku] -= bundle.units
         self.units_stored += bundle.units
         return bundle
 

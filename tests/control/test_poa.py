@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from doubles import Situation, small_layout
 
+from rmfs.control.poa.order_rules import RandomOrder
 from rmfs.control.poa.pod_match import PodMatch
-from rmfs.control.poa.random import RandomOrder
 
 
 def decide(situation: Situation, controller) -> list[tuple[int, int]]:

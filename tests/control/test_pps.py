@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from doubles import Situation, small_layout
@@ -9,7 +11,18 @@ from doubles import Situation, small_layout
 from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
 from rmfs.control.pps.lexicographic import Lexicographic
 from rmfs.control.pps.random import RandomPod
-from rmfs.control.pps.scorers import BundleWorkAmount, Completeable, Nearest, PickWorkAmount
+from rmfs.control.pps.scorers import (
+    BundleDemand,
+    BundleWorkAmount,
+    Completeable,
+    Fill,
+    Nearest,
+    PickDemand,
+    PickWorkAmount,
+    RandomScorer,
+)
+from rmfs.control.pps.station_scorers import MostWork, NearestNextStation
+from rmfs.world import verify
 
 
 @pytest.fixture
@@ -70,7 +83,13 @@ class TestScorers:
     def test_completeable(self, three_orders) -> None:
         found = candidates(three_orders)
         assert Completeable().score(found, three_orders.rng).tolist() == [1, 1, 3]
-        assert found.completed()[1].tolist() == [2, 2, 5]
+        done = found.completed()
+        assert done.flags.tolist() == [
+            [True, False, True],
+            [False, True, True],
+            [False, False, True],
+        ]
+        assert done.weighed([2.0, 2.0, 1.0], queued=False).tolist() == [2.0, 2.0, 5.0]
 
     def test_servable_units(self, three_orders) -> None:
         assert candidates(three_orders).servable_units().tolist() == [3, 2, 5]
@@ -96,15 +115,32 @@ class TestScorers:
         assert Nearest().score(found, three_orders.rng).tolist() == [-13.0, -15.0, -17.0]
         x = np.arange(3)
         expected = -(np.sqrt(x**2 + 4) + np.sqrt(x**2 + 100))
-        scores = Nearest(metric="distance").score(found, three_orders.rng)
+        scores = Nearest(metric="euclidean").score(found, three_orders.rng)
         assert np.allclose(scores, expected)
+
+    def test_nearest_along_the_axes_and_without_estimate(self, three_orders) -> None:
+        """Robot (0, 2) to pod x: x + 2; on to (0, 10): x + 10. Traffic knows no turns: as long."""
+        found = candidates(three_orders)
+        for scorer in (Nearest(metric="manhattan"), Nearest(estimate=False)):
+            assert scorer.score(found, three_orders.rng).tolist() == [-12.0, -14.0, -16.0]
+
+    def test_nearest_along_the_waypoints(self, three_orders) -> None:
+        """No edge leads to a pod, but all are equally far then."""
+        scores = Nearest(metric="path").score(candidates(three_orders), three_orders.rng)
+        assert scores.tolist() == [-np.inf] * 3
+
+    def test_random_is_uniform(self, three_orders) -> None:
+        """Of 300 draws each pod is best in about 100."""
+        found = candidates(three_orders)
+        best = [RandomScorer().score(found, three_orders.rng).argmax() for _ in range(300)]
+        assert all(70 < count < 130 for count in np.bincount(best, minlength=3))
 
     def test_narrowing_keeps_what_was_counted(self, three_orders) -> None:
         found = candidates(three_orders)
         found.completed()
         kept = found.narrowed(np.array([0, 2]))
         assert kept.pods.tolist() == [0, 2]
-        assert kept.completed()[0].tolist() == [1, 3]
+        assert kept.completed().flags.sum(axis=0).tolist() == [1, 3]
         assert kept.servable_units().tolist() == [3, 5]
 
     def test_bundles(self, situation) -> None:
@@ -177,6 +213,334 @@ class TestLexicographic:
             situation.assigned(station, s0=units)
         controller = situation.make(Lexicographic)
         assert controller.next_station(situation.world.robots[0], [0, 1, 2]) == 1
+
+
+class TestFill:
+    """Pods of 100 space units with 80, 70 and 10 units of one space unit each."""
+
+    @pytest.fixture
+    def filled(self, situation) -> Situation:
+        for pod, units in enumerate((80, 70, 10)):
+            situation.stock(pod, s0=units)
+        situation.assigned(s0=1)
+        return situation
+
+    @pytest.mark.parametrize(
+        ("parameters", "expected"),
+        [
+            ({}, [1, 0, 0]),  # above 0.7: 0.7 itself is not
+            ({"prefer_fullest": False}, [0, 0, 1]),  # below 0.7
+            ({"binary": False}, [0.8, 0.7, 0.1]),
+            ({"binary": False, "prefer_fullest": False}, [-0.8, -0.7, -0.1]),
+            ({"threshold": 0.05}, [1, 1, 1]),
+        ],
+    )
+    def test_share_of_capacity_in_use(self, filled, parameters, expected) -> None:
+        scores = Fill(**parameters).score(candidates(filled), filled.rng)
+        assert scores.tolist() == expected
+
+    def test_promised_space_is_not_in_use(self, filled) -> None:
+        filled.world.promise(filled.bundle(units=30), 2)
+        scores = Fill(binary=False).score(candidates(filled), filled.rng)
+        assert scores.tolist() == [0.8, 0.7, 0.1]
+
+
+class TestDemand:
+    def test_units_that_any_order_wants(self, situation) -> None:
+        """Wanted: 2 + 3 of SKU 0 (station, backlog) and 4 of SKU 1 (backlog).
+
+        Pod 0 has 9 of SKU 0: 5. Pod 1 has 1 of SKU 0 and 6 of SKU 1: 1 + 4.  Pod 2 has 2 of SKU 0:
+        2.
+        """
+        situation.stock(0, s0=9)
+        situation.stock(1, s0=1, s1=6)
+        situation.stock(2, s0=2)
+        scorer = PickDemand()
+        scorer.prepare(situation.view)
+        situation.assigned(s0=2)
+        situation.order(s0=3, s1=4)
+        assert scorer.score(candidates(situation), situation.rng).tolist() == [5, 5, 2]
+
+    def test_bound_requests_are_wanted_no_more(self, situation) -> None:
+        """Two units of the first order are bound to pod 3; three of the other remain wanted."""
+        for pod in (0, 3):
+            situation.stock(pod, s0=4)
+        scorer = PickDemand()
+        scorer.prepare(situation.view)
+        situation.assigned(s0=2)
+        situation.world.start_pick(situation.world.robots[1], pod=3, station=0)
+        situation.assigned(s0=3)
+        assert scorer.score(candidates(situation), situation.rng).tolist() == [3]
+
+    def test_of_bundles_only_what_is_wanted_counts(self, situation) -> None:
+        """Three of SKU 0 are wanted. Pod 2: a bundle of 4 of SKU 0: 3. Pod 3: two of SKU 1: 0."""
+        situation.order(s0=3)
+        situation.waiting_bundle(2, station=1)
+        for _ in range(2):
+            situation.waiting_bundle(3, station=1, sku=1)
+        view = situation.view
+        found = replenishment_candidates(view, view.robots[0], view.replenishment_stations[0])
+        assert BundleDemand().score(found, situation.rng).tolist() == [3, 0]
+
+
+class TestAgeAndLateness:
+    """At 100 s. Order 0 was assigned at 0 s, wants 2 of SKU 0, due at 60; order 1 at 80 s, wants 1
+    of SKU 0 and 1 of SKU 1, due at 130.
+
+    Per request, age: 100 / 2 = 50, 20 / 2 = 10; lateness: 40 / 2 = 20, -30 / 2 = -15. Pod 0 has one
+    of SKU 0: it serves order 0, the more valuable one. Pod 1 has three of SKU 0. Pod 2 has one of
+    SKU 1.
+    """
+
+    @pytest.fixture
+    def aged(self, situation) -> Situation:
+        situation.stock(0, s0=1)
+        situation.stock(1, s0=3)
+        situation.stock(2, s1=1)
+        situation.assigned(due_s=60.0, s0=2)
+        situation.world.now_s = 80.0
+        situation.assigned(due_s=130.0, s0=1, s1=1)
+        situation.world.now_s = 100.0
+        return situation
+
+    def scores(self, aged, **parameters) -> list[float]:
+        scorer = PickWorkAmount(time_cost=0.0, **parameters)
+        return scorer.score(candidates(aged), aged.rng).tolist()
+
+    def test_age(self, aged) -> None:
+        """50; 50 + 50 + 10; 10. With boost pod 1, which completes order 0: 100 more."""
+        assert self.scores(aged, metric="age", completable_boost=0.0) == [50.0, 110.0, 10.0]
+        assert self.scores(aged, metric="age") == [50.0, 210.0, 10.0]
+
+    def test_lateness(self, aged) -> None:
+        """20; 20 + 20 - 15; -15. Only positive: 20, 40, 0."""
+        given = {"metric": "lateness", "completable_boost": 0.0}
+        assert self.scores(aged, **given) == [20.0, 25.0, -15.0]
+        assert self.scores(aged, **given, only_positive_lateness=True) == [20.0, 40.0, 0.0]
+
+    def test_plain_names(self) -> None:
+        parameters = Lexicographic.parameters_model(
+            pick_pod=("pile-on", "age", {"scorer": "lateness", "time_cost": 0.0})
+        )
+        assert [scorer.metric for scorer in parameters.pick_pod] == ["picks", "age", "lateness"]
+        assert [scorer.time_cost for scorer in parameters.pick_pod] == [1 / 3, 1 / 3, 0.0]
+
+    def test_age_of_bundles(self, situation) -> None:
+        """Pod 2: a bundle assigned at 0 s; pod 3: two assigned at 60 s. At 100 s: 100 and 80."""
+        situation.waiting_bundle(2, station=1)
+        situation.world.now_s = 60.0
+        for _ in range(2):
+            situation.waiting_bundle(3, station=1)
+        situation.world.now_s = 100.0
+        view = situation.view
+        found = replenishment_candidates(view, view.robots[0], view.replenishment_stations[0])
+        scores = BundleWorkAmount(age=True).score(found, situation.rng)
+        assert scores.tolist() == [100.0, 80.0]
+
+
+class TestTravelTime:
+    def test_both_ways_estimated_or_exact(self, situation) -> None:
+        """One unit on pod 0, at 1 unit per second. Robot (0, 2) - (0, 0) - (0, 10): 2 + 10 s
+        exactly, a turn of 1 s more for each way that is estimated."""
+        situation.stock(0, s0=1)
+        situation.assigned(s0=1)
+        found = candidates(situation)
+
+        def score(**parameters) -> float:
+            scorer = PickWorkAmount(time_cost=1.0, completable_boost=0.0, **parameters)
+            return scorer.score(found, situation.rng).item()
+
+        assert score() == 1 - 13
+        assert score(estimate_to_pod=False) == 1 - 12
+        assert score(estimate_to_station=True) == 1 - 14
+
+
+class TestTiers:
+    def test_pods_on_other_tiers_come_last(self) -> None:
+        """Pods 0 and 1 are on the ground, 2 and 3 above; the station is on the ground, the robot
+        above: pod 2 has nothing of the station's tier but the robot's, as pod 0 the other way."""
+        plan = small_layout(places=8, pods=4, robots=2)
+        tier = plan.tier.copy()
+        tier[[2, 3, 8]] = 1
+        plan = replace(plan, tier=tier, tiers=(*plan.tiers, *plan.tiers))
+        situation = Situation(plan)
+        for pod in range(4):
+            situation.stock(pod, s0=1)
+        situation.assigned(s0=1)
+        found = candidates(situation)
+        assert found.other_tiers().tolist() == [1, 1, 1, 1]
+        situation.world.robots[0].tier = 0
+        assert found.other_tiers().tolist() == [0, 0, 2, 2]
+        scorer = PickWorkAmount(time_cost=0.0, completable_boost=0.0)
+        assert scorer.score(found, situation.rng).tolist() == [1, 1, -1999, -1999]
+        assert (RandomScorer().score(found, situation.rng) < 1).tolist() == [True] * 4
+        assert (RandomScorer().score(found, situation.rng)[2:] < -1).all()
+
+
+class TestQueuedOrders:
+    """Order 0 (assigned) wants 1 of SKU 0. Queued: order 1 wants 2 of SKU 1, order 2 wants 1 of SKU
+    1 and 1 of SKU 2.
+
+    Pod 0: one of SKU 0. Pod 1: two of SKU 1, completes order 1. Pod 2: one of SKU 1, completes
+    none. Pod 3: two of SKU 1 and one of SKU 2: completes order 1, after which one of SKU 1 is
+    missing for order 2.
+    """
+
+    @pytest.fixture
+    def pooled(self, situation) -> Situation:
+        situation.stock(0, s0=1)
+        situation.stock(1, s1=2)
+        situation.stock(2, s1=1)
+        situation.stock(3, s1=2, s2=1)
+        situation.assigned(s0=1)
+        for units in ({"s1": 2}, {"s1": 1, "s2": 1}):
+            situation.world.queue_order(situation.order(**units), 0)
+        return situation
+
+    def found(self, pooled, requests):
+        view = pooled.view
+        return pick_candidates(view, view.robots[0], view.pick_stations[0], requests)
+
+    @pytest.mark.parametrize(
+        ("requests", "pods"),
+        [
+            ("assigned", [0]),
+            ("assigned-and-completable", [0, 1, 3]),
+            ("assigned-and-queued", [0, 1, 2, 3]),
+        ],
+    )
+    def test_which_pods_are_considered(self, pooled, requests, pods) -> None:
+        assert self.found(pooled, requests).pods.tolist() == pods
+
+    def test_queued_orders_count_only_while_a_slot_is_free(self, pooled) -> None:
+        for _ in range(3):
+            pooled.assigned(s3=1)
+        assert pooled.world.pick_stations[0].free_slots == 0
+        assert self.found(pooled, "assigned-and-queued").pods.tolist() == [0]
+
+    def test_completeable_counts_them_if_so_wished(self, pooled) -> None:
+        found = self.found(pooled, "assigned-and-completable")
+        assert Completeable().score(found, pooled.rng).tolist() == [1, 1, 1]
+        assert Completeable(queued=False).score(found, pooled.rng).tolist() == [1, 0, 0]
+
+    def test_work_amount_weighs_what_would_be_bound(self, pooled) -> None:
+        """Weight 0.2. Pod 0: 1, boost 1. Pods 1 and 3: two units of order 1, boost: 0.2 x 4."""
+        found = self.found(pooled, "assigned-and-completable")
+        scores = PickWorkAmount(time_cost=0.0).score(found, pooled.rng)
+        assert scores.tolist() == pytest.approx([2.0, 0.8, 0.8])
+        scores = PickWorkAmount(time_cost=0.0, boost_queued=False).score(found, pooled.rng)
+        assert scores.tolist() == pytest.approx([2.0, 0.4, 0.4])
+
+    def test_or_all_of_them(self, pooled) -> None:
+        """Without boost: pod 1 has 2 units for the pool, pod 2 has 1, pod 3 has 3."""
+        found = self.found(pooled, "assigned-and-queued")
+        scorer = PickWorkAmount(time_cost=0.0, completable_boost=0.0)
+        scores = scorer.score(found, pooled.rng)
+        assert scores.tolist() == pytest.approx([1.0, 0.4, 0.2, 0.6])
+
+    def test_age_since_they_were_queued(self, pooled) -> None:
+        """At 100 s all are 100 s old; per request 100, 50 and 50. Pod 1: 0.2 x 100; pod 2: 0.2 x
+        50; pod 3: 0.2 x 150."""
+        pooled.world.now_s = 100.0
+        scorer = PickWorkAmount(metric="age", time_cost=0.0, completable_boost=0.0)
+        scores = scorer.score(self.found(pooled, "assigned-and-queued"), pooled.rng)
+        assert scores.tolist() == pytest.approx([100.0, 20.0, 10.0, 30.0])
+
+    def test_what_a_carried_pod_serves(self, pooled) -> None:
+        """Robot 0 stands with its pod at another station, say; then at station 0 itself, where a
+        pod is not used for queued orders."""
+        world = pooled.world
+        for mode, expected in (
+            ("assigned", [True, False, False, False]),
+            ("assigned-and-completable", [True, True, False, True]),
+            ("assigned-and-queued", [True, True, True, True]),
+        ):
+            rule = pooled.make(RandomPod, consider=mode, reserve="assigned-and-queued")
+            assert [rule.serves(pod, 0) for pod in range(4)] == expected
+        rule = pooled.make(RandomPod)
+        world.storage.claim(1, 0)
+        world.robots[0].station = 0
+        assert not rule.serves(1, 0)
+
+    def test_what_is_brought_must_be_bound(self) -> None:
+        with pytest.raises(ValueError, match="reserve must reach as far as consider"):
+            RandomPod.parameters_model(reserve="assigned")
+
+    def test_binding_leaves_the_counts_in_order(self, pooled) -> None:
+        """Pod 3 takes order 1 whole; order 2 lacks a unit of SKU 1, and gets one of SKU 2 if it
+        need not be whole."""
+        world = pooled.world
+        task = world.start_pick(world.robots[0], 3, 0)
+        first, second = world.pick_stations[0].queued.values()
+        assert world.extend_queued(task, first, whole=True) == 2
+        assert world.extend_queued(task, second, whole=True) == 0
+        assert world.extend_queued(task, second, whole=False) == 1
+        assert (first.open_units, second.open_units) == (0, 1)
+        verify(world)
+        assert world.give_back(task) == 3
+        assert (first.open_units, second.open_units) == (2, 2)
+        verify(world)
+
+
+class TestNextStation:
+    """Stations at x = 0, 10, 20; robot 0 stands with pod 0 at the first."""
+
+    @pytest.fixture
+    def three(self) -> Situation:
+        situation = Situation(small_layout(pick_stations=3))
+        situation.stock(0, s0=9)
+        situation.assigned(station=0, s1=1)
+        situation.stock(0, s1=1)
+        situation.carry(robot=0, pod=0)
+        return situation
+
+    def choose(self, situation, *scorers) -> int:
+        rule = situation.make(Lexicographic, next_station=scorers)
+        return rule.next_station(situation.world.robots[0], [1, 2])
+
+    def test_age(self, three) -> None:
+        """At 50 s: station 1 wants one unit since 40 s: 10; station 2 two since 0 s: 25 each."""
+        three.assigned(2, s0=2)
+        three.world.now_s = 40.0
+        three.assigned(1, s0=1)
+        three.world.now_s = 50.0
+        assert self.choose(three, "age") == 2
+        scores = MostWork(metric="age").score(three.view, three.world.robots[0], [1, 2], three.rng)
+        assert scores.tolist() == [10.0, 50.0]
+
+    def test_lateness_takes_the_latest_requests_first(self, three) -> None:
+        """Nine units for 6 requests due at 0 (per request 60 / 6) and 6 due at 90 (-30 / 6), at 60
+        s: 6 x 10 - 3 x 5 = 45."""
+        three.assigned(1, due_s=90.0, s0=6)
+        three.assigned(1, due_s=0.0, s0=6)
+        three.world.now_s = 60.0
+        robot = three.world.robots[0]
+        scores = MostWork(metric="lateness").score(three.view, robot, [1], three.rng)
+        assert scores.tolist() == [45.0]
+        scorer = MostWork(metric="lateness", only_positive_lateness=True)
+        assert scorer.score(three.view, robot, [1], three.rng).tolist() == [60.0]
+
+    def test_nearest(self, three) -> None:
+        scores = NearestNextStation().score(three.view, three.world.robots[0], [1, 2], three.rng)
+        assert scores.tolist() == [-10.0, -20.0]
+        assert self.choose(three, "nearest") == 1
+
+    def test_random(self, three) -> None:
+        rule = three.make(Lexicographic, next_station=("random",))
+        robot = three.world.robots[0]
+        assert {rule.next_station(robot, [1, 2]) for _ in range(40)} == {1, 2}
+
+    def test_bundles(self, three) -> None:
+        """Two bundles wait at station 3 (replenishment) for 20 s each; one pick at station 1."""
+        three.world.robots[0].task.picks.clear()
+        for _ in range(2):
+            three.waiting_bundle(0, 3)
+        three.assigned(1, s0=1)
+        three.world.now_s = 20.0
+        robot = three.world.robots[0]
+        assert MostWork().score(three.view, robot, [1, 3], three.rng).tolist() == [1.0, 2.0]
+        aged = MostWork(bundle_age=True).score(three.view, robot, [1, 3], three.rng)
+        assert aged.tolist() == [1.0, 40.0]
 
 
 def test_random_takes_any_pod_with_work(situation) -> None:

@@ -102,6 +102,16 @@ def test_a_pod_is_released_when_its_time_is_up(situation) -> None:
     assert controller.next_event_s() == inf
 
 
+def test_a_new_rule_releases_what_another_held_back(situation) -> None:
+    """Pod 1 has 10 + 35, pod 3 has 50 + 4 of 100; the new threshold is a half."""
+    for pod, units in ((1, 35), (3, 4)):
+        situation.world.promise(situation.bundle(units=units), pod)
+    controller = situation.make(RandomPod, buffer_threshold=0.5)
+    assert decide(situation, controller) == [("release", 3)]
+    situation.world.now_s = 1200.0
+    assert decide(situation, controller) == [("release", 1)]
+
+
 def test_random_takes_any_pod_with_room(situation) -> None:
     """95 space units fit nowhere, 75 into pods 1 and 2 only."""
     controller = situation.make(RandomPod, stick_to_pod=False)

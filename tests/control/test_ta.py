@@ -4,53 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from answers import Answers, decide
 from doubles import Situation, small_layout
 
-from rmfs.control.decisions import BringForBundles, BringForPicks, Park, Rest
+from rmfs.control.decisions import BringForBundles, BringForPicks, Park, Reposition, Rest
+from rmfs.control.repositioning import Move
 from rmfs.control.ta.balance import deal, reassign, split
 from rmfs.control.ta.balanced import Balanced
-
-
-class Answers:
-    """Gives prepared answers in place of PPS and PSA, and remembers what it was asked."""
-
-    def __init__(self, pods=None, place: int = -1, next_station: int = -1) -> None:
-        self.pods = pods or {}
-        self.place = place
-        self.station = next_station
-        self.asked: list[tuple] = []
-
-    def pod_for(self, robot, station):
-        self.asked.append(("pod", robot.index, station))
-        return self.pods.get(station, -1)
-
-    def next_station(self, robot, stations):
-        self.asked.append(("station", robot.index, tuple(stations)))
-        return self.station
-
-    def place_for(self, robot):
-        self.asked.append(("place", robot.index))
-        return self.place
-
-
-def decide(situation: Situation, controller, answers: Answers) -> list:
-    """Apply all decisions to the world, but command nobody."""
-    world, made = situation.world, []
-    for decision in controller.decide(answers):
-        made.append(decision)
-        match decision:
-            case BringForPicks(robot, pod, station):
-                world.start_pick(robot, pod, station)
-            case BringForBundles(robot, pod, station):
-                world.start_replenish(robot, pod, station)
-            case Park(robot, place):
-                world.start_park(robot, place)
-                robot.waypoint = place
-            case Rest(robot, place):
-                world.start_rest(robot, place)
-                robot.waypoint = place
-                world.storage.departed(robot, place)
-    return made
 
 
 class TestNumbers:
@@ -201,15 +161,19 @@ class TestWithPod:
         made = decide(served, balanced(served, [1, -1, -1]), Answers())
         assert made == [BringForBundles(served.world.robots[0], 1, 1)]
 
-    def test_other_stations_only_if_so_wished(self, served) -> None:
+    def test_another_station_near_by_if_so_wished(self, served) -> None:
         """The replenishment station is 5 m away and waits with a bundle for the pod."""
         served.waiting_bundle(pod=1, station=1)
         answers = Answers(place=6, next_station=1)
         near = balanced(served, [0, -1, -1], other_stations=True, search_radius_m=5.0)
-        assert next(near.decide(answers)) == BringForBundles(served.world.robots[0], 1, 1)
+        assert decide(served, near, answers) == [BringForBundles(served.world.robots[0], 1, 1)]
         assert answers.asked == [("station", 0, (1,))]
-        too_far = balanced(served, [0, -1, -1], other_stations=True, search_radius_m=4.9)
-        assert next(too_far.decide(answers)) == Park(served.world.robots[0], 6)
+
+    def test_but_not_farther_away(self, served) -> None:
+        served.waiting_bundle(pod=1, station=1)
+        near = balanced(served, [0, -1, -1], other_stations=True, search_radius_m=4.9)
+        made = decide(served, near, Answers(place=6, next_station=1))
+        assert made == [Park(served.world.robots[0], 6)]
 
     def test_without_an_empty_place_it_waits(self, served) -> None:
         assert decide(served, balanced(served, [0, -1, -1]), Answers(place=-1)) == []
@@ -222,8 +186,8 @@ class TestWithPod:
         decide(served, controller, Answers())
         served.world.robots[0].task.picks.clear()
         assert controller._workers[0] == 1
-        assert controller._may_work(served.world.robots[0], 0)
-        assert not controller._may_work(served.world.robots[1], 0)
+        assert controller.may_work(served.world.robots[0], 0)
+        assert not controller.may_work(served.world.robots[1], 0)
 
 
 class TestBalancing:
@@ -252,3 +216,105 @@ class TestBalancing:
 
     def test_never_if_the_period_is_0(self, situation) -> None:
         assert situation.make(Balanced, period_s=0).next_event_s() == float("inf")
+
+
+class TestSearchAll:
+    """Pick stations 0 and 1 at x = 0 and 10, replenishment station 2 at x = 5."""
+
+    @pytest.fixture
+    def two(self) -> Situation:
+        return Situation(small_layout(places=8, pods=4, robots=2, pick_stations=2))
+
+    def test_stations_the_nearest_first(self, two) -> None:
+        """Robot 1 belongs to station 1 and stands at (1, 2): nearest are 0, 2, 1."""
+        controller = balanced(two, [0, 1], search_all=True)
+        assert list(controller.stations_for(two.world.robots[1])) == [0, 2, 1]
+        assert list(balanced(two, [0, 1]).stations_for(two.world.robots[1])) == [1]
+
+    def test_a_robot_takes_work_of_another_station(self, two) -> None:
+        two.stock(2, s0=1)
+        two.assigned(station=0, s0=1)
+        made = decide(two, balanced(two, [1, 1], search_all=True), Answers(pods={0: 2}))
+        assert made[0] == BringForPicks(two.world.robots[0], 2, 0)
+        assert isinstance(made[1], Rest)
+
+    def test_a_pod_is_tried_at_all_stations_before_it_is_parked(self, two) -> None:
+        """There is nothing for it at station 0 (where RAWSim-O would park it), but at 1."""
+        two.stock(1, s0=5)
+        two.carry(robot=0, pod=1)
+        two.world.end_task(two.world.robots[0])
+        two.assigned(station=1, s0=1)
+        made = decide(two, balanced(two, [0, -1], search_all=True), Answers())
+        assert BringForPicks(two.world.robots[0], 1, 1) in made
+
+    def test_a_robot_without_station_has_none(self, two) -> None:
+        controller = balanced(two, [-1, -1], search_all=True)
+        assert list(controller.stations_for(two.world.robots[0])) == []
+
+
+class TestRepositioning:
+    def test_instead_of_resting(self, situation) -> None:
+        made = decide(situation, balanced(situation, [0, 0, 1]), Answers(moves=[Move(2, 6)]))
+        assert made[0] == Reposition(situation.world.robots[0], 2, 6)
+        assert [type(decision) for decision in made[1:]] == [Rest, Rest]
+
+    def test_work_of_the_station_comes_first(self, situation) -> None:
+        situation.stock(1, s0=1)
+        situation.assigned(s0=1)
+        answers = Answers(pods={0: 1}, moves=[Move(2, 6)])
+        made = decide(situation, balanced(situation, [0, -1, -1]), answers)
+        assert made[0] == BringForPicks(situation.world.robots[0], 1, 0)
+        assert made[1] == Reposition(situation.world.robots[1], 2, 6)
+
+    def test_a_robot_at_rest_is_asked_again(self, situation) -> None:
+        controller = balanced(situation, [0, 0, 1])
+        decide(situation, controller, Answers())
+        made = decide(situation, controller, Answers(moves=[Move(2, 6)]))
+        assert [(type(task), task.robot.index) for task in made] == [(Reposition, 1)]
+
+    def test_the_robot_beneath_the_pod_moves_it(self, situation) -> None:
+        """Robot 1 rests beneath pod 3, which robot 0 was to move."""
+        world = situation.world
+        world.start_rest(world.robots[1], 3)
+        world.robots[1].waypoint = 3
+        made = decide(situation, balanced(situation, [0, 0, 1]), Answers(moves=[Move(3, 6)]))
+        assert made[0] == Reposition(world.robots[1], 3, 6)
+        assert isinstance(made[1], Rest)
+
+    def test_only_robots_set_aside_for_it(self, situation) -> None:
+        """With a weight of 3 of 6 one robot has no station; only that one moves pods."""
+        controller = situation.make(Balanced, reposition_weight=3.0, reposition_before_rest=False)
+        aside = controller._station_of.index(-1)
+        moves = [Move(0, 7), Move(1, 6), Move(2, 5)]
+        made = decide(situation, controller, Answers(moves=moves))
+        moved = [task.robot.index for task in made if isinstance(task, Reposition)]
+        assert moved == [aside]
+
+    def test_not_if_not_wished(self, situation) -> None:
+        controller = situation.make(Balanced, reposition_before_rest=False)
+        made = decide(situation, controller, Answers(moves=[Move(2, 6)]))
+        assert all(isinstance(task, Rest) for task in made)
+
+
+class TestInstalledLater:
+    def test_robots_at_work_count_towards_the_limits(self, situation) -> None:
+        """Robot 0 works for station 0 when the rule is installed: with a limit of 1 nobody else
+        may."""
+        situation.stock(1, s0=1)
+        situation.assigned(s0=1)
+        situation.world.start_pick(situation.world.robots[0], 1, 0)
+        controller = situation.make(Balanced, robots_per_station=1)
+        assert not controller.may_work(situation.world.robots[1], 0)
+        assert controller.may_work(situation.world.robots[0], 0)
+
+
+@pytest.mark.parametrize(("rule", "places"), [("middle", [3, 2]), ("nearest", [0, 1])])
+def test_rest_places(situation, rule, places) -> None:
+    """Pods at x = 0 to 3, middle at x = 10; robots at (0, 2) and (1, 2), so nearest are 0 and 1."""
+    made = decide(situation, balanced(situation, [-1, -1, -1], rest=rule), Answers())
+    assert [decision.place for decision in made[:2]] == places
+
+
+def test_rest_at_random_on_the_own_tier(situation) -> None:
+    rule = situation.make(Balanced, rest="random")
+    assert {rule.rest_place(situation.world.robots[0]) for _ in range(60)} == {0, 1, 2, 3}

@@ -30,7 +30,7 @@ def test_instances_are_found_and_of_known_kinds() -> None:
     assert ROOT / "instances" == instances.ROOT
     for kind, suffixes in {
         "layouts": {".toml", ".json"},
-        "scenarios": {".toml"},
+        "scenarios": {".toml", ".txt"},
         "controllers": {".toml"},
     }.items():
         found = {path.suffix for path in (instances.ROOT / kind).iterdir()}

@@ -7,9 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rmfs.scenario import SkuSet
+from rmfs.scenario import SkuSet, sku_set
 from rmfs.scenario.parameters import GeneratedSkus
-from rmfs.scenario.skus import sku_set
 
 REFERENCE = Path(__file__).resolve().parents[2] / "../shared/reference/instances"
 

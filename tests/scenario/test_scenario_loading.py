@@ -12,11 +12,12 @@ from typer.testing import CliRunner
 from rmfs.config import validate
 from rmfs.errors import InputError
 from rmfs.instances import names
-from rmfs.scenario import Scenario, load, sku_set
+from rmfs.scenario import Scenario, load, named_files, sku_set
 from rmfs.scenario.commands import app
 from rmfs.scenario.parameters import SkuFile
 from rmfs.scenario.toml import to_toml
 
+NAMES = ["basic", "default", "letters", "poisson", "pp-minimal", "shifts"]
 HEAD = 'format = "rmfs-scenario/1"\nduration_s = 600\n'
 XGENC = (
     "<SimpleItemGeneratorConfiguration><ItemDescriptions><A><Key>0</Key><Value>1</Value></A>"
@@ -46,7 +47,7 @@ def test_defaults_suffice(tmp_path: Path):
     assert len(sku_set(scenario.skus)) == 1000
 
 
-@pytest.mark.parametrize("name", ["default", "basic", "pp-minimal"])
+@pytest.mark.parametrize("name", NAMES)
 def test_shipped_scenarios_load(name: str):
     assert name in names("scenarios")
     scenario = load(name)
@@ -99,8 +100,8 @@ def test_all_problems_come_at_once(tmp_path: Path):
         "did you mean max?",
         "demand.orders: Input should be a valid integer (given: 1.5)",
         "demand.resume_above_share: must be at least pause_below_share = 0.7 (given: 0.6)",
-        "replenishment.mode: Input should be 'backlog' (given: 'poison')",
-        "replenishment.pause_above_share: must be at least resume_below_share = 0.65 (given: 0.1)",
+        "replenishment.mode: must be one of 'backlog', 'poisson', 'needed', 'stream' "
+        "(given: 'poison')",
     ]
 
 
@@ -150,6 +151,20 @@ def test_a_sku_file_is_relative_to_its_scenario(tmp_path: Path, monkeypatch: pyt
     assert len(sku_set(named.skus)) == 1
 
 
+def test_all_files_of_a_scenario_are_known(tmp_path: Path):
+    (tmp_path / "one.xgenc").write_text(XGENC)
+    (tmp_path / "b.csv").write_text("time,sku,quantity\n")
+    lines = "[orders]\nlines = {mean = 1.0, sd = 0.0, min = 1, max = 1}\n"
+    body = f'[skus]\nfile = "one.xgenc"\n{lines}[replenishment]\nmode = "stream"\nfile = "b.csv"'
+    files = named_files(load(written(tmp_path, body)))
+    assert files == {
+        "skus.file": tmp_path / "one.xgenc",
+        "replenishment.file": tmp_path / "b.csv",
+    }
+    assert named_files(load("default")) == {}
+    assert named_files(load("letters"))["skus.words"].name == "words.txt"
+
+
 def test_a_missing_sku_file(tmp_path: Path):
     path = written(tmp_path, '[skus]\nfile = "none.xgenc"')
     assert problem(path) == f"skus.file: no such file (given: '{tmp_path / 'none.xgenc'}')"
@@ -161,7 +176,7 @@ def test_a_sku_file_brings_its_own_number_of_skus(tmp_path: Path):
     assert problem(path).startswith("unknown key skus.count; valid: bundle_units, file")
 
 
-@pytest.mark.parametrize("name", ["default", "basic", "pp-minimal"])
+@pytest.mark.parametrize("name", NAMES)
 def test_a_scenario_survives_toml_and_json(name: str):
     scenario = load(name, [(["description"], 'a "b" \\ \x7f \n ü')])
     assert validate(Scenario, tomllib.loads(to_toml(scenario)), name) == scenario

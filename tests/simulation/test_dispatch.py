@@ -15,7 +15,7 @@ class ToRobot0(Balanced):
 
     chosen = 0
 
-    def _fetch(self, robot, station, consult):
+    def _fetch(self, robot, consult):
         if robot.index != self.chosen or not self.view.has_open_work(0):
             return None
         pod = consult.pod_for(robot, 0)

@@ -72,7 +72,7 @@ class IdleWatch(Observer):
         ta, pps = panel["ta"], panel["pps"]
         for robot in view.resting.values():
             station = ta._station_of[robot.index]
-            if station < 0 or not ta._may_work(robot, station):
+            if station < 0 or not ta.may_work(robot, station):
                 continue
             self.checked += 1
             if station < len(view.pick_stations):

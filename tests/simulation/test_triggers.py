@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import pytest
 from hand_made import HandMade
 
-from rmfs.control.poa.random import RandomOrder
+from rmfs.control.poa.order_rules import RandomOrder
 from rmfs.control.pps.random import RandomPod as AnyPod
 from rmfs.control.problems import Problem, Trigger
 from rmfs.control.psa.random import RandomPlace

@@ -88,10 +88,35 @@ class WorldMachine(RuleBasedStateMachine):
         if not free or any(stock[line.sku] < line.units for line in order.lines):
             return
         station = self.any_of(free).index
+        if order.queued_at >= 0:
+            if not self.world.pick_stations[order.queued_at].free_slots:
+                return
+            station = order.queued_at
         self.world.assign_order(order, station)
         for line in order.lines:
-            self.naive.wanted_in_backlog[line.sku] -= line.units
-            self.naive.open_at[station, line.sku] += line.units
+            self.naive.wanted_in_backlog[line.sku] -= line.open_units
+            self.naive.open_at[station, line.sku] += line.open_units
+
+    @rule(station=st.integers(0, 1))
+    def queue_order(self, station) -> None:
+        order = self.any_of(order for order in self.world.orders if order.queued_at < 0)
+        if order is not None:
+            self.world.queue_order(order, station)
+
+    @rule()
+    def unqueue_order(self) -> None:
+        order = self.any_of(order for order in self.world.orders if order.queued_at >= 0)
+        if order is None:
+            return
+        for task in self.world.pick_stations[order.queued_at].tasks.values():
+            for pick in task.picks:
+                if pick.line.order is order:
+                    self.naive_give_back(pick.line.sku, task.pod)
+        self.world.unqueue_order(order)
+
+    def naive_give_back(self, sku, pod) -> None:
+        self.naive.bound[sku, pod] -= 1
+        self.naive.wanted_in_backlog[sku] += 1
 
     # --- bundles --------------------------------------------------------------------------------
 
@@ -168,6 +193,37 @@ class WorldMachine(RuleBasedStateMachine):
         if robot is not None:
             self.world.extend_replenish(robot.task)
 
+    @rule(whole=st.booleans())
+    def extend_queued(self, whole) -> None:
+        """Every unit that the pod has available, of every open request of the order."""
+        robot = self.any_of(self.robots(TaskKind.PICK, carrying=True))
+        if robot is None:
+            return
+        order = self.any_of(self.world.pick_stations[robot.task.station].queued.values())
+        if order is None:
+            return
+        counts = {
+            line.sku: min(line.open_units, self.naive.available(line.sku, robot.pod))
+            for line in order.lines
+        }
+        if whole and any(counts[line.sku] < line.open_units for line in order.lines):
+            counts = {}
+        bound = self.world.extend_queued(robot.task, order, whole=whole)
+        assert bound == sum(counts.values())
+        for sku, count in counts.items():
+            self.naive.bound[sku, robot.pod] += count
+            self.naive.wanted_in_backlog[sku] -= count
+
+    @rule()
+    def give_back(self) -> None:
+        robot = self.any_of(self.robots(TaskKind.PICK, carrying=True))
+        if robot is not None:
+            for pick in robot.task.picks:
+                if pick.line.order.station < 0:
+                    self.naive_give_back(pick.line.sku, robot.pod)
+            self.world.give_back(robot.task)
+            assert all(pick.line.order.station >= 0 for pick in robot.task.picks)
+
     @rule()
     def lift(self) -> None:
         storage = self.world.storage
@@ -181,7 +237,7 @@ class WorldMachine(RuleBasedStateMachine):
 
     @rule()
     def pick(self) -> None:
-        robot = self.any_of(r for r in self.robots(TaskKind.PICK, True) if r.task.picks)
+        robot = self.any_of(r for r in self.robots(TaskKind.PICK, True) if r.task.can_pick)
         if robot is not None:
             line = self.world.pick_unit(robot.task).line
             self.naive.on_pod[line.sku, robot.pod] -= 1
@@ -222,6 +278,36 @@ class WorldMachine(RuleBasedStateMachine):
             self.world.end_task(robot)
 
     @rule()
+    def reposition(self) -> None:
+        robot = self.any_of(r for r in self.world.robots if r.task is None and r.pod < 0)
+        storage = self.world.storage
+        pods = [
+            pod
+            for pod in np.flatnonzero(storage.is_at_hand).tolist()
+            if robot is not None and storage.kept_by[storage.place_of[pod]] in (-1, robot.index)
+        ]
+        places = storage.places[storage.is_empty].tolist()
+        if pods and places:
+            pod = self.any_of(pods)
+            self.world.start_reposition(robot, pod, self.any_of(places))
+            storage.keep(robot, storage.place_of[pod])
+            robot.waypoint = storage.place_of[pod]
+            storage.departed(robot, robot.waypoint)
+
+    @rule()
+    def move_pod(self) -> None:
+        """Lift the pod, drive to the place, which was kept all the time, and set it down."""
+        robot = self.any_of(self.robots(TaskKind.REPOSITION, carrying=False))
+        if robot is not None:
+            task = robot.task
+            assert self.world.storage.kept_by[task.place] == robot.index
+            self.world.lift(robot, task.pod)
+            robot.waypoint = task.place
+            self.world.storage.departed(robot, task.place)
+            self.world.set_down(robot, task.place)
+            self.world.end_task(robot)
+
+    @rule()
     def rest(self) -> None:
         robot = self.any_of(robot for robot in self.world.robots if robot.is_free)
         places = self.world.storage.places[self.world.storage.is_restful].tolist()
@@ -239,6 +325,10 @@ class WorldMachine(RuleBasedStateMachine):
             return
         inventory = self.world.inventory
         for sku in range(SKUS):
+            bound = sum(self.naive.bound[sku, pod] for pod in range(PODS))
+            open_units = sum(self.naive.open_at[station, sku] for station in range(2))
+            ordered = bound + open_units + self.naive.wanted_in_backlog[sku]
+            assert inventory.wanted[sku] == ordered
             assert inventory.uncommitted[sku] == self.naive.uncommitted(sku)
             for pod in range(PODS):
                 assert inventory.contained[sku, pod] == self.naive.on_pod[sku, pod]

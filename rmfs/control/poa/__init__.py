@@ -11,7 +11,7 @@ from rmfs.control.problems import Problem, Trigger
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rmfs.control.decisions import AssignOrder
+    from rmfs.control.decisions import AssignOrder, QueueOrder
 
 P = TypeVar("P", bound=Parameters)
 
@@ -20,7 +20,8 @@ class PickOrderAssignment(Controller[P]):
     """Chooses orders of `view.orders` for stations with free slots.
 
     Each decision is applied at once: when the controller is resumed, the order has left the
-    backlog and taken its slot. Orders it does not choose wait until it is asked again.
+    backlog and taken its slot. Orders it does not choose wait until it is asked again. It may also
+    queue orders at a station, so that pods are fetched for them before a slot is free.
     """
 
     problem = Problem.POA
@@ -35,5 +36,5 @@ class PickOrderAssignment(Controller[P]):
     )
 
     @abstractmethod
-    def decide(self) -> Iterator[AssignOrder]:
+    def decide(self) -> Iterator[AssignOrder | QueueOrder]:
         """Yield an order and a station, again and again, until nothing is to be assigned now."""

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Literal, TypeVar
+
+import pydantic
 
 from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem
@@ -11,17 +13,41 @@ from rmfs.control.problems import Problem
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rmfs.world.orders import Order
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation, ReplenishmentStation
 
+Requests = Literal["assigned", "assigned-and-completable", "assigned-and-queued"]
+"""Those of assigned orders; of queued ones too that the pod completes; of all queued ones too."""
+
+_REACH: dict[Requests, int] = {
+    "assigned": 0,
+    "assigned-and-completable": 1,
+    "assigned-and-queued": 2,
+}
+
 
 class LateBinding(Parameters):
-    """Parameters of every PPS rule."""
+    """Parameters of every PPS rule; there are queued orders only under POA queue."""
 
     late_picks: bool = True
     """Whether a pod on its way to a pick station is given requests that come up meanwhile."""
     late_bundles: bool = True
     """The same for bundles of a pod on its way to a replenishment station."""
+    consider: Requests = "assigned-and-completable"
+    """For which requests a pod is brought: those of `assigned` orders, also those of queued orders
+    that the pod completes (`assigned-and-completable`), or those of all queued orders as well
+    (`assigned-and-queued`)."""
+    reserve: Requests = "assigned-and-completable"
+    """Which requests are bound to a pod that comes; at least those for which it is brought."""
+
+    @pydantic.model_validator(mode="after")
+    def _reserve_what_is_considered(self) -> LateBinding:
+        if _REACH[self.reserve] < _REACH[self.consider]:
+            raise ValueError(
+                f"reserve must reach as far as consider (given: {self.reserve}, {self.consider})"
+            )
+        return self
 
 
 P = TypeVar("P", bound=LateBinding)
@@ -47,3 +73,30 @@ class PodSelection(Controller[P]):
     @abstractmethod
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
         """Choose one of several stations that the pod of a robot can serve (at least one)."""
+
+    def serves(self, pod: int, station: int) -> bool:
+        """Whether there is work for a pod at a station of either kind, by `consider`."""
+        view = self.view
+        if station >= len(view.pick_stations):
+            return bool(view.bundles_waiting[station - len(view.pick_stations), pod])
+        target = view.pick_stations[station]
+        if view.inventory.serves(pod, list(target.requests.lines)):
+            return True
+        return any(self._completes(pod, order) for order in self._queued(pod, target))
+
+    def _queued(self, pod: int, station: PickStation) -> Sequence[Order]:
+        """Queued orders that matter: none without a free slot, or for a pod that is there."""
+        if self.parameters.consider == "assigned" or not station.free_slots:
+            return ()
+        carrier = self.view.storage.claimed_by[pod]
+        if carrier >= 0 and self.view.robots[carrier].station == station.index:
+            return ()
+        return [order for order in station.queued.values() if order.open_units]
+
+    def _completes(self, pod: int, order: Order) -> bool:
+        """Whether a pod has all, or by `consider` some, of what an order still wants."""
+        available = self.view.inventory.available.item
+        lines = (line for line in order.lines if line.open_units)
+        if self.parameters.consider == "assigned-and-queued":
+            return any(available(line.sku, pod) for line in lines)
+        return all(available(line.sku, pod) >= line.open_units for line in lines)

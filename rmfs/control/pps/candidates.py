@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
+    from rmfs.control.pps import Requests
     from rmfs.control.view import View
+    from rmfs.world.orders import Order
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation, ReplenishmentStation
 
@@ -57,15 +61,46 @@ class Candidates:
         return away
 
 
+class Completed(NamedTuple):
+    """Which orders each of C pods completes.
+
+    Attributes
+    ----------
+    orders
+        The O orders with open requests, those assigned to the station first.
+    assigned
+        How many of them are assigned; the others are queued.
+    flags
+        Whether a pod covers all open requests of an order, shape (O, C).
+    """
+
+    orders: Sequence[Order]
+    assigned: int
+    flags: NDArray[np.bool_]
+
+    def weighed(self, weights: Sequence[float], queued: bool) -> NDArray[np.float64]:
+        """Sum the weights of the assigned, or the queued, orders that each pod completes, (C,)."""
+        part = slice(self.assigned, None) if queued else slice(self.assigned)
+        # a sum over rows, in their order: repeats on every machine
+        total: NDArray[np.float64] = (
+            self.flags[part] * np.array(weights[part], float)[:, None]
+        ).sum(axis=0)
+        return total
+
+
 class PickCandidates(Candidates):
     """Candidates for a pick station.
 
     Parameters
     ----------
     skus
-        The S SKUs with open requests at the station.
+        The S SKUs with open requests at the station or, as far as they count, in its pool.
     have
         Units available of each of them on the candidates, shape (S, C).
+    queued
+        The queued orders that count.
+    requests
+        Which requests count.
     """
 
     def __init__(
@@ -76,71 +111,118 @@ class PickCandidates(Candidates):
         pods: NDArray[np.intp],
         skus: list[int],
         have: NDArray[np.int32],
+        queued: Sequence[Order] = (),
+        requests: Requests = "assigned",
     ) -> None:
         super().__init__(view, robot, station, pods)
         self.pick_station = station
         self.skus = skus
         self.have = have
-        self._completed: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None
+        self.queued = queued
+        self.requests = requests
+        self._completed: Completed | None = None
 
     def narrowed(self, to: NDArray[np.intp]) -> PickCandidates:
         """Keep only some of the pods, given by position."""
         kept = PickCandidates(
-            self.view, self.robot, self.pick_station, self.pods[to], self.skus, self.have[:, to]
+            self.view,
+            self.robot,
+            self.pick_station,
+            self.pods[to],
+            self.skus,
+            self.have[:, to],
+            self.queued,
+            self.requests,
         )
         if self._completed is not None:
-            orders, units = self._completed
-            kept._completed = orders[to], units[to]
+            kept._completed = self._completed._replace(flags=self._completed.flags[:, to])
         return kept
 
     def servable_units(self) -> NDArray[np.int64]:
-        """Open requests each pod can serve, shape (C,)."""
+        """Open requests of assigned orders each pod can serve, shape (C,)."""
         need = self.view.need[self.station.index][self.skus]
         units: NDArray[np.int64] = np.minimum(self.have, need[:, None]).sum(axis=0)
         return units
 
-    def completed(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Orders of the station whose open requests each pod covers, and units of these, (C,) each.
+    def queued_units(self) -> NDArray[np.int64]:
+        """Open requests of queued orders that would be bound after those, shape (C,)."""
+        if self.requests == "assigned-and-completable":
+            done = self.completed()
+            units = [float(order.open_units) for order in done.orders]
+            return done.weighed(units, queued=True).astype(np.int64)
+        need = self.view.need[self.station.index][self.skus]
+        queued_need = self.view.queued_need[self.station.index][self.skus]
+        left = self.have - np.minimum(self.have, need[:, None])
+        served: NDArray[np.int64] = np.minimum(left, queued_need[:, None]).sum(axis=0)
+        return served
 
-        Orders are gone through as they were assigned, and each takes what it needs of the pod's
-        available units if all is there. Orders without open requests count for nothing (in
-        RAWSim-O for one on every pod, which changes no comparison).
+    def completed(self) -> Completed:
+        """Orders whose open requests each pod covers.
+
+        Orders are gone through as they were assigned, then as they were queued, and each takes what
+        it needs of the pod's available units if all is there. Orders without open requests count
+        for nothing (in RAWSim-O for one on every pod, which changes no comparison).
         """
         if self._completed is None:
-            self._completed = self._count_completed()
+            self._completed = self._find_completed()
         return self._completed
 
-    def _count_completed(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def _find_completed(self) -> Completed:
         row_of = {sku: row for row, sku in enumerate(self.skus)}
         left = self.have.copy()
-        orders = np.zeros(len(self.pods), np.int64)
-        units = np.zeros(len(self.pods), np.int64)
-        for order in self.pick_station.orders.values():
-            if not order.open_units:
-                continue
+        assigned = [order for order in self.pick_station.orders.values() if order.open_units]
+        orders = [*assigned, *self.queued]
+        flags = np.empty((len(orders), len(self.pods)), np.bool_)
+        for covered, order in zip(flags, orders, strict=True):
             wanted = [(row_of[ln.sku], ln.open_units) for ln in order.lines if ln.open_units]
             row, count = wanted[0]
-            covered = left[row] >= count
+            np.greater_equal(left[row], count, out=covered)
             for row, count in wanted[1:]:
                 covered &= left[row] >= count
-            orders += covered
-            units += covered * order.open_units
             for row, count in wanted:
                 left[row] -= covered * np.int32(count)
-        return orders, units
+        return Completed(orders, len(assigned), flags)
 
 
-def pick_candidates(view: View, robot: Robot, station: PickStation) -> PickCandidates:
-    """Find the pods at hand that can serve an open request of a pick station."""
+def pick_candidates(
+    view: View, robot: Robot, station: PickStation, requests: Requests = "assigned"
+) -> PickCandidates:
+    """Find the pods at hand that can serve an open request of a pick station.
+
+    Parameters
+    ----------
+    requests
+        Which requests count. Queued orders never do while the station has no free slot: a pod might
+        be brought in vain.
+    """
     skus = list(station.requests.lines)
+    queued: list[Order] = []
+    if requests != "assigned" and station.queued and station.free_slots:
+        queued = [order for order in station.queued.values() if order.open_units]
+    if queued:
+        skus += [sku for sku in station.queued_requests.lines if sku not in station.requests.lines]
     if not skus:
         none = np.empty(0, np.intp)
         return PickCandidates(view, robot, station, none, skus, np.empty((0, 0), np.int32))
     have = view.inventory.available[skus]
-    useful = have.max(axis=0) > 0
+    assigned = len(station.requests.lines) if requests == "assigned-and-completable" else len(skus)
+    useful = have[:assigned].max(axis=0, initial=0) > 0
+    if requests == "assigned-and-completable":
+        for order in queued:
+            useful |= _covered(view, order)
     useful &= view.storage.is_at_hand
     pods = useful.nonzero()[0]
-    return PickCandidates(view, robot, station, pods, skus, have[:, pods])
+    return PickCandidates(view, robot, station, pods, skus, have[:, pods], queued, requests)
+
+
+def _covered(view: View, order: Order) -> NDArray[np.bool_]:
+    """Whether each pod has all units available that an order still wants, shape (P,)."""
+    lines = [line for line in order.lines if line.open_units]
+    available = view.inventory.available
+    covered: NDArray[np.bool_] = available[lines[0].sku] >= lines[0].open_units
+    for line in lines[1:]:
+        covered &= available[line.sku] >= line.open_units
+    return covered
 
 
 def replenishment_candidates(view: View, robot: Robot, station: ReplenishmentStation) -> Candidates:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Annotated, Any, Protocol
 
 import numpy as np
+import pydantic
 
 from rmfs.control.pps import LateBinding, PodSelection
 from rmfs.control.pps.candidates import Candidates, pick_candidates, replenishment_candidates
@@ -17,12 +18,21 @@ from rmfs.control.pps.scorers import (
     PickWorkAmount,
     RandomScorer,
 )
+from rmfs.control.pps.station_scorers import (
+    MostWork,
+    NearestNextStation,
+    NextStationScorer,
+    RandomNextStation,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rmfs.control.view import View
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation, ReplenishmentStation
+
+AtLeastOne = pydantic.Field(min_length=1)
 
 
 class Scorer(Protocol):
@@ -36,28 +46,50 @@ class Scorer(Protocol):
 class LexicographicParameters(LateBinding):
     """Parameters of PPS lexicographic."""
 
-    pick_pod: tuple[PickScorer, ...] = (Completeable(), PickWorkAmount(), Nearest())
-    """Scorers of pods for a pick station, the first counting most."""
-    replenishment_pod: tuple[BundleScorer, ...] = (
+    pick_pod: Annotated[tuple[PickScorer, ...], AtLeastOne] = (
+        Completeable(),
+        PickWorkAmount(),
+        Nearest(),
+    )
+    """Scorers of pods for a pick station, the first counting most: `random`, `nearest`, `pile-on`
+    (or `work-amount`), `age`, `lateness`, `completeable`, `demand`, `fill`."""
+    replenishment_pod: Annotated[tuple[BundleScorer, ...], AtLeastOne] = (
         BundleWorkAmount(),
-        Nearest(metric="distance"),
+        Nearest(metric="euclidean"),
         RandomScorer(),
     )
-    """Scorers of pods for a replenishment station."""
+    """Scorers of pods for a replenishment station: `random`, `nearest`, `work-amount`, `demand`."""
+    next_station: Annotated[tuple[NextStationScorer, ...], AtLeastOne] = (
+        MostWork(),
+        NearestNextStation(),
+        RandomNextStation(),
+    )
+    """Scorers of stations for a pod that has been served, if TA lets it go on to others: `random`,
+    `nearest`, `work-amount` (or `pile-on`, `age`, `lateness`)."""
 
 
 class Lexicographic(PodSelection[LexicographicParameters]):
     """Takes the pod that is best by the first scorer, then by the second, and so on.
 
-    Full ties: the pod with the lowest number. A pod that has been served goes to the station where
-    it finds most work; ties: the nearest, then the one with the lowest number.
+    Full ties: the pod, or the station, with the lowest number.
+
+    Differences from RAWSim-O: with `completable_boost`, the boost is what the completed orders are
+    worth, once; requests of queued orders count only as far as they would be bound.
     """
 
     parameters_model = LexicographicParameters
 
+    def __init__(
+        self, parameters: LexicographicParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        for scorer in (*parameters.pick_pod, *parameters.replenishment_pod):
+            scorer.prepare(view)
+
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
         """Choose by the scorers for pick stations."""
-        return self._best(pick_candidates(self.view, robot, station), self.parameters.pick_pod)
+        candidates = pick_candidates(self.view, robot, station, self.parameters.consider)
+        return self._best(candidates, self.parameters.pick_pod)
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
         """Choose by the scorers for replenishment stations."""
@@ -65,12 +97,14 @@ class Lexicographic(PodSelection[LexicographicParameters]):
         return self._best(candidates, self.parameters.replenishment_pod)
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Choose by amount of work, then by distance."""
-        view = self.view
-        work = [view.work_for(robot.pod, station) for station in stations]
-        best = [s for s, amount in zip(stations, work, strict=True) if amount == max(work)]
-        waypoints = np.array([view.stations[station].waypoint for station in best])
-        return best[int(view.travel.metres(robot.waypoint, waypoints).argmin())]
+        """Choose by the scorers of stations."""
+        left = list(stations)
+        for scorer in self.parameters.next_station:
+            if len(left) == 1:
+                break
+            scores = scorer.score(self.view, robot, left, self.rng)
+            left = [left[position] for position in (scores == scores.max()).nonzero()[0].tolist()]
+        return left[0]
 
     def _best(self, candidates: Candidates, scorers: Sequence[Scorer]) -> int:
         if not len(candidates):

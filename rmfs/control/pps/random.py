@@ -28,7 +28,7 @@ class RandomPod(PodSelection[RandomPodParameters]):
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
         """Draw one of the pods at hand that can serve a request."""
-        return self._any(pick_candidates(self.view, robot, station))
+        return self._any(pick_candidates(self.view, robot, station, self.parameters.consider))
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
         """Draw one of the pods at hand for which bundles wait."""

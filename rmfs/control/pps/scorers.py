@@ -4,27 +4,43 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
 import pydantic
 
 from rmfs.control.base import Parameters
+from rmfs.control.pps.requests import RequestValue, value_of
+from rmfs.control.trackers.pod_scores import DemandOnPods, demand
+from rmfs.control.travel import Metric
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from rmfs.control.pps.candidates import Candidates, PickCandidates
+    from rmfs.control.view import View
+    from rmfs.world.orders import Order
 
     Scores = NDArray[np.float64] | NDArray[np.int64]
 
 _OTHER_TIER = 1000.0
 """Units that a pod on another tier is worth less: more than any pod can serve."""
 
+NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
+Share = Annotated[float, pydantic.Field(ge=0, le=1)]
 
-class RandomScorer(Parameters):
+
+class PodScorer(Parameters):
+    """Base of the scorers of pods."""
+
+    def prepare(self, view: View) -> None:
+        """Ask for the trackers it needs; called when the controller is made."""
+
+
+class RandomScorer(PodScorer):
     """Any pod; those on the tiers of robot and station first if so wished."""
 
     scorer: Literal["random"] = "random"
     prefer_same_tier: bool = True
+    """Whether pods on the tiers of robot and station come first."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
         """Uniform in [0, 1), less one for robot and for station on another tier."""
@@ -32,97 +48,258 @@ class RandomScorer(Parameters):
         return scores - candidates.other_tiers() if self.prefer_same_tier else scores
 
 
-class Nearest(Parameters):
+class Nearest(PodScorer):
     """Shortest way from the robot to the pod and on to the station."""
 
     scorer: Literal["nearest"] = "nearest"
-    metric: Literal["time", "distance"] = "time"
-    """`time`: estimated time from robot to pod plus exact time from pod to station; `distance`:
-    Euclidean distances."""
+    metric: Metric = "time"
+    """What is short: `euclidean`, `manhattan` (m), `path` (m along the waypoints) or `time` (s)."""
+    estimate: bool = True
+    """For `time`: whether the way from robot to pod is estimated by its Manhattan distance."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
         """Minus seconds, or minus metres."""
         if self.metric == "time":
-            return -_seconds(candidates)
-        travel = candidates.view.travel
-        pods = candidates.waypoints()
-        from_robot = travel.metres(travel.robot_waypoint(candidates.robot.index), pods)
-        return -(from_robot + travel.metres(candidates.station.waypoint, pods))
+            return -_seconds(candidates, self.estimate, estimate_station=False)
+        travel, pods = candidates.view.travel, candidates.waypoints()
+        robot = travel.robot_waypoint(candidates.robot.index)
+        station = candidates.station.waypoint
+        from_robot = travel.between(robot, pods, self.metric, loaded=False)
+        return -(from_robot + travel.distances_to(station, self.metric)[pods])
 
 
-class Completeable(Parameters):
+class Fill(PodScorer):
+    """The fullest, or the emptiest, pod."""
+
+    scorer: Literal["fill"] = "fill"
+    prefer_fullest: bool = True
+    """Whether full pods come first; otherwise empty ones."""
+    binary: bool = True
+    """Whether only the two sides of the threshold are told apart."""
+    threshold: Share = 0.7
+    """Share of a pod's capacity, in use by stored units, that parts full pods from empty ones."""
+
+    def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
+        """1 above (or below) the threshold and 0 otherwise; or the share, signed."""
+        inventory = candidates.view.inventory
+        share = inventory.used[candidates.pods] / inventory.capacity[candidates.pods]
+        if self.binary:
+            side = share > self.threshold if self.prefer_fullest else share < self.threshold
+            return side.astype(np.int64)
+        return share if self.prefer_fullest else -share
+
+
+class PickDemand(PodScorer):
+    """The pod with most units that any order, at a station or waiting, still wants."""
+
+    scorer: Literal["demand"] = "demand"
+
+    def prepare(self, view: View) -> None:
+        """Have wanted units counted."""
+        view.trackers.get(DemandOnPods, "unbound")
+
+    def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
+        """Sum over SKUs of units contained, at most the open requests for the SKU."""
+        units = candidates.view.trackers.get(DemandOnPods, "unbound").units()
+        scores: Scores = units[candidates.pods]
+        return scores
+
+
+class Completeable(PodScorer):
     """Most orders of the station completed."""
 
     scorer: Literal["completeable"] = "completeable"
+    queued: bool = True
+    """Whether queued orders count as well."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
-        """Orders of the station of which the pod covers all open requests."""
-        return candidates.completed()[0]
+        """Orders of which the pod covers all open requests."""
+        done = candidates.completed()
+        flags = done.flags if self.queued else done.flags[: done.assigned]
+        scores: Scores = flags.sum(axis=0)
+        return scores
 
 
-class PickWorkAmount(Parameters):
-    """Most picks, with a price for the way ("pile-on" in later literature)."""
+class PickWorkAmount(PodScorer):
+    """Most work at the station, with a price for the way ("pile-on" in later literature).
+
+    The work is what the requests are worth that the pod can serve: by `metric`, one each; the time
+    for which the order has been on the station; or the time for which it is late, both divided by
+    the order's open requests. A plain `pile-on`, `age` or `lateness` in a file stands for the
+    three.
+    """
 
     scorer: Literal["work-amount"] = "work-amount"
-    time_cost: Annotated[float, pydantic.Field(ge=0)] = 1 / 3
-    """Picks that one second of travel is worth."""
-    completable_boost: Annotated[float, pydantic.Field(ge=0)] = 1.0
-    """Units of orders that the pod can complete count so much more: 1 for twice."""
+    metric: RequestValue = "picks"
+    """What a request is worth: `picks` (one), `age` or `lateness` (s per open request)."""
+    only_positive_lateness: bool = False
+    """For `lateness`: whether orders that are not late yet count nothing, and not negatively."""
+    time_cost: NotNegative = 1 / 3
+    """Picks (or seconds of age or lateness) that one second of travel is worth."""
+    completable_boost: NotNegative = 1.0
+    """Requests of orders that the pod can complete count so much more: 1 for twice."""
+    queued_weight: NotNegative = 0.2
+    """What a request of a queued order is worth, compared with one of an assigned order."""
+    boost_queued: bool = True
+    """Whether the boost also goes to queued orders."""
+    estimate_to_pod: bool = True
+    """Whether the time from robot to pod is estimated by the Manhattan distance."""
+    estimate_to_station: bool = False
+    """Whether the time from pod to station is."""
     prefer_same_tier: bool = True
     """Whether pods on the tiers of robot and station come first."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
-        """Servable requests plus boost, less travel time times its cost."""
-        scores: Scores = candidates.servable_units() + (
-            self.completable_boost * candidates.completed()[1]
-        )
+        """Worth of the servable requests plus boost, less travel time times its cost."""
+        scores = self._work(candidates)
         if self.time_cost:
-            scores = scores - self.time_cost * _seconds(candidates)
+            scores = scores - self.time_cost * _seconds(
+                candidates, self.estimate_to_pod, self.estimate_to_station
+            )
         if self.prefer_same_tier:
             scores = scores - _OTHER_TIER * candidates.other_tiers()
         return scores
 
+    def _work(self, candidates: PickCandidates) -> Scores:
+        done = candidates.completed()
+        value = {order.index: self._value(candidates, order) for order in done.orders}
+        worth = [value[order.index] * order.open_units for order in done.orders]
+        if self.metric == "picks":
+            scores: Scores = candidates.servable_units()
+        else:
+            scores = _valued(candidates, value)
+        scores = scores + self.completable_boost * done.weighed(worth, queued=False)
+        if candidates.queued and self.queued_weight:
+            scores = scores + self.queued_weight * self._queued_work(candidates, value, worth)
+        return scores
 
-class BundleWorkAmount(Parameters):
+    def _queued_work(
+        self, candidates: PickCandidates, value: dict[int, float], worth: list[float]
+    ) -> Scores:
+        """Worth of the requests of queued orders, boost included, before its weight."""
+        done = candidates.completed()
+        completed = done.weighed(worth, queued=True)
+        boost = self.completable_boost * self.boost_queued
+        if candidates.requests == "assigned-and-completable":
+            return (1 + boost) * completed
+        if self.metric == "picks":
+            return candidates.queued_units() + boost * completed
+        return _valued(candidates, value, queued=True) + boost * completed
+
+    def _value(self, candidates: PickCandidates, order: Order) -> float:
+        now_s = candidates.view.now_s
+        return value_of(order, now_s, self.metric, positive=self.only_positive_lateness)
+
+
+class BundleWorkAmount(PodScorer):
     """Most bundles."""
 
     scorer: Literal["work-amount"] = "work-amount"
+    age: bool = False
+    """Whether bundles count by the time since they were assigned, and not one each."""
     prefer_same_tier: bool = True
     """Whether pods on the tiers of robot and station come first."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Bundles that wait at the station for the pod."""
+        """Bundles that wait at the station for the pod, or the seconds for which they have."""
         view = candidates.view
-        row = view.bundles_waiting[candidates.station.index - len(view.pick_stations)]
-        scores: Scores = row[candidates.pods].astype(float)
+        station = candidates.station.index - len(view.pick_stations)
+        if self.age:
+            waiting = view.replenishment_stations[station].waiting
+            scores: Scores = np.array(
+                [
+                    sum(view.now_s - bundle.assigned_s for bundle in waiting[pod])
+                    for pod in candidates.pods.tolist()
+                ]
+            )
+        else:
+            scores = view.bundles_waiting[station][candidates.pods].astype(float)
         if self.prefer_same_tier:
             scores = scores - _OTHER_TIER * candidates.other_tiers()
         return scores
 
 
-def _seconds(candidates: Candidates) -> NDArray[np.float64]:
-    """Estimated time to reach each pod, and exact time from there to the station, (C,)."""
+class BundleDemand(PodScorer):
+    """The pod whose bundles at the station are wanted most."""
+
+    scorer: Literal["demand"] = "demand"
+
+    def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
+        """Sum over the bundles of their units, at most the open requests for the SKU."""
+        view = candidates.view
+        station = candidates.station.index - len(view.pick_stations)
+        waiting = view.replenishment_stations[station].waiting
+        wanted = demand(view, "unbound").tolist()
+        return np.array(
+            [
+                sum(min(bundle.units, wanted[bundle.sku]) for bundle in waiting[pod])
+                for pod in candidates.pods.tolist()
+            ]
+        )
+
+
+def _valued(
+    candidates: PickCandidates, value: dict[int, float], queued: bool = False
+) -> NDArray[np.float64]:
+    """Worth of what each pod can serve, the most valuable requests for a SKU first, shape (C,)."""
+    station = candidates.pick_station
+    pool = station.queued_requests if queued else station.requests
+    need = candidates.view.need[station.index]
+    total = np.zeros(len(candidates))
+    for row, sku in enumerate(candidates.skus):
+        waiting = pool.lines.get(sku)
+        if not waiting:
+            continue
+        lines = sorted(waiting, key=lambda line: value[line.order.index], reverse=True)
+        before = int(need[sku]) if queued else 0
+        for line in lines:
+            taken = np.clip(candidates.have[row] - before, 0, line.open_units)
+            total += value[line.order.index] * taken
+            before += line.open_units
+    return total
+
+
+def _seconds(
+    candidates: Candidates, estimate_pod: bool, estimate_station: bool
+) -> NDArray[np.float64]:
+    """Time to reach each pod, and from there to the station, each estimated or exact, (C,)."""
     travel = candidates.view.travel
     pods = candidates.waypoints()
-    to_pod = travel.estimate_s(travel.robot_waypoint(candidates.robot.index), pods)
-    seconds: NDArray[np.float64] = (
-        to_pod + travel.to(candidates.station.waypoint, loaded=True)[pods]
-    )
+    robot, station = travel.robot_waypoint(candidates.robot.index), candidates.station.waypoint
+    if estimate_pod:
+        to_pod = travel.estimate_s(robot, pods)
+    else:
+        to_pod = travel.away(robot, loaded=False)[pods]
+    if estimate_station:
+        to_station = travel.estimate_s(station, pods)
+    else:
+        to_station = travel.to(station, loaded=True)[pods]
+    seconds: NDArray[np.float64] = to_pod + to_station
     return seconds
 
 
-def _by_name(value: Any) -> Any:
-    """Let a plain name stand for a scorer with its defaults."""
-    return {"scorer": value} if isinstance(value, str) else value
+_SHORT: dict[str, dict[str, Any]] = {
+    "pile-on": {"scorer": "work-amount", "metric": "picks"},
+    "age": {"scorer": "work-amount", "metric": "age"},
+    "lateness": {"scorer": "work-amount", "metric": "lateness"},
+}
+
+
+def by_name(value: Any) -> Any:
+    """Let a plain name stand for a scorer with its defaults, and three names for work amounts."""
+    given = {"scorer": value} if isinstance(value, str) else value
+    if isinstance(given, dict) and given.get("scorer") in _SHORT:
+        return {**given, **_SHORT[given["scorer"]]}
+    return given
 
 
 PickScorer = Annotated[
-    RandomScorer | Nearest | Completeable | PickWorkAmount,
+    RandomScorer | Nearest | Fill | PickDemand | Completeable | PickWorkAmount,
     pydantic.Field(discriminator="scorer"),
-    pydantic.BeforeValidator(_by_name),
+    pydantic.BeforeValidator(by_name),
 ]
 BundleScorer = Annotated[
-    RandomScorer | Nearest | BundleWorkAmount,
+    RandomScorer | Nearest | BundleDemand | BundleWorkAmount,
     pydantic.Field(discriminator="scorer"),
-    pydantic.BeforeValidator(_by_name),
+    pydantic.BeforeValidator(by_name),
 ]

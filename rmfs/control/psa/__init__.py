@@ -5,10 +5,14 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+
 from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from rmfs.world.robots import Robot
 
 P = TypeVar("P", bound=Parameters)
@@ -25,3 +29,20 @@ class PodStorageAssignment(Controller[P]):
     @abstractmethod
     def place(self, robot: Robot) -> int:
         """Choose an empty place (waypoint) for the pod a robot carries; -1 if there is none."""
+
+    def least(self, costs: NDArray[np.float64], among: NDArray[np.bool_]) -> int:
+        """Find the place of least finite cost, of equals the one with the lowest waypoint.
+
+        Parameters
+        ----------
+        costs, among
+            For each of the L storage places, its cost and whether it may be taken, shape (L,).
+
+        Returns
+        -------
+        int
+            The waypoint of the place; -1 if none may be taken or can be reached.
+        """
+        masked = np.where(among, costs, np.inf)
+        best = int(masked.argmin())
+        return int(self.view.storage.places[best]) if masked[best] < np.inf else -1

@@ -1,42 +1,41 @@
-"""PSA nearest: the empty place that is reached soonest."""
+"""PSA nearest: the empty place nearest to where the pod is."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from rmfs.control.base import NoParameters
+from rmfs.control.base import Parameters
 from rmfs.control.psa import PodStorageAssignment
+from rmfs.control.psa.distances import PlaceDistances
+from rmfs.control.travel import Metric
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    import numpy as np
 
     from rmfs.control.view import View
     from rmfs.world.robots import Robot
 
 
-class Nearest(PodStorageAssignment[NoParameters]):
-    """Takes the empty place with the least unhindered travel time of a loaded robot.
+class NearestParameters(Parameters):
+    """Parameters of PSA nearest."""
+
+    metric: Metric = "time"
+    """What is near: `euclidean`, `manhattan` (m), `path` (m along the waypoints, as a loaded robot
+    drives) or `time` (s, unhindered)."""
+
+
+class Nearest(PodStorageAssignment[NearestParameters]):
+    """Takes the nearest empty place; by default the one with the least travel time.
 
     Ties: the place with the lowest waypoint.
     """
 
-    def __init__(self, parameters: NoParameters, view: View, rng: np.random.Generator) -> None:
+    parameters_model = NearestParameters
+
+    def __init__(self, parameters: NearestParameters, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)
-        self._times: dict[int, NDArray[np.float64]] = {}
+        self._distances = PlaceDistances(view, parameters.metric)
 
     def place(self, robot: Robot) -> int:
-        """Find the least travel time from where the robot stands."""
-        storage = self.view.storage
-        times = np.where(storage.is_empty, self._times_from(robot.waypoint), np.inf)
-        best = int(times.argmin())
-        return int(storage.places[best]) if times[best] < np.inf else -1
-
-    def _times_from(self, waypoint: int) -> NDArray[np.float64]:
-        """Times from a waypoint to all storage places, shape (L,); robots park from stations."""
-        times = self._times.get(waypoint)
-        if times is None:
-            all_times = self.view.travel.away(waypoint, loaded=True)
-            times = self._times[waypoint] = all_times[self.view.storage.places]
-        return times
+        """Find the shortest way from where the robot stands."""
+        return self.least(self._distances.away(robot.waypoint), self.view.storage.is_empty)

@@ -2,53 +2,83 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from rmfs.control.base import Parameters
 from rmfs.control.decisions import SendBundle
-from rmfs.control.problems import Trigger
+from rmfs.control.problems import Problem, Trigger
 from rmfs.control.roa import ReplenishmentOrderAssignment
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from rmfs.control.view import View
     from rmfs.world.stations import ReplenishmentStation
+
+StationRule = Literal["nearest", "emptiest", "fullest", "least-busy", "most-busy", "random"]
+
+_SCORES: dict[str, Callable[[ReplenishmentStation], float]] = {
+    "emptiest": lambda station: station.used / station.capacity,
+    "fullest": lambda station: -station.used / station.capacity,
+    "least-busy": lambda station: station.bundles,
+    "most-busy": lambda station: -station.bundles,
+}
 
 
 class SamePodParameters(Parameters):
     """Parameters of ROA same-pod."""
 
+    station: StationRule = "nearest"
+    """Which of several stations with room: the nearest to the pod, the one with the lowest or
+    highest share of its capacity used, with the fewest or most bundles, or any."""
+    break_batches: bool = False
+    """Whether the bundles of a pod are sent one by one, as far as there is room."""
     first_come_first_served: bool = True
-    """Whether a batch that fits nowhere holds up the batches after it."""
+    """Whether a batch that fits nowhere holds up the batches after it; without meaning if batches
+    are broken."""
+    same_tier: bool = True
+    """Whether only stations on the present tier of the pod are considered."""
 
 
 class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
-    """Sends the batch of a pod to the nearest station on its tier that has room for all of it.
+    """Sends the batch of a pod to one station that has room for all of it.
 
     A batch is what RPS has released for one pod and what has no station yet. Batches are taken in
-    the order of their first release, so that one trip of a pod brings many bundles. Nearest is by
-    Euclidean distance from where the pod is now, also while it is carried; of equally near
-    stations the one with the lowest number. A batch larger than every station is split: as much
-    of it as fits goes to the nearest empty station (RAWSim-O would wait for ever).
+    the order of their first release, so that one trip of a pod brings many bundles. The station is
+    chosen by the station rule, by default the nearest in a straight line from where the pod is now,
+    also while it is carried; ties: the station with the lowest number.
+
+    A batch larger than every station is split: as much of it as fits goes to an empty station
+    (RAWSim-O would wait for ever).
+
+    If batches are broken, a bundle goes to the station to which the last bundle of its pod was
+    sent; if that has no room or is switched off, to the one nearest to it; if there was none, by
+    the station rule. Bundles that fit nowhere wait, those after them do not.
+
+    Differences from RAWSim-O, where these are defects: a station switched off is not used again
+    in broken batches, nor are bundles mixed up there when one before them was passed over;
+    `same_tier` has an effect, and also holds for broken batches.
     """
 
     parameters_model = SamePodParameters
     subscriptions = frozenset({Trigger.BUNDLE_RELEASED})
+    waits_for = frozenset({Problem.RPS})
 
     def __init__(self, parameters: SamePodParameters, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)
-        waypoints = [station.waypoint for station in view.replenishment_stations]
-        self._waypoints = np.array(waypoints, np.int64)
+        self._last: dict[int, ReplenishmentStation] = {}
 
     def decide(self) -> Iterator[SendBundle]:
-        """Yield batch by batch until one fits nowhere."""
+        """Yield batch by batch until one fits nowhere, or bundle by bundle."""
+        return self._bundles() if self.parameters.break_batches else self._batches()
+
+    def _batches(self) -> Iterator[SendBundle]:
         for pod in list(self.view.bundles.released):
             batch = list(self.view.bundles.released[pod])
             space = sum(bundle.space for bundle in batch)
-            station = self._nearest(pod, space)
+            station = self._by_rule(pod, self._with_room(pod, space, split=True))
             if station is None:
                 if self.parameters.first_come_first_served:
                     return
@@ -57,18 +87,51 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
                 if bundle.space <= station.free_space:
                     yield SendBundle(bundle, station.index)
 
-    def _nearest(self, pod: int, space: float) -> ReplenishmentStation | None:
-        waypoint = self.view.pod_waypoint(pod)
-        tier = self.view.travel.tier[waypoint]
-        stations = self.view.replenishment_stations
-        candidates = [
-            position
-            for position, station in enumerate(stations)
+    def _bundles(self) -> Iterator[SendBundle]:
+        for pod in list(self.view.bundles.released):
+            for bundle in list(self.view.bundles.released[pod]):
+                station = self._for_bundle(pod, bundle.space)
+                if station is not None:
+                    self._last[pod] = station
+                    yield SendBundle(bundle, station.index)
+
+    def _for_bundle(self, pod: int, space: float) -> ReplenishmentStation | None:
+        stations = self._with_room(pod, space)
+        last = self._last.get(pod)
+        if last is None:
+            return self._by_rule(pod, stations)
+        return last if last in stations else self._nearest(last.waypoint, stations)
+
+    def _with_room(self, pod: int, space: float, split: bool = False) -> list[ReplenishmentStation]:
+        """Find stations with room for a pod's bundles; an empty one may do for a part of them."""
+        tier = self.view.travel.tier[self.view.pod_waypoint(pod)]
+        return [
+            station
+            for station in self.view.replenishment_stations
             if station.active
-            and station.tier == tier
-            and (space <= station.free_space or (station.used == 0 and space > station.capacity))
+            and (station.tier == tier or not self.parameters.same_tier)
+            and (
+                space <= station.free_space
+                or (split and station.used == 0 and space > station.capacity)
+            )
         ]
-        if not candidates:
+
+    def _by_rule(
+        self, pod: int, stations: list[ReplenishmentStation]
+    ) -> ReplenishmentStation | None:
+        rule = self.parameters.station
+        if not stations:
             return None
-        distance = self.view.travel.metres(waypoint, self._waypoints[candidates])
-        return stations[candidates[int(distance.argmin())]]
+        if rule == "nearest":
+            return self._nearest(self.view.pod_waypoint(pod), stations)
+        if rule == "random":
+            return stations[self.draw(len(stations))]
+        return min(stations, key=_SCORES[rule])
+
+    def _nearest(
+        self, waypoint: int, stations: list[ReplenishmentStation]
+    ) -> ReplenishmentStation | None:
+        if not stations:
+            return None
+        waypoints = np.array([station.waypoint for station in stations])
+        return stations[int(self.view.travel.metres(waypoint, waypoints).argmin())]

@@ -17,9 +17,107 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import numpy as np
+    from numpy.typing import NDArray
 
     from rmfs.control.view import View
     from rmfs.world.orders import Bundle
+
+
+P = TypeVar("P", bound=Parameters)
+
+
+class Buffered(ReplenishmentPodSelection[P]):
+    """Promises bundles one by one and releases a pod's bundles together.
+
+    What a rule that was exchanged has held back is released in the same way. The time-out is an
+    event of its own; RAWSim-O looks at it whenever something else happens.
+    """
+
+    def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._is_new = True
+
+    @abstractmethod
+    def choose(self, bundle: Bundle) -> int:
+        """Choose a pod whose load leaves room for the bundle; -1 if there is none."""
+
+    @abstractmethod
+    def threshold(self, pod: int) -> float:
+        """Share of a pod's capacity, stored and promised, at which its bundles are released."""
+
+    @abstractmethod
+    def timeout_s(self, pod: int) -> float:
+        """Time from the last promise to the pod to the release of its bundles at the latest."""
+
+    @property
+    @abstractmethod
+    def shortest_timeout_s(self) -> float:
+        """The shortest of these times."""
+
+    def candidates(self) -> list[Bundle]:
+        """List the bundles for which a pod can be chosen now, in order of arrival."""
+        return list(self.view.bundles.without_pod.values())
+
+    def fits(self, bundle: Bundle) -> NDArray[np.bool_]:
+        """Pods with room for a bundle, shape (P,)."""
+        inventory = self.view.inventory
+        return inventory.load + bundle.space <= inventory.capacity
+
+    def best(self, bundle: Bundle, scores: NDArray[Any]) -> int:
+        """Find the pod with room that has the lowest score, ties by number; -1 if there is none."""
+        fits = self.fits(bundle)
+        pod = int(scores.argmin())
+        if fits[pod]:
+            return pod
+        pods = fits.nonzero()[0]
+        return int(pods[scores[pods].argmin()]) if len(pods) else -1
+
+    def decide(self) -> Iterator[PromiseBundle | ReleasePod]:
+        """Yield a promise for each bundle that fits, and releases as they become due."""
+        inventory = self.view.inventory
+        load, capacity = inventory.load.item, inventory.capacity.item
+        if self._is_new:
+            self._is_new = False
+            yield from self._full()
+        # bundles that no pod can take are passed over without a search for each
+        room = inf
+        for bundle in self.candidates():
+            if bundle.space > room:
+                continue
+            pod = self.choose(bundle)
+            if pod < 0:
+                room = float((inventory.capacity - inventory.load).max())
+                continue
+            yield PromiseBundle(bundle, pod)
+            if load(pod) >= self.threshold(pod) * capacity(pod):
+                yield ReleasePod(pod)
+        yield from self._due()
+
+    def next_event_s(self) -> float:
+        """When the buffer of some pod times out."""
+        since = self.view.bundles.unreleased_since_s
+        earliest_s = inf
+        for pod, time_s in since.items():
+            # pods are in order of their last promise
+            if time_s + self.shortest_timeout_s >= earliest_s:
+                break
+            earliest_s = min(earliest_s, time_s + self.timeout_s(pod))
+        return earliest_s
+
+    def _full(self) -> Iterator[ReleasePod]:
+        """Release pods that reach the threshold: another rule may have held them back."""
+        inventory = self.view.inventory
+        for pod in list(self.view.bundles.unreleased_since_s):
+            if inventory.load[pod] >= self.threshold(pod) * inventory.capacity[pod]:
+                yield ReleasePod(pod)
+
+    def _due(self) -> Iterator[ReleasePod]:
+        """Release the pods whose time is up."""
+        for pod, time_s in list(self.view.bundles.unreleased_since_s.items()):
+            if time_s + self.shortest_timeout_s > self.view.now_s:
+                return
+            if time_s + self.timeout_s(pod) <= self.view.now_s:
+                yield ReleasePod(pod)
 
 
 class BufferParameters(Parameters):
@@ -38,56 +136,28 @@ class StickyParameters(BufferParameters):
     """Whether the last pod is taken again while it has room and until a station serves it."""
 
 
-P = TypeVar("P", bound=BufferParameters)
+B = TypeVar("B", bound=BufferParameters)
 S = TypeVar("S", bound=StickyParameters)
 
 
-class Buffered(ReplenishmentPodSelection[P]):
-    """Promises bundles one by one and releases a pod's bundles together.
+class EvenlyBuffered(Buffered[B]):
+    """Buffers all pods with the same threshold and the same time-out."""
 
-    The time-out is an event of its own; RAWSim-O looks at it whenever something else happens.
-    """
+    def threshold(self, pod: int) -> float:
+        """Return the one threshold."""
+        return self.parameters.buffer_threshold
 
-    @abstractmethod
-    def choose(self, bundle: Bundle) -> int:
-        """Choose a pod whose load leaves room for the bundle; -1 if there is none."""
+    def timeout_s(self, pod: int) -> float:
+        """Return the one time-out."""
+        return self.parameters.buffer_timeout_s
 
-    def decide(self) -> Iterator[PromiseBundle | ReleasePod]:
-        """Yield a promise for each bundle that fits, and releases as they become due."""
-        inventory = self.view.inventory
-        load, capacity = inventory.load.item, inventory.capacity.item
-        # bundles that no pod can take are passed over without a search for each
-        room = inf
-        for bundle in list(self.view.bundles.without_pod.values()):
-            if bundle.space > room:
-                continue
-            pod = self.choose(bundle)
-            if pod < 0:
-                room = float((inventory.capacity - inventory.load).max())
-                continue
-            yield PromiseBundle(bundle, pod)
-            if load(pod) >= self.parameters.buffer_threshold * capacity(pod):
-                yield ReleasePod(pod)
-        yield from self._due()
-
-    def next_event_s(self) -> float:
-        """When the buffer of some pod times out."""
-        since = self.view.bundles.unreleased_since_s
-        # pods are in order of their last promise
-        oldest = next(iter(since.values()), inf)
-        return oldest + self.parameters.buffer_timeout_s
-
-    def _due(self) -> Iterator[ReleasePod]:
-        """Release the pods whose time is up."""
-        since = self.view.bundles.unreleased_since_s
-        while since:
-            pod, time_s = next(iter(since.items()))
-            if time_s + self.parameters.buffer_timeout_s > self.view.now_s:
-                return
-            yield ReleasePod(pod)
+    @property
+    def shortest_timeout_s(self) -> float:
+        """The one time-out."""
+        return self.parameters.buffer_timeout_s
 
 
-class Sticky(Buffered[S]):
+class Sticky(EvenlyBuffered[S]):
     """Fills the last pod again while it has room and until a station serves it."""
 
     hears = frozenset({Trigger.BUNDLE_STORED})

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rmfs.control.rps.buffered import Sticky, StickyParameters
 
 if TYPE_CHECKING:
@@ -23,11 +21,4 @@ class Emptiest(Sticky[StickyParameters]):
     def choose_anew(self, bundle: Bundle) -> int:
         """Choose the pod with the lowest load share among those with room."""
         inventory = self.view.inventory
-        share = inventory.load / inventory.capacity
-        pod = int(share.argmin())
-        if inventory.load[pod] + bundle.space <= inventory.capacity[pod]:
-            return pod
-        fits = inventory.load + bundle.space <= inventory.capacity
-        if not fits.any():
-            return -1
-        return int(np.where(fits, share, np.inf).argmin())
+        return self.best(bundle, inventory.load / inventory.capacity)

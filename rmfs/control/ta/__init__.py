@@ -11,7 +11,8 @@ from rmfs.control.problems import Problem, Trigger
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from rmfs.control.decisions import TaskDecision
+    from rmfs.control.decisions import Prepare, TaskDecision
+    from rmfs.control.repositioning import Move
     from rmfs.world.robots import Robot
 
 P = TypeVar("P", bound=Parameters)
@@ -19,6 +20,10 @@ P = TypeVar("P", bound=Parameters)
 
 class Consult(Protocol):
     """What TA may ask the controllers of the other problems, whichever are installed now."""
+
+    def serves(self, pod: int, station: int) -> bool:
+        """Ask PPS whether there is work for a pod at a station of either kind."""
+        ...
 
     def pod_for(self, robot: Robot, station: int) -> int:
         """Ask PPS for a pod that an empty robot should bring to a station of either kind, or -1."""
@@ -32,19 +37,31 @@ class Consult(Protocol):
         """Ask PSA for an empty place for the pod a robot carries, or -1."""
         ...
 
+    def move_for(self, robot: Robot) -> Move | None:
+        """Ask repositioning for a pod that a robot without one should move, and where to."""
+        ...
+
+
+WORK = frozenset(
+    {Trigger.ORDER_ASSIGNED, Trigger.ORDER_QUEUED, Trigger.BUNDLE_ASSIGNED, Trigger.POD_AT_HAND}
+)
+"""Events after which there may be work for robots at rest."""
+
 
 class TaskAllocation(Controller[P]):
     """Gives tasks to the robots of `view.asking`, and to those of `view.resting` if it likes.
 
     Each decision is applied before the next. A robot left without task is asked about again when
-    the next trigger happens.
+    the next trigger happens. Robots at rest are to be given work as soon as there is some: rules
+    subscribe to the events of `WORK`. (In RAWSim-O they ask every 5 s.)
     """
 
     problem = Problem.TA
     triggers = frozenset({Trigger.START, Trigger.ROBOT_FREE})
+    subscriptions = WORK
 
     @abstractmethod
-    def decide(self, consult: Consult) -> Iterator[TaskDecision]:
+    def decide(self, consult: Consult) -> Iterator[TaskDecision | Prepare]:
         """Yield tasks for robots until nothing is to be given out now."""
 
     @abstractmethod

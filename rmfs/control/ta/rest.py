@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
     from rmfs.world.robots import Robot
 
-RestRule = Literal["middle", "random"]
+RestRule = Literal["middle", "nearest", "random"]
 
 
 class RestPlaces:
@@ -27,19 +27,23 @@ class RestPlaces:
     ----------
     rule
         `middle`: as near to the middle of the robot's tier as possible (paper, section 3.1.1);
-        `random`: any, on the robot's tier.
+        `nearest`: the shortest way off (Euclidean distance; ties: the lowest waypoint), also on
+        another tier; `random`: any, on the robot's tier.
     draw
         Draws a number below another; for `random`.
     """
 
     def __init__(self, view: View, rule: RestRule, draw: Callable[[int], int]) -> None:
         self._storage = view.storage
+        self._travel = view.travel
         self._rule = rule
         self._draw = draw
         self._order = [_from_middle(view, tier) for tier in range(view.travel.tiers)]
 
     def choose(self, robot: Robot) -> int:
         """Choose a place (waypoint), or -1 if there is none."""
+        if self._rule == "nearest":
+            return self._nearest(robot)
         order = self._order[robot.tier]
         if not len(order):
             return -1
@@ -53,6 +57,13 @@ class RestPlaces:
                 first = int(fit.argmax())
                 if fit[first]:
                     return self._place(order[first])
+        return -1
+
+    def _nearest(self, robot: Robot) -> int:
+        for mask in (self._storage.is_restful, self._storage.is_empty):
+            places = self._storage.places[mask]
+            if len(places):
+                return int(places[self._travel.metres(robot.waypoint, places).argmin()])
         return -1
 
     def _place(self, index: np.intp) -> int:

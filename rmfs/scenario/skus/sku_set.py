@@ -10,18 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.errors import InputError
-from rmfs.random import Stream, generator
-from rmfs.scenario import exact
 from rmfs.scenario.categorical import Categorical
-from rmfs.scenario.parameters import GeneratedSkus, SkuFile
-from rmfs.scenario.xgenc import read_xgenc
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rmfs.scenario.affinity import Affinity
-    from rmfs.scenario.counts import Counts
-    from rmfs.scenario.distributions import Space
+    from rmfs.scenario.skus.affinity import Affinity
 
 
 @dataclass(frozen=True)
@@ -31,7 +25,7 @@ class SkuSet:
     Attributes
     ----------
     ids
-        Name of each SKU in its file, or its index, shape (K,).
+        Number of each SKU in its file, or its index, shape (K,).
     popularity
         Relative weight with which a SKU is ordered and replenished, shape (K,), 30 significant
         bits.
@@ -41,6 +35,8 @@ class SkuSet:
         Units per bundle, shape (K,).
     affinity
         How SKUs are ordered together, or None: each line is drawn by popularity.
+    names
+        What each SKU is called, or nothing; not part of the digest.
     """
 
     ids: NDArray[np.int64]
@@ -48,12 +44,15 @@ class SkuSet:
     space_per_unit: NDArray[np.float64]
     bundle_units: NDArray[np.int64]
     affinity: Affinity | None = None
+    names: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for array in (self.ids, self.popularity, self.space_per_unit, self.bundle_units):
             if array.shape != self.ids.shape:
                 raise ValueError("all arrays of a SKU set must have the same length")
             array.setflags(write=False)
+        if self.names and len(self.names) != len(self.ids):
+            raise ValueError("all SKUs of a set must have a name, or none")
 
     def __len__(self) -> int:
         return len(self.ids)
@@ -67,6 +66,11 @@ class SkuSet:
     def by_popularity(self) -> Categorical:
         """Sampler of SKUs by popularity; its `probabilities` are the demand shares."""
         return Categorical(self.popularity)
+
+    @cached_property
+    def index_of(self) -> dict[int, int]:
+        """Index of each SKU by its id."""
+        return {sku: index for index, sku in enumerate(self.ids.tolist())}
 
     def digest(self) -> str:
         """SHA-256 over all arrays: equal for equal SKUs on every machine."""
@@ -100,61 +104,3 @@ class SkuSet:
                 f"{self.bundle_units[worst]} units of SKU {self.ids[worst]} take "
                 f"{self.bundle_space[worst]:.6g} space units and a pod holds {pod_capacity:g}"
             )
-
-
-def sku_set(config: GeneratedSkus | SkuFile) -> SkuSet:
-    """Return the SKUs that a scenario asks for, drawn or read.
-
-    Raises
-    ------
-    InputError
-        If the file is broken.
-    """
-    if isinstance(config, SkuFile):
-        return _from_file(config)
-    return draw_sku_set(config, config.seed)
-
-
-def draw_sku_set(config: GeneratedSkus, seed: int) -> SkuSet:
-    """Draw SKUs; popularity, space and bundle sizes have a stream each.
-
-    Parameters
-    ----------
-    seed
-        Seed of the SKUs, not of the run (`config.seed` in a scenario).
-    """
-    uniform = generator(seed, Stream.SKUS, 0).random(config.count)
-    return SkuSet(
-        ids=np.arange(config.count, dtype=np.int64),
-        popularity=exact.significant(config.popularity.quantile(uniform)),
-        space_per_unit=_draw_space(config.space_per_unit, seed, config.count),
-        bundle_units=_draw_bundle_units(config.bundle_units, seed, config.count),
-    )
-
-
-def _from_file(config: SkuFile) -> SkuSet:
-    read = read_xgenc(config.file)
-    count = len(read.ids)
-    space = read.space_per_unit
-    bundle_units = read.bundle_units
-    return SkuSet(
-        ids=read.ids,
-        popularity=exact.significant(read.popularity),
-        space_per_unit=_draw_space(config.space_per_unit, config.seed, count)
-        if space is None
-        else exact.space(space),
-        bundle_units=_draw_bundle_units(config.bundle_units, config.seed, count)
-        if bundle_units is None
-        else bundle_units,
-        affinity=read.affinity,
-    )
-
-
-def _draw_space(distribution: Space, seed: int, count: int) -> NDArray[np.float64]:
-    return exact.space(distribution.quantile(generator(seed, Stream.SKUS, 1).random(count)))
-
-
-def _draw_bundle_units(distribution: Counts, seed: int, count: int) -> NDArray[np.int64]:
-    draw = distribution.sampler()
-    uniform = generator(seed, Stream.SKUS, 2).random(count)
-    return np.array([draw(u) for u in uniform.tolist()], dtype=np.int64)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rmfs.errors import InputError
-from rmfs.scenario.affinity import Affinity
-from rmfs.scenario.xml import read_xml
+from rmfs.scenario.skus.affinity import Affinity
+from rmfs.scenario.skus.content import SkuFileContent
+from rmfs.xml import read_root
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,35 +26,8 @@ VALUES = ("DefaultWeight", "DefaultCoWeight", "ProbToUseCoWeight")
 TEXTS = ("Name", "Description")
 
 
-@dataclass(frozen=True)
-class SkuFileContent:
-    """What a file says of its K SKUs, in the order in which it lists them.
-
-    The colour of an SKU is not kept.
-
-    Attributes
-    ----------
-    ids
-        Number of each SKU, shape (K,).
-    popularity
-        Relative weight with which each is ordered, shape (K,).
-    space_per_unit
-        Space units, shape (K,), or None if the file has none.
-    bundle_units
-        Units per bundle, shape (K,), or None if the file has none.
-    affinity
-        Weights of pairs, or None if the file neither lists any nor uses them.
-    """
-
-    ids: NDArray[np.int64]
-    popularity: NDArray[np.float64]
-    space_per_unit: NDArray[np.float64] | None
-    bundle_units: NDArray[np.int64] | None
-    affinity: Affinity | None
-
-
 def read_xgenc(path: Path) -> SkuFileContent:
-    """Read a SKU set.
+    """Read a SKU set; the colours of SKUs are not kept.
 
     Raises
     ------
@@ -69,7 +42,7 @@ class _Reader:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._sections: dict[str, Element] = {}
-        for section in read_xml(path, ROOT):
+        for section in read_root(path, ROOT):
             if section.tag not in (*LISTS, *VALUES, *TEXTS, "ItemCoWeights"):
                 raise self._error(f"unknown element <{section.tag}>")
             if section.tag in self._sections:

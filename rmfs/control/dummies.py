@@ -1,0 +1,135 @@
+"""Dummies: they stand in for a problem whose decisions a joint controller of another problem takes.
+
+A dummy is never asked, or answers that there is nothing. A controllers file with a dummy needs a
+controller that names the problem in `decides`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from rmfs.control.base import NoParameters
+from rmfs.control.poa import PickOrderAssignment
+from rmfs.control.pps import LateBinding, PodSelection
+from rmfs.control.psa import PodStorageAssignment
+from rmfs.control.repositioning import Move, Repositioning
+from rmfs.control.roa import ReplenishmentOrderAssignment
+from rmfs.control.rps import ReplenishmentPodSelection
+from rmfs.control.sa import StationActivation
+from rmfs.control.ta import Consult, TaskAllocation
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rmfs.control.decisions import (
+        AssignOrder,
+        PromiseBundle,
+        ReleasePod,
+        SendBundle,
+        SwitchStation,
+        TaskDecision,
+    )
+    from rmfs.control.problems import Trigger
+    from rmfs.world.robots import Robot
+    from rmfs.world.stations import PickStation, ReplenishmentStation
+
+NEVER: frozenset[Trigger] = frozenset()
+
+
+class DummyPOA(PickOrderAssignment[NoParameters]):
+    """Leaves orders to another controller."""
+
+    is_dummy: ClassVar[bool] = True
+    triggers = NEVER
+
+    def decide(self) -> Iterator[AssignOrder]:
+        """Yield nothing."""
+        yield from ()
+
+
+class DummyROA(ReplenishmentOrderAssignment[NoParameters]):
+    """Leaves the stations of bundles to another controller."""
+
+    is_dummy: ClassVar[bool] = True
+    triggers = NEVER
+
+    def decide(self) -> Iterator[SendBundle]:
+        """Yield nothing."""
+        yield from ()
+
+
+class DummyRPS(ReplenishmentPodSelection[NoParameters]):
+    """Leaves the pods of bundles to another controller."""
+
+    is_dummy: ClassVar[bool] = True
+    triggers = NEVER
+
+    def decide(self) -> Iterator[PromiseBundle | ReleasePod]:
+        """Yield nothing."""
+        yield from ()
+
+
+class DummyPPS(PodSelection[LateBinding]):
+    """Leaves the choice of pods to another controller; what is bound on the way is set here."""
+
+    is_dummy: ClassVar[bool] = True
+    parameters_model = LateBinding
+
+    def pick_pod(self, robot: Robot, station: PickStation) -> int:
+        """Find none."""
+        return -1
+
+    def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
+        """Find none."""
+        return -1
+
+    def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
+        """Take the first."""
+        return stations[0]
+
+
+class DummyPSA(PodStorageAssignment[NoParameters]):
+    """Leaves the choice of storage places to another controller."""
+
+    is_dummy: ClassVar[bool] = True
+
+    def place(self, robot: Robot) -> int:
+        """Find none."""
+        return -1
+
+
+class DummyRepositioning(Repositioning[NoParameters]):
+    """Leaves moves of pods to another controller."""
+
+    is_dummy: ClassVar[bool] = True
+
+    def move(self, robot: Robot) -> Move | None:
+        """Find none."""
+        return None
+
+
+class DummyTA(TaskAllocation[NoParameters]):
+    """Leaves the robots to another controller."""
+
+    is_dummy: ClassVar[bool] = True
+    triggers = NEVER
+    subscriptions = NEVER
+
+    def decide(self, consult: Consult) -> Iterator[TaskDecision]:
+        """Yield nothing."""
+        yield from ()
+
+    def rest_place(self, robot: Robot) -> int:
+        """Let it stay where it is."""
+        return -1
+
+
+class DummySA(StationActivation[NoParameters]):
+    """Leaves the stations to another controller; all are off until it switches them on."""
+
+    is_dummy: ClassVar[bool] = True
+    triggers = NEVER
+
+    def decide(self) -> Iterator[SwitchStation]:
+        """Yield nothing."""
+        yield from ()

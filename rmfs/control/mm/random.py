@@ -1,0 +1,82 @@
+"""MM random: from time to time another controller, drawn from a list."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.choices import check_together
+from rmfs.control.decisions import Exchange
+from rmfs.control.mm import MethodManagement
+from rmfs.control.mm.rules import Rules
+from rmfs.control.problems import Problem
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    import numpy as np
+
+    from rmfs.control.choices import Choice
+    from rmfs.control.view import View
+
+
+class RandomParameters(Parameters):
+    """Parameters of MM random."""
+
+    period_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 7200.0
+    """Seconds between two exchanges."""
+    alternatives: Annotated[tuple[Rules, ...], pydantic.Field(min_length=1)] = (
+        Rules(psa={"name": "nearest"}),
+        Rules(psa={"name": "random"}),
+        Rules(psa={"name": "station-based"}),
+        Rules(psa={"name": "turnover"}),
+    )
+    """What may be installed: a table for each new rule, for example `{ psa = { name = "random" }
+    }`; rules of one entry are installed together."""
+
+
+class RandomExchange(MethodManagement[RandomParameters]):
+    """Installs an alternative drawn from a list after each period, all equally likely.
+
+    It may be the one that is there already. (In RAWSim-O the list is fixed: four rules of PSA, with
+    default parameters.)
+    """
+
+    parameters_model = RandomParameters
+
+    def __init__(self, parameters: RandomParameters, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._start_s = view.now_s
+        self._periods = 1
+
+    def decide(self) -> Iterator[Exchange]:
+        """Yield one alternative when a period has passed."""
+        while self.next_event_s() <= self.view.now_s:
+            self._periods += 1
+            alternatives = self.parameters.alternatives
+            for choice in alternatives[self.draw(len(alternatives))].choices():
+                yield Exchange(choice)
+
+    def next_event_s(self) -> float:
+        """When the present period ends."""
+        return self._start_s + self._periods * self.parameters.period_s
+
+    @classmethod
+    def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
+        """Refuse alternatives that do not go with the other rules in every order of draws."""
+        given = choices[Problem.MM].parameters
+        assert isinstance(given, RandomParameters)
+        for number, entry in enumerate(given.alternatives):
+            where = f"{source}: mm.alternatives.{number}"
+            for choice in entry.choices():
+                rule = choice.controller
+                if rule.is_dummy or rule.decides:
+                    raise InputError(
+                        f"{where}: {choice.problem} {choice.name} needs others beside it; MM "
+                        "random exchanges only rules that decide their own problem and no other"
+                    )
+            new = {choice.problem: choice for choice in entry.choices()}
+            check_together({**choices, **new}, where)

@@ -1,0 +1,61 @@
+"""A set of rules to be installed together, as a file writes it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pydantic
+
+from rmfs.config import Table
+from rmfs.control.base import Parameters
+from rmfs.control.choices import Choice, choose
+from rmfs.control.problems import Problem
+
+
+class Rules(Parameters):
+    """Rules for some problems, each a table as in a controllers file, or a plain name."""
+
+    poa: Table | None = None
+    """The new rule for pick order assignment."""
+    roa: Table | None = None
+    """The new rule for replenishment order assignment."""
+    rps: Table | None = None
+    """The new rule for replenishment pod selection."""
+    pps: Table | None = None
+    """The new rule for pod selection."""
+    psa: Table | None = None
+    """The new rule for pod storage assignment."""
+    ta: Table | None = None
+    """The new rule for task allocation."""
+    sa: Table | None = None
+    """The new rule for station activation."""
+    mm: Table | None = None
+    """The new rule for method management itself."""
+    pp: Table | None = None
+    """The new rule for path planning."""
+    repositioning: Table | None = None
+    """The new rule for repositioning."""
+
+    @pydantic.field_validator(*(problem.value for problem in Problem), mode="before")
+    @classmethod
+    def _in_full(cls, value: Any, info: pydantic.ValidationInfo) -> Any:
+        """Check a table and write all its parameters out."""
+        if isinstance(value, str):
+            value = {"name": value}
+        if not isinstance(value, dict):
+            return value
+        return choose(Problem(info.field_name or ""), value, "exchange").to_table()
+
+    @pydantic.model_validator(mode="after")
+    def _at_least_one(self) -> Rules:
+        if not self.choices():
+            raise ValueError(f"names no rule; valid: {', '.join(Problem)}")
+        return self
+
+    def choices(self) -> list[Choice]:
+        """The new controllers, in the order of the problems."""
+        return [
+            choose(problem, table, "exchange")
+            for problem in Problem
+            if (table := getattr(self, problem)) is not None
+        ]

@@ -1,0 +1,99 @@
+"""MM scheduled: controllers are exchanged at times written down beforehand."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING, Annotated
+
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.choices import check_together
+from rmfs.control.decisions import Exchange
+from rmfs.control.mm import MethodManagement
+from rmfs.control.mm.rules import Rules
+from rmfs.control.problems import Problem
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    import numpy as np
+
+    from rmfs.control.choices import Choice
+    from rmfs.control.view import View
+
+
+class PlannedExchange(Rules):
+    """Rules to be installed together at a time."""
+
+    at_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] | None = None
+    """When, in simulated seconds since the start; either this or `at_share`."""
+    at_share: Annotated[float, pydantic.Field(ge=0, le=1)] | None = None
+    """When, as a share of warm-up and duration together."""
+
+    @pydantic.model_validator(mode="after")
+    def _one_time(self) -> PlannedExchange:
+        if (self.at_s is None) == (self.at_share is None):
+            raise ValueError("needs either at_s or at_share")
+        return self
+
+    def time_s(self, end_s: float) -> float:
+        """When it happens in a run that ends at `end_s`."""
+        if self.at_share is not None:
+            return self.at_share * end_s
+        assert self.at_s is not None
+        return self.at_s
+
+
+class ScheduledParameters(Parameters):
+    """Parameters of MM scheduled."""
+
+    exchanges: tuple[PlannedExchange, ...] = ()
+    """What is installed when: `at_s` (s) or `at_share` (of warm-up and duration), and a table for
+    each new rule, for example `{ at_share = 0.5, psa = { name = "nearest" } }`; in order of
+    time."""
+
+
+class Scheduled(MethodManagement[ScheduledParameters]):
+    """Exchanges controllers of any problem at given times.
+
+    Rules of one entry are installed together; a parameter that is not given has its default. (In
+    RAWSim-O only PSA can be exchanged, for one of four rules, always with default parameters.)
+    """
+
+    parameters_model = ScheduledParameters
+
+    def __init__(
+        self, parameters: ScheduledParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        planned = [(entry.time_s(view.end_s), entry) for entry in parameters.exchanges]
+        # one that is installed during the run does not catch up on what is past
+        self._left = [entry for entry in planned if entry[0] >= view.now_s]
+
+    def decide(self) -> Iterator[Exchange]:
+        """Yield what is due."""
+        while self._left and self._left[0][0] <= self.view.now_s:
+            for choice in self._left.pop(0)[1].choices():
+                yield Exchange(choice)
+
+    def next_event_s(self) -> float:
+        """When the next exchange is due."""
+        return self._left[0][0] if self._left else inf
+
+    @classmethod
+    def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
+        """Refuse entries out of order, and exchanges after which rules would not go together."""
+        given = choices[Problem.MM].parameters
+        assert isinstance(given, ScheduledParameters)
+        shares = [entry.at_share for entry in given.exchanges]
+        if None in shares and any(share is not None for share in shares):
+            raise InputError(f"{source}: mm.exchanges: all need at_s, or all at_share")
+        times = [entry.time_s(1.0) for entry in given.exchanges]
+        if times != sorted(times):
+            raise InputError(f"{source}: mm.exchanges: must be in order of time")
+        present = dict(choices)
+        for number, entry in enumerate(given.exchanges):
+            present |= {choice.problem: choice for choice in entry.choices()}
+            check_together(present, f"{source}: mm.exchanges.{number}")

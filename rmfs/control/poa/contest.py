@@ -1,0 +1,118 @@
+"""Orders that compete for one station, as the criteria of POA queue see them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+    from rmfs.world.orders import Order
+    from rmfs.world.stations import PickStation
+
+
+class Contest:
+    """N orders of the backlog that compete for a place in a station's pool, or for its slots.
+
+    Attributes
+    ----------
+    rows
+        Their rows in the backlog, shape (N,).
+    for_pool
+        Whether they compete for the pool; otherwise for a slot.
+    sku, units
+        Of each line, units not yet bound to a pod, shape (N, L).
+    """
+
+    def __init__(
+        self,
+        view: View,
+        station: PickStation,
+        rows: NDArray[np.intp],
+        for_pool: bool,
+        sku: NDArray[np.int64],
+        units: NDArray[np.int32],
+    ) -> None:
+        self.view = view
+        self.station = station
+        self.rows = rows
+        self.for_pool = for_pool
+        self.sku = sku
+        self.units = units
+
+    @classmethod
+    def of(
+        cls, view: View, station: PickStation, rows: NDArray[np.intp], *, for_pool: bool
+    ) -> Contest:
+        """Let the orders of some rows compete."""
+        orders = view.orders
+        return cls(view, station, rows, for_pool, orders.sku[rows], orders.units[rows])
+
+    def at(self, station: PickStation) -> Contest:
+        """Let the same orders compete for another station."""
+        return Contest(self.view, station, self.rows, self.for_pool, self.sku, self.units)
+
+    def narrowed(self, to: NDArray[np.bool_]) -> Contest:
+        """Keep only some of the orders."""
+        sku, units = self.sku[to], self.units[to]
+        return Contest(self.view, self.station, self.rows[to], self.for_pool, sku, units)
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def orders(self) -> list[Order]:
+        """The orders as objects."""
+        at_row = self.view.orders.at_row
+        return [at_row[row] for row in self.rows.tolist()]
+
+    def claimed(self) -> NDArray[np.int32]:
+        """Units that other orders wait for here, shape (K,): those with a slot come first."""
+        claimed: NDArray[np.int32] = self.view.need[self.station.index]
+        if self.for_pool:
+            claimed = claimed + self.view.queued_need[self.station.index]
+        return claimed
+
+    def company(self) -> NDArray[np.bool_]:
+        """SKUs that the orders wanted which these are to join, in the pool or on slots, (K,)."""
+        wanted = np.zeros(len(self.view.skus), np.bool_)
+        if self.for_pool:
+            wanted[[line.sku for o in self.station.queued.values() for line in o.lines]] = True
+        else:
+            wanted |= self.view.lines[self.station.index] > 0
+        return wanted
+
+    def inbound(self) -> tuple[list[int], NDArray[np.float64]]:
+        """Pods on their way to the station, the nearest first, and their distances, m.
+
+        Distances are of the shortest way for a loaded robot from where the pod is now.
+        """
+        pods = list(self.station.tasks)
+        far = self.view.travel.distances_to(self.station.waypoint, "path")
+        metres = far[[self.view.pod_waypoint(pod) for pod in pods]] if pods else np.empty(0)
+        nearest_first = metres.argsort(kind="stable")
+        return [pods[place] for place in nearest_first.tolist()], metres[nearest_first]
+
+    def completed_by(self, pod: int) -> NDArray[np.bool_]:
+        """Orders that a pod on its way here completes, shape (N,).
+
+        It has to have all their open units to spare, and no other pod may be bound to them.
+        """
+        spare = self.view.inventory.available[:, pod][self.sku]
+        spare = spare - self.view.need[self.station.index][self.sku]
+        completes = np.asarray(((spare >= self.units) | (self.units == 0)).all(axis=1))
+        if completes.any() and self.station.queued:
+            picks = Counter(id(pick.line.order) for pick in self.station.tasks[pod].picks)
+            for place in completes.nonzero()[0].tolist():
+                order = self.view.orders.at_row[self.rows[place]]
+                completes[place] = order.unpicked_units - order.open_units <= picks[id(order)]
+        return completes
+
+    def completed_by_all(self) -> NDArray[np.bool_]:
+        """Orders that the pods on their way here complete together, shape (N,)."""
+        spare = self.view.inventory.inbound[self.station.index][self.sku]
+        spare = spare - self.claimed()[self.sku]
+        return np.asarray(((spare >= self.units) | (self.units == 0)).all(axis=1))

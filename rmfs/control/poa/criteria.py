@@ -1,0 +1,205 @@
+"""Criteria of POA queue, of which a file chooses and sets some: the highest score wins."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
+
+import numpy as np
+import pydantic
+
+from rmfs.control.base import Parameters
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.poa.contest import Contest
+
+    Scores = NDArray[np.float64] | NDArray[np.int64] | NDArray[np.bool_]
+
+
+class Criterion(Protocol):
+    """Rates the orders of a contest."""
+
+    def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
+        """Scores of all orders, shape (N,)."""
+        ...
+
+
+class Random(Parameters):
+    """Any order."""
+
+    criterion: Literal["random"] = "random"
+
+    def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
+        """Uniform in [0, 1)."""
+        return rng.random(len(contest))
+
+
+class FirstCome(Parameters):
+    """The order that arrived first."""
+
+    criterion: Literal["first-come"] = "first-come"
+
+    def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
+        """Minus the ordinal of arrival."""
+        return -contest.view.orders.index[contest.rows]
+
+
+class DueTime(Parameters):
+    """The order that is due first."""
+
+    criterion: Literal["due-time"] = "due-time"
+
+    def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
+        """Minus the due time."""
+        return -contest.view.orders.due_s[contest.rows]
+
+
+class DueSoon(Parameters):
+    """Orders that are late or due soon."""
+
+    criterion: Literal["due-soon"] = "due-soon"
+    within_s: Annotated[float, pydantic.Field(ge=0)] = 600.0
+    """So soon."""
+
+    def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
+        """1 for orders due soon, else 0."""
+        view = contest.view
+        return view.orders.due_s[contest.rows] <= view.now_s + self.within_s
+
+
+class Size(Parameters):
+    """The largest order."""
+
+    criterion: Literal["size"] = "size"
+    count: Literal["units", "lines"] = "units"
+    """What is counted."""
+
+    def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
+        """Units, or lines, ordered."""
+        if self.count == "lines":
+            sizes = [len(order.lines) for order in contest.orders()]
+        else:
+            sizes = [order.unpicked_units for order in contest.orders()]
+        return np.array(sizes, np.int64)
+
+
+class Completable(Parameters):
+    """Orders that pods on their way to the station complete."""
+
+    criterion: Literal["completable"] = "completable"
+    by: Literal["nearest-pod", "all-pods"] = "nearest-pod"
+    """Which pods: the nearest alone, no other being bound to the order, or all of them together."""
+
+    def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
+        """1 for completable orders, else 0."""
+        if self.by == "all-pods":
+            return contest.completed_by_all()
+        pods, _ = contest.inbound()
+        return contest.completed_by(pods[0]) if pods else np.zeros(len(contest), np.bool_)
+
+
+class InboundMatches(Parameters):
+    """Most units on pods on their way to the station, near pods counting more.
+
+    An order takes its units from the nearest pods that have them to spare. Each pod and SKU it
+    takes any from gives a point; if units times metres are at most `near_unit_metres`, it gives as
+    many points as there are pods, less one for each pod that is nearer.
+    """
+
+    criterion: Literal["inbound-matches"] = "inbound-matches"
+    near_unit_metres: Annotated[float, pydantic.Field(ge=0)] = 10.0
+    """Up to which product of units and metres a pod counts as near."""
+
+    def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
+        """Sum of points."""
+        pods, metres = contest.inbound()
+        if not pods:
+            return np.zeros(len(contest), np.int64)
+        inventory, claimed = contest.view.inventory, contest.claimed()
+        spare = inventory.inbound[contest.station.index] - claimed
+        # most lines have nothing to take: look at the others only
+        row, column = ((spare[contest.sku] > 0) & (contest.units > 0)).nonzero()
+        sku = contest.sku[row, column]
+        wanted = contest.units[row, column][:, None]
+        have = inventory.available[sku[:, None], np.array(pods)]
+        covered = have.cumsum(axis=1)
+        covered -= claimed[sku][:, None]
+        np.minimum(covered, wanted, out=covered)
+        np.maximum(covered, 0, out=covered)
+        taken = covered.copy()
+        taken[:, 1:] -= covered[:, :-1]
+        near = np.arange(len(pods), 0, -1)
+        is_near = metres <= self.near_unit_metres / np.maximum(taken, 1)
+        points = np.where(is_near, near, 1) * (taken > 0)
+        # whole numbers, so that the sum is exact
+        return np.bincount(row, weights=points.sum(axis=1), minlength=len(contest))
+
+
+class Related(Parameters):
+    """Most SKUs in common with the orders it is to join."""
+
+    criterion: Literal["related"] = "related"
+
+    def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
+        """Share of the lines without pod whose SKU an order in the pool, or on a slot, wants too.
+
+        Which of the two depends on what the order is chosen for.
+        """
+        is_line = contest.units > 0
+        shared = contest.company()[contest.sku] & is_line
+        shares: NDArray[np.float64] = shared.sum(axis=1) / np.maximum(is_line.sum(axis=1), 1)
+        return shares
+
+
+def _by_name(value: Any) -> Any:
+    """Let a plain name stand for a criterion with its defaults."""
+    return {"criterion": value} if isinstance(value, str) else value
+
+
+OrderCriterion = Annotated[
+    Random | FirstCome | DueTime | DueSoon | Size | Completable | InboundMatches | Related,
+    pydantic.Field(discriminator="criterion"),
+    pydantic.BeforeValidator(_by_name),
+]
+
+
+def best(
+    contests: list[Contest],
+    criteria: tuple[OrderCriterion, ...],
+    rng: np.random.Generator,
+    first: list[Scores] | None = None,
+) -> tuple[Contest, int] | None:
+    """Find the order that wins by the first criterion, among equals by the second, and so on.
+
+    Full ties: the order that arrived first, then the contest named first.
+
+    Parameters
+    ----------
+    first
+        The scores of all orders by the first criterion, if they are known.
+
+    Returns
+    -------
+    tuple or None
+        The contest of the winner and its row in the backlog; None if nobody competes.
+    """
+    left = [contest for contest in contests if len(contest)]
+    for number, criterion in enumerate(criteria):
+        if sum(len(contest) for contest in left) < 2:
+            break
+        if number == 0 and first is not None:
+            scores = [s for s in first if len(s)]
+        else:
+            scores = [criterion.score(contest, rng) for contest in left]
+        highest = max(given.max() for given in scores)
+        left = [
+            contest.narrowed(given == highest)
+            for contest, given in zip(left, scores, strict=True)
+            if given.max() == highest
+        ]
+    arrivals = [(contest, contest.view.orders.index[contest.rows]) for contest in left]
+    if not arrivals:
+        return None
+    winner, index = min(arrivals, key=lambda pair: int(pair[1].min()))
+    return winner, int(winner.rows[index.argmin()])

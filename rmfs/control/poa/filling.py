@@ -1,0 +1,89 @@
+"""Filling free slots order by order: what most POA rules have in common."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, TypeVar
+
+from rmfs.control.base import Parameters
+from rmfs.control.poa import PickOrderAssignment
+from rmfs.control.poa.fast_lane import FastLane
+from rmfs.control.poa.ties import TieBreaker, order_rank
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rmfs.control.decisions import AssignOrder
+    from rmfs.control.view import View
+    from rmfs.world.orders import Order
+    from rmfs.world.stations import PickStation
+
+
+class FastLaneParameters(Parameters):
+    """Parameters of POA rules with a fast lane."""
+
+    fast_lane: bool = False
+    """Whether one slot of each station is kept for orders that the pod being served there can
+    complete."""
+    fast_lane_tie_breaker: TieBreaker = "due-time"
+    """Which of several such orders: earliest due time, earliest arrival, or any."""
+
+
+P = TypeVar("P", bound=Parameters)
+
+
+class Filling(PickOrderAssignment[P]):
+    """Assigns orders to free slots, one after the other.
+
+    The fast lane, for rules that have it, comes first. The slot that is kept for it at stations
+    with more than one is free for nothing else.
+
+    Difference from RAWSim-O, where this is a defect: stock can serve an order if it is there and
+    no order at a station waits for it, not if it ever was there.
+    """
+
+    def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._lane: FastLane | None = None
+        if isinstance(parameters, FastLaneParameters) and parameters.fast_lane:
+            self._lane = FastLane(view, order_rank(parameters.fast_lane_tie_breaker, rng))
+        self._kept_slots = [
+            int(self._lane is not None and station.slots > 1) for station in view.pick_stations
+        ]
+
+    @abstractmethod
+    def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
+        """Choose an order of the backlog that stock can serve, and one of these stations.
+
+        Parameters
+        ----------
+        stations
+            At least one station, each with a slot to be filled; ascending.
+        """
+
+    def decide(self) -> Iterator[AssignOrder]:
+        """Yield orders for the fast lane, then orders for the other slots while there are any."""
+        if self._lane is not None:
+            yield from self._lane.decide()
+        while len(self.view.orders):
+            stations = [
+                station
+                for station in self.view.pick_stations
+                if station.active and station.free_slots > self._kept_slots[station.index]
+            ]
+            chosen = self.next_assignment(stations) if stations else None
+            if chosen is None:
+                return
+            yield chosen
+
+    def servable_rows(self) -> NDArray[np.intp]:
+        """Rows of the backlog whose orders the stock can serve."""
+        return self.view.orders.servable(self.view.inventory.free_stock).nonzero()[0]
+
+    def oldest_order(self) -> Order | None:
+        """Find the order that came first among those that stock can serve."""
+        orders, rows = self.view.orders, self.servable_rows()
+        return orders.at_row[rows[orders.index[rows].argmin()]] if len(rows) else None

@@ -1,0 +1,33 @@
+"""How well orders match the pods that are on their way to a station."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+    from rmfs.world.stations import PickStation
+
+
+def line_matches(view: View, station: int) -> NDArray[np.int32]:
+    """Units of each order line that spare stock on inbound pods can serve, shape (B, L).
+
+    Spare is what is available there and what open requests of the station do not wait for, so
+    that an available unit counts for one order only.
+    """
+    orders = view.orders
+    sku = orders.sku
+    spare: NDArray[np.int32] = view.inventory.inbound[station][sku] - view.need[station][sku]
+    np.clip(spare, 0, orders.units, out=spare)
+    return spare
+
+
+def matches(view: View, stations: list[PickStation]) -> NDArray[np.int32]:
+    """Units of each order that spare stock on inbound pods can serve, per station, (S, B)."""
+    return np.stack(
+        [line_matches(view, station.index).sum(axis=1, dtype=np.int32) for station in stations]
+    )

@@ -1,0 +1,63 @@
+"""POA near-best-pod: orders as they came, each to where the pod that serves it best is near."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.control.base import Parameters
+from rmfs.control.decisions import AssignOrder
+from rmfs.control.poa.filling import Filling
+from rmfs.control.travel import Metric
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.world.orders import Order
+    from rmfs.world.stations import PickStation
+
+
+class NearBestPodParameters(Parameters):
+    """Parameters of POA near-best-pod."""
+
+    metric: Metric = "path"
+    """How the distance from pod to station is measured: in a straight line, along the axes, by the
+    shortest way of a loaded robot, or by its time."""
+
+
+class NearBestPod(Filling[NearBestPodParameters]):
+    """Sends an order to where the pod that serves it best is near.
+
+    Orders are taken as they came; one that stock cannot serve is passed over. The best pods are
+    those, among the stored ones, with most units available for the order; the station nearest to
+    any of them gets it. Ties: the station with the lowest number. If no stored pod has a unit of
+    it, the station with the fewest open orders gets it.
+    """
+
+    parameters_model = NearBestPodParameters
+
+    def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
+        """Choose the order that came first, and a station by distance."""
+        order = self.oldest_order()
+        if order is None:
+            return None
+        pods = self._best_pods(order)
+        if not len(pods):
+            return AssignOrder(order, min(stations, key=lambda s: len(s.orders)).index)
+        waypoints = self.view.storage.pod_waypoint[pods]
+        away = self.view.travel.distances_to
+        nearest = min(
+            stations,
+            key=lambda s: float(away(s.waypoint, self.parameters.metric)[waypoints].min()),
+        )
+        return AssignOrder(order, nearest.index)
+
+    def _best_pods(self, order: Order) -> NDArray[np.intp]:
+        """Find the stored pods with most units of an order; none if no pod has any."""
+        skus = [line.sku for line in order.lines]
+        wanted = np.array([[line.units] for line in order.lines], np.int32)
+        units = np.minimum(self.view.inventory.available[skus], wanted).sum(axis=0)
+        units *= self.view.storage.is_stored
+        most = units.max()
+        return (units == most).nonzero()[0] if most else np.empty(0, np.intp)

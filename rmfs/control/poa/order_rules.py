@@ -1,0 +1,145 @@
+"""POA rules that choose the order first, and then, whatever it contains, a station."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from rmfs.control.decisions import AssignOrder
+from rmfs.control.poa.filling import FastLaneParameters, Filling
+from rmfs.control.poa.ties import first_row
+from rmfs.control.trackers.frequency import Frequency
+
+if TYPE_CHECKING:
+    from rmfs.control.view import View
+    from rmfs.world.orders import Order
+    from rmfs.world.stations import PickStation
+
+_DRAWS = 8
+"""Orders drawn from the backlog before those that can be served are looked up."""
+
+
+class OrderRuleParameters(FastLaneParameters):
+    """Parameters of POA rules that choose the order first."""
+
+    station: Literal["random", "least-busy", "most-busy"] = "random"
+    """Which of several stations with a free slot: any, or the one with the lowest or highest share
+    of its slots taken, ties by number."""
+    stick_to_station: bool = False
+    """Whether the last station is taken again while it has a free slot, the one kept for the fast
+    lane apart."""
+
+
+class OrderRule(Filling[OrderRuleParameters]):
+    """Chooses an order, then a station for it.
+
+    Difference from RAWSim-O (rule "Default"), where this is a defect: the slot kept for the fast
+    lane stays free also at the station that is taken again.
+    """
+
+    parameters_model = OrderRuleParameters
+
+    def __init__(
+        self, parameters: OrderRuleParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        self._last: PickStation | None = None
+
+    @abstractmethod
+    def choose_order(self) -> Order | None:
+        """Choose an order that stock can serve; None if there is none."""
+
+    def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
+        """Choose the order by the rule, the station by the parameters."""
+        order = self.choose_order()
+        if order is None:
+            return None
+        if not (self.parameters.stick_to_station and self._last in stations):
+            self._last = self._station(stations)
+        assert self._last is not None
+        return AssignOrder(order, self._last.index)
+
+    def _station(self, stations: list[PickStation]) -> PickStation:
+        if self.parameters.station == "random":
+            return stations[self.draw(len(stations))]
+        sign = 1 if self.parameters.station == "least-busy" else -1
+        return min(stations, key=lambda station: sign * len(station.orders) / station.slots)
+
+
+class RandomOrder(OrderRule):
+    """Fills free slots with orders drawn at random.
+
+    Source: rule "Default" of RAWSim-O with random order.
+    """
+
+    def choose_order(self) -> Order | None:
+        """Draw an order."""
+        backlog = self.view.orders.at_row
+        free_stock = self.view.inventory.free_stock.item
+        for _ in range(_DRAWS):
+            order = backlog[self.draw(len(backlog))]
+            if all(free_stock(line.sku) >= line.units for line in order.lines):
+                return order
+        rows = self.servable_rows()
+        return backlog[int(rows[self.draw(len(rows))])] if len(rows) else None
+
+
+class FirstCome(OrderRule):
+    """Fills free slots with orders as they came.
+
+    An order that stock cannot serve is passed over. Source: rules "Default" with first come, first
+    served, and "Random" of RAWSim-O.
+    """
+
+    def choose_order(self) -> Order | None:
+        """Choose the order that came first."""
+        return self.oldest_order()
+
+
+class DueTime(OrderRule):
+    """Fills free slots with the orders that are due first.
+
+    Ties: the order that came first. Source: rule "Default" of RAWSim-O with due time.
+    """
+
+    def choose_order(self) -> Order | None:
+        """Choose the order that is due first."""
+        rows = self.servable_rows()
+        if not len(rows):
+            return None
+        orders = self.view.orders
+        return orders.at_row[first_row(rows, orders, "due-time", self.draw)]
+
+
+class FrequencyAge(OrderRule):
+    """Fills free slots with old orders for SKUs that are ordered often.
+
+    The order with the highest product of age and frequency comes first. Age: 1 for the oldest order
+    of the backlog, 1/B less for each of the B orders that came before. Frequency: mean over its
+    lines of the units ordered of the SKU, past orders included. Ties: the order that came first.
+    Source: rule "Default" of RAWSim-O with frequency and age.
+    """
+
+    def __init__(
+        self, parameters: OrderRuleParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        self._frequency = view.trackers.get(Frequency)
+
+    def choose_order(self) -> Order | None:
+        """Choose the order with the highest product."""
+        rows = self.servable_rows()
+        if not len(rows):
+            return None
+        orders = self.view.orders
+        by_arrival = orders.index.argsort()
+        age = np.empty(len(by_arrival), np.int64)
+        age[by_arrival] = np.arange(len(by_arrival), 0, -1)
+        is_line = orders.units > 0
+        frequency = (self._frequency.units[orders.sku] * is_line).sum(axis=1)
+        # up to here in whole numbers; factors that all orders share are left out
+        scores = (age * frequency / is_line.sum(axis=1))[rows]
+        best = rows[scores == scores.max()]
+        return orders.at_row[first_row(best, orders, "first-come", self.draw)]

@@ -1,0 +1,49 @@
+"""Scoring all pairs of station and order: what POA rules that do so have in common."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, TypeVar
+
+from rmfs.control.decisions import AssignOrder
+from rmfs.control.poa.filling import FastLaneParameters, Filling
+from rmfs.control.poa.ties import TieBreaker, first_row
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rmfs.world.stations import PickStation
+
+
+class PairParameters(FastLaneParameters):
+    """Parameters of POA rules that score pairs."""
+
+    tie_breaker: TieBreaker = "due-time"
+    """Which of several orders with the same score: earliest due time, earliest arrival, or any."""
+
+
+Q = TypeVar("Q", bound=PairParameters)
+
+
+class BestPair(Filling[Q]):
+    """Assigns the pair of station and order with the highest score, then the next.
+
+    Ties: the tie-breaker, then the order that came first, then the station with the lowest number.
+    """
+
+    @abstractmethod
+    def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
+        """Score each order at each station with numbers from 0 on, shape (S, B)."""
+
+    def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
+        """Choose the best pair of a servable order and a station."""
+        orders = self.view.orders
+        servable = orders.servable(self.view.inventory.free_stock)
+        if not servable.any():
+            return None
+        scores = self.scores(stations)
+        scores[:, ~servable] = -1
+        rows = (scores.max(axis=0) == scores.max()).nonzero()[0]
+        row = first_row(rows, orders, self.parameters.tie_breaker, self.draw)
+        return AssignOrder(orders.at_row[row], stations[int(scores[:, row].argmax())].index)

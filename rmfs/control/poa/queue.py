@@ -1,0 +1,184 @@
+"""POA queue: every station has a pool of orders, from which its slots are filled."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.decisions import AssignOrder, QueueOrder
+from rmfs.control.poa import PickOrderAssignment
+from rmfs.control.poa.contest import Contest
+from rmfs.control.poa.criteria import (
+    Completable,
+    DueSoon,
+    DueTime,
+    FirstCome,
+    InboundMatches,
+    OrderCriterion,
+    Related,
+    Size,
+    best,
+)
+from rmfs.control.problems import Trigger
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import numpy as np
+
+    from rmfs.control.poa.criteria import Scores
+    from rmfs.control.view import View
+    from rmfs.world.stations import PickStation
+
+Criteria = Annotated[tuple[OrderCriterion, ...], pydantic.Field(min_length=1)]
+
+
+class QueueParameters(Parameters):
+    """Parameters of POA queue."""
+
+    queue_length: Annotated[int, pydantic.Field(ge=1)] = 20
+    """Orders in the pool of each station; no other station can have them, so all pools together
+    should hold clearly less than the backlog."""
+    queue_criteria: Criteria = (InboundMatches(), Related(), DueTime())
+    """Which order joins which pool, the first criterion counting most."""
+    station_criteria: Criteria = (DueSoon(), Completable(), Completable(by="all-pods"))
+    """Which order of its pool a station takes."""
+    fast_lane: bool = True
+    """Whether one slot of each station is kept for orders that the pod being served there can
+    complete."""
+    fast_lane_criteria: Criteria = (Size(), DueTime(), FirstCome())
+    """Which of several such orders."""
+
+
+class Queue(PickOrderAssignment[QueueParameters]):
+    """Assigns orders in two steps: to the pool of a station first, to one of its slots later.
+
+    1. Pools are filled with orders that stock can serve, pair by pair of station and order. Pods
+       may be fetched for the orders of a pool, and bound to them, before they have a slot (PPS).
+    2. Fast lane: at each station with a free slot and a pod at its head, orders of the pool that
+       this pod completes get a slot; if there are none, orders that are in no pool.
+    3. Each station takes an order of its pool that stock can serve, if a slot is free besides the
+       one kept for the fast lane; then each another, and so on.
+
+    Then pools are filled up, until nothing is left to do. Full ties: the order that arrived first,
+    then the station with the lowest number. It is also asked when a pod reaches the head of a
+    queue, so that a pod fetched for the pool finds its orders on slots.
+
+    Differences from RAWSim-O, where these are defects: matches with inbound pods give points only
+    for pods that have the SKU; an order is compared with the pool when it is to join the pool, with
+    the orders on slots when it is to get a slot, and by the share of its lines in common, not
+    all-or-nothing; only stations that are switched on have a pool; an available unit counts for
+    one order only.
+    """
+
+    parameters_model = QueueParameters
+    subscriptions = frozenset({Trigger.POD_AT_STATION})
+
+    def __init__(self, parameters: QueueParameters, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._kept_slots = [
+            int(parameters.fast_lane and station.slots > 1) for station in view.pick_stations
+        ]
+
+    def decide(self) -> Iterator[AssignOrder | QueueOrder]:
+        """Yield as described above."""
+        for station in self.view.pick_stations:
+            if not station.active:
+                for order in list(station.queued.values()):
+                    yield QueueOrder(order, -1)
+        yield from self._fill_pools()
+        while True:
+            slots = sum(station.free_slots for station in self.view.pick_stations)
+            if self.parameters.fast_lane:
+                yield from self._fast_lane()
+            yield from self._take_turns()
+            if slots == sum(station.free_slots for station in self.view.pick_stations):
+                return
+            yield from self._fill_pools()
+
+    # --- pools ----------------------------------------------------------------------------------
+
+    def _fill_pools(self) -> Iterator[QueueOrder]:
+        """Let orders join pools, pair by pair."""
+        orders, length = self.view.orders, self.parameters.queue_length
+        stations = [s for s in self.view.pick_stations if s.active and len(s.queued) < length]
+        if not stations:
+            return
+        servable = orders.servable(self.view.inventory.free_stock)
+        rows = (servable & (orders.queued_at < 0)).nonzero()[0]
+        if not len(rows):
+            return
+        contest = Contest.of(self.view, stations[0], rows, for_pool=True)
+        contests = [contest.at(station) for station in stations]
+        first = [self._first_scores(contest) for contest in contests]
+        while contests:
+            found = best(contests, self.parameters.queue_criteria, self.rng, first)
+            if found is None:
+                return
+            station, row = found[0].station, found[1]
+            yield QueueOrder(orders.at_row[row], station.index)
+            # rows stay as they are while orders only join pools
+            others = [contest.rows != row for contest in contests]
+            contests = [c.narrowed(to) for c, to in zip(contests, others, strict=True)]
+            first = [scores[to] for scores, to in zip(first, others, strict=True)]
+            place = [contest.station for contest in contests].index(station)
+            if len(station.queued) < length:
+                first[place] = self._first_scores(contests[place])
+            else:
+                del contests[place], first[place]
+
+    def _first_scores(self, contest: Contest) -> Scores:
+        return self.parameters.queue_criteria[0].score(contest, self.rng)
+
+    # --- slots ----------------------------------------------------------------------------------
+
+    def _fast_lane(self) -> Iterator[AssignOrder]:
+        """Yield orders that the pod at the head of their station completes."""
+        for station in self.view.pick_stations:
+            while station.active and station.robot >= 0 and station.free_slots > 0:
+                pod = self.view.robots[station.robot].pod
+                row = self._completed_by(pod, station)
+                if row < 0:
+                    break
+                yield AssignOrder(self.view.orders.at_row[row], station.index)
+
+    def _completed_by(self, pod: int, station: PickStation) -> int:
+        """Choose an order of the pool, or else one in no pool, that the pod completes; -1: none."""
+        if pod not in station.tasks:
+            return -1
+        queued_at = self.view.orders.queued_at
+        for rows in ((queued_at == station.index).nonzero()[0], (queued_at < 0).nonzero()[0]):
+            contest = Contest.of(self.view, station, rows, for_pool=False)
+            completed = contest.completed_by(pod)
+            if completed.any():
+                contests = [contest.narrowed(completed)]
+                found = best(contests, self.parameters.fast_lane_criteria, self.rng)
+                assert found is not None
+                return found[1]
+        return -1
+
+    def _take_turns(self) -> Iterator[AssignOrder]:
+        """Let each station take an order of its pool, again and again."""
+        stations = list(self.view.pick_stations)
+        while stations:
+            for station in list(stations):
+                row = self._from_pool(station)
+                if row < 0:
+                    stations.remove(station)
+                else:
+                    yield AssignOrder(self.view.orders.at_row[row], station.index)
+
+    def _from_pool(self, station: PickStation) -> int:
+        """Choose an order of a station's pool for a slot; -1 if there is none, or no slot."""
+        if not station.active or station.free_slots <= self._kept_slots[station.index]:
+            return -1
+        if not station.queued:
+            return -1
+        orders = self.view.orders
+        servable = orders.servable(self.view.inventory.free_stock)
+        rows = (servable & (orders.queued_at == station.index)).nonzero()[0]
+        contest = Contest.of(self.view, station, rows, for_pool=False)
+        found = best([contest], self.parameters.station_criteria, self.rng)
+        return -1 if found is None else found[1]

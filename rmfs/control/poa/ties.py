@@ -1,0 +1,52 @@
+"""Which of several equally good orders comes first."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rmfs.world.backlog import OrderBacklog
+    from rmfs.world.orders import Order
+
+TieBreaker = Literal["due-time", "first-come", "random"]
+
+
+def first_row(
+    rows: NDArray[np.intp],
+    orders: OrderBacklog,
+    tie_breaker: TieBreaker,
+    draw: Callable[[int], int],
+) -> int:
+    """Choose one of several rows of the backlog; what is still equal goes by arrival.
+
+    Parameters
+    ----------
+    rows
+        At least one row.
+    draw
+        Draws a number below the one given.
+    """
+    if len(rows) == 1:
+        return int(rows[0])
+    if tie_breaker == "random":
+        return int(rows[draw(len(rows))])
+    if tie_breaker == "due-time":
+        due_s = orders.due_s[rows]
+        rows = rows[due_s == due_s.min()]
+    return int(rows[orders.index[rows].argmin()])
+
+
+def order_rank(
+    tie_breaker: TieBreaker, rng: np.random.Generator
+) -> Callable[[Order], tuple[float, int]]:
+    """Return the key by which orders compete one by one; the smallest comes first."""
+    if tie_breaker == "random":
+        return lambda order: (float(rng.random()), order.index)
+    if tie_breaker == "due-time":
+        return lambda order: (order.due_s, order.index)
+    return lambda order: (0.0, order.index)

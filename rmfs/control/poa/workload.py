@@ -1,0 +1,39 @@
+"""POA workload: orders as they came, to the station with fewest, or most, open orders."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from rmfs.control.base import Parameters
+from rmfs.control.decisions import AssignOrder
+from rmfs.control.poa.filling import Filling
+
+if TYPE_CHECKING:
+    from rmfs.world.stations import PickStation
+
+
+class WorkloadParameters(Parameters):
+    """Parameters of POA workload."""
+
+    station: Literal["least-busy", "most-busy"] = "least-busy"
+    """Whether the station with the fewest or with the most open orders is taken."""
+
+
+class Workload(Filling[WorkloadParameters]):
+    """Balances open orders over the stations, or fills one station after the other.
+
+    Orders are taken as they came; one that stock cannot serve is passed over. Ties between
+    stations: any.
+    """
+
+    parameters_model = WorkloadParameters
+
+    def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
+        """Choose the order that came first, and a station by its open orders."""
+        order = self.oldest_order()
+        if order is None:
+            return None
+        counts = [len(station.orders) for station in stations]
+        wanted = min(counts) if self.parameters.station == "least-busy" else max(counts)
+        tied = [s for s, count in zip(stations, counts, strict=True) if count == wanted]
+        return AssignOrder(order, tied[self.draw(len(tied)) if len(tied) > 1 else 0].index)

@@ -1,0 +1,31 @@
+"""What a request of an order is worth to PPS."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from rmfs.world.orders import Order
+
+RequestValue = Literal["picks", "age", "lateness"]
+
+
+def value_of(order: Order, now_s: float, metric: RequestValue, *, positive: bool) -> float:
+    """Worth of one open request of an order with open requests.
+
+    Parameters
+    ----------
+    metric
+        `picks`: 1. `age`: seconds since the order was assigned or, as long as it is queued, since
+        it was queued, divided by its open requests. `lateness`: seconds since its due time, less
+        than 0 before it, divided likewise.
+    positive
+        Whether lateness is 0 before the due time.
+    """
+    if metric == "picks":
+        return 1.0
+    if metric == "age":
+        since_s = order.assigned_s if order.station >= 0 else order.queued_s
+        return (now_s - since_s) / order.open_units
+    late_s = now_s - order.due_s
+    return (max(late_s, 0.0) if positive else late_s) / order.open_units

@@ -1,0 +1,106 @@
+"""Scorers of stations to which a carried pod could go on: the higher, the better."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.pps.requests import RequestValue, value_of
+from rmfs.control.pps.scorers import by_name
+from rmfs.control.travel import Metric
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+    from rmfs.world.stations import PickStation
+
+
+class RandomNextStation(Parameters):
+    """Any station."""
+
+    scorer: Literal["random"] = "random"
+
+    def score(
+        self, view: View, robot: Robot, stations: Sequence[int], rng: np.random.Generator
+    ) -> NDArray[np.float64]:
+        """Uniform in [0, 1)."""
+        return rng.random(len(stations))
+
+
+class NearestNextStation(Parameters):
+    """The station nearest to the robot."""
+
+    scorer: Literal["nearest"] = "nearest"
+    metric: Metric = "euclidean"
+    """What is near: `euclidean`, `manhattan` (m), `path` (m along the waypoints) or `time` (s)."""
+
+    def score(
+        self, view: View, robot: Robot, stations: Sequence[int], rng: np.random.Generator
+    ) -> NDArray[np.float64]:
+        """Minus metres, or minus seconds."""
+        waypoints = np.array([view.stations[station].waypoint for station in stations])
+        scores: NDArray[np.float64] = -view.travel.between(robot.waypoint, waypoints, self.metric)
+        return scores
+
+
+class MostWork(Parameters):
+    """The station with most work for the pod."""
+
+    scorer: Literal["work-amount"] = "work-amount"
+    metric: RequestValue = "picks"
+    """What a request is worth: `picks` (one), `age` or `lateness` (s per open request)."""
+    only_positive_lateness: bool = False
+    """For `lateness`: whether orders that are not late yet count nothing, and not negatively."""
+    bundle_age: bool = False
+    """Whether bundles count by the time since they were assigned, and not one each."""
+
+    def score(
+        self, view: View, robot: Robot, stations: Sequence[int], rng: np.random.Generator
+    ) -> NDArray[np.float64]:
+        """Worth of the open requests of assigned orders, or of the bundles, for the pod."""
+        return np.array([self._work(view, robot.pod, station) for station in stations], float)
+
+    def _work(self, view: View, pod: int, station: int) -> float:
+        if station < len(view.pick_stations):
+            return self._picks(view, pod, view.pick_stations[station])
+        waiting = view.replenishment_stations[station - len(view.pick_stations)].waiting
+        bundles = waiting.get(pod, [])
+        if self.bundle_age:
+            return sum(view.now_s - bundle.assigned_s for bundle in bundles)
+        return len(bundles)
+
+    def _picks(self, view: View, pod: int, station: PickStation) -> float:
+        """Worth of the requests served, the most valuable ones for a SKU first."""
+        total = 0.0
+        for sku, waiting in station.requests.lines.items():
+            left = view.inventory.available.item(sku, pod)
+            if not left:
+                continue
+            valued = [
+                (
+                    value_of(
+                        line.order, view.now_s, self.metric, positive=self.only_positive_lateness
+                    ),
+                    line.open_units,
+                )
+                for line in waiting
+            ]
+            for value, units in sorted(valued, reverse=True):
+                served = min(left, units)
+                total += value * served
+                left -= served
+        return total
+
+
+NextStationScorer = Annotated[
+    RandomNextStation | NearestNextStation | MostWork,
+    pydantic.Field(discriminator="scorer"),
+    pydantic.BeforeValidator(by_name),
+]

@@ -1,0 +1,67 @@
+"""PSA cache: useful pods near the pick station they come from, the others farther away."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.control.psa import PodStorageAssignment
+from rmfs.control.psa.caching import CacheParameters, Caching
+from rmfs.control.psa.distances import PlaceDistances
+from rmfs.control.travel import Metric
+
+if TYPE_CHECKING:
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+
+class CachePlaceParameters(CacheParameters):
+    """Parameters of PSA cache."""
+
+    metric: Metric = "time"
+    """How the distance from station to place is measured: `euclidean`, `manhattan` (m), `path` (m
+    along the waypoints, as a loaded robot drives) or `time` (s, unhindered)."""
+
+
+class Cache(PodStorageAssignment[CachePlaceParameters]):
+    """Takes a place in the cache of the nearest pick station for a pod that is worth it.
+
+    The station is the one nearest to the pod by Euclidean distance, also for a pod that comes from
+    a replenishment station. A pod is worth a place there if the mean of the free share of the cache
+    and the share of its pods with a lower score is above a threshold. It gets a place in that
+    cache; else outside all caches; else in another cache. A pod that is not worth it gets a place
+    outside all caches; else in any. Of these, the place nearest to the station; ties: the lowest
+    waypoint.
+
+    Difference from RAWSim-O: scores are always kept; there they are 0 unless monitoring is switched
+    on, and only the free share counts. The mean is weighted, not the weighted sum halved, which is
+    the same for the default weights.
+    """
+
+    parameters_model = CachePlaceParameters
+
+    def __init__(
+        self, parameters: CachePlaceParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        self._caching = Caching(view, parameters)
+        self._distances = PlaceDistances(view, parameters.metric)
+        self._stations = np.array([station.waypoint for station in view.pick_stations])
+
+    def place(self, robot: Robot) -> int:
+        """Go through the zones, the right one first."""
+        empty, cache_of = self.view.storage.is_empty, self._caching.zones.cache_of
+        station = int(self.view.travel.metres(robot.waypoint, self._stations).argmin())
+        outside = cache_of < 0
+        if self._caching.is_worth(robot.pod, station, self._caching.scores()):
+            own = cache_of == station
+            groups = (own, outside, ~own & ~outside)
+        else:
+            groups = (outside, ~outside, np.zeros_like(outside))
+        distances = self._distances.away(int(self._stations[station]))
+        for group in groups:
+            place = self.least(distances, empty & group)
+            if place >= 0:
+                return place
+        return -1

@@ -1,0 +1,83 @@
+"""Which pods are worth a place in the cache near a pick station."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import pydantic
+
+from rmfs.control.psa.ranking import ScoreWeights, Weight
+from rmfs.control.trackers.pod_scores import PodScores
+from rmfs.control.trackers.zones import ZoneParameters, Zones
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+
+
+class CacheParameters(ScoreWeights, ZoneParameters):
+    """Parameters of rules that decide which pods belong into a cache."""
+
+    speed_weight: Weight = 0.0
+    """Weight of its speed: popularity of its units, as a share of the best pod's."""
+    fill_weight: Weight = 1.0
+    """Weight of the share of the cache that is free."""
+    value_weight: Weight = 1.0
+    """Weight of the share of pods in the cache that have a lower score than the pod."""
+    threshold: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.5
+    """A pod is worth a place if the weighted mean of the two is above this."""
+
+    @pydantic.model_validator(mode="after")
+    def _something_counts_for_caches(self) -> CacheParameters:
+        if not self.fill_weight + self.value_weight:
+            raise ValueError("fill_weight and value_weight must not both be 0")
+        return self
+
+
+class Caching:
+    """Weighs pods against the caches.
+
+    Attributes
+    ----------
+    zones
+        The zones by place.
+    cache_at
+        Station to whose cache each waypoint belongs, or -1, shape (N,).
+    """
+
+    def __init__(self, view: View, parameters: CacheParameters) -> None:
+        self._view = view
+        self._parameters = parameters
+        self._scores = view.trackers.get(PodScores)
+        self.zones = view.trackers.get(Zones, ZoneParameters.of(parameters))
+        self.cache_at = np.full(view.layout.waypoints, -1, np.int64)
+        self.cache_at[view.storage.places] = self.zones.cache_of
+
+    def scores(self) -> NDArray[np.float64]:
+        """Scores of all pods, shape (P,)."""
+        given = self._parameters
+        return self._scores.scores(given.utility_weight, given.speed_weight)
+
+    def is_worth(self, pod: int, station: int, scores: NDArray[np.float64]) -> bool:
+        """Whether a pod is worth a place in a station's cache.
+
+        Parameters
+        ----------
+        scores
+            Of all pods, shape (P,).
+        """
+        given = self._parameters
+        size = int(self.zones.cache_size[station])
+        if not size:
+            return False
+        storage = self._view.storage
+        inside = storage.is_stored & (self.cache_at[storage.pod_waypoint] == station)
+        inside[pod] = False
+        pods = np.count_nonzero(inside)
+        lower = np.count_nonzero(scores[inside] < scores[pod])
+        value = lower / pods if pods else 1.0
+        free = 1 - int(self.zones.occupied()[station]) / size
+        weights = given.fill_weight + given.value_weight
+        return (given.fill_weight * free + given.value_weight * value) / weights > given.threshold

@@ -1,0 +1,45 @@
+"""Distances between a waypoint and all storage places."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.travel import Metric
+    from rmfs.control.view import View
+
+
+class PlaceDistances:
+    """Distances of a loaded robot, kept for each waypoint asked for; pods are parked from stations.
+
+    Parameters
+    ----------
+    metric
+        How distances are measured.
+    """
+
+    def __init__(self, view: View, metric: Metric) -> None:
+        self._travel = view.travel
+        self._places = view.storage.places
+        self._metric: Metric = metric
+        self._kept: dict[int, NDArray[np.float64]] = {}
+
+    def away(self, waypoint: int) -> NDArray[np.float64]:
+        """Distances from a waypoint to all places, shape (L,)."""
+        distances = self._kept.get(waypoint)
+        if distances is None:
+            everywhere = self._travel.distances_from(waypoint, self._metric)
+            distances = self._kept[waypoint] = everywhere[self._places]
+        return distances
+
+    def to_nearest(self, waypoints: list[int]) -> NDArray[np.float64]:
+        """Distances from all places to the nearest of some waypoints, shape (L,)."""
+        least = np.full(len(self._places), np.inf)
+        for waypoint in waypoints:
+            to = self._travel.distances_to(waypoint, self._metric)[self._places]
+            np.minimum(least, to, out=least)
+        return least

@@ -1,0 +1,94 @@
+"""Which rank of place suits a pod: the higher its score, the more prominent its place."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.trackers.pod_scores import PodScores
+from rmfs.control.trackers.prominence import Prominence
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+
+Weight = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
+
+
+class ScoreWeights(Parameters):
+    """How utility and speed make up the score of a pod (`rmfs.control.trackers.pod_scores`)."""
+
+    utility_weight: Weight = 1.0
+    """Weight of a pod's utility: units on it that orders want, as a share of the best pod's."""
+    speed_weight: Weight = 1.0
+    """Weight of its speed: popularity of its units, as a share of the best pod's."""
+
+    @pydantic.model_validator(mode="after")
+    def _something_counts(self) -> ScoreWeights:
+        if not self.utility_weight + self.speed_weight:
+            raise ValueError("utility_weight and speed_weight must not both be 0")
+        return self
+
+
+class RankParameters(ScoreWeights):
+    """Parameters of rules that rank pods and places."""
+
+    place_buffer: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.05
+    """Share of the places by which the pods are spread over more places than there are pods."""
+    corridor: Annotated[int, pydantic.Field(ge=1)] = 3
+    """How many ranks of places are looked at, at least: the target, one better, one worse, ..."""
+
+
+class Ranking:
+    """Ranks pods by score and finds places of the rank that suits them.
+
+    The r-th of P pods (from 0, ties by number) belongs on the place number floor(r x (P + b) / P)
+    in order of prominence, b being the share `place_buffer` of the places, rounded down. The rank
+    of that place is the pod's target; places of equal prominence share a rank.
+    """
+
+    def __init__(self, view: View, parameters: RankParameters) -> None:
+        self._view = view
+        self._parameters = parameters
+        self._scores = view.trackers.get(PodScores)
+        self.prominence = view.trackers.get(Prominence)
+        pods, places = len(view.inventory.capacity), len(view.storage.places)
+        spread = pods + int(parameters.place_buffer * places + 1e-9)
+        number = np.minimum(np.arange(pods) * spread // pods, places - 1)
+        in_order = self.prominence.in_order
+        self._target_of_rank = self.prominence.rank[in_order[number]]
+
+    def scores(self) -> NDArray[np.float64]:
+        """Scores of all pods, shape (P,)."""
+        given = self._parameters
+        return self._scores.scores(given.utility_weight, given.speed_weight)
+
+    def target(self, pod: int) -> int:
+        """Rank of place that suits a pod."""
+        scores = self.scores()
+        own = scores[pod]
+        better = np.count_nonzero(scores > own) + np.count_nonzero(scores[:pod] == own)
+        return int(self._target_of_rank[better])
+
+    def targets(self) -> NDArray[np.intp]:
+        """Ranks of place that suit the pods, shape (P,)."""
+        targets = np.empty_like(self._target_of_rank)
+        targets[np.argsort(-self.scores(), kind="stable")] = self._target_of_rank
+        return targets
+
+    def seen(self, target: int) -> NDArray[np.bool_]:
+        """Empty places that are seen when looking for a target, shape (L,).
+
+        Ranks are looked at outward, the better one first; ranks beyond the ends count as looked at.
+        The search ends when the corridor has been searched and a place has been found.
+        """
+        away = self.prominence.rank - target
+        look = 2 * np.abs(away) - (away < 0)
+        empty = self._view.storage.is_empty
+        last = max(self._parameters.corridor - 1, int(look[empty].min(initial=look.max())))
+        found: NDArray[np.bool_] = empty & (look <= last)
+        return found

@@ -1,0 +1,48 @@
+"""PSA station-based: the empty place nearest to any station."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from rmfs.control.base import Parameters
+from rmfs.control.psa import PodStorageAssignment
+from rmfs.control.psa.distances import PlaceDistances
+from rmfs.control.travel import Metric
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+
+class StationBasedParameters(Parameters):
+    """Parameters of PSA station-based."""
+
+    stations: Literal["pick", "replenishment"] = "pick"
+    """To which kind of station places should be near."""
+    metric: Metric = "time"
+    """What is near: `euclidean`, `manhattan` (m), `path` (m along the waypoints, as a loaded robot
+    drives from the place to the station) or `time` (s, unhindered)."""
+
+
+class StationBased(PodStorageAssignment[StationBasedParameters]):
+    """Takes the empty place that is nearest to its nearest station, wherever the pod is.
+
+    Ties: the place with the lowest waypoint.
+    """
+
+    parameters_model = StationBasedParameters
+
+    def __init__(
+        self, parameters: StationBasedParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        pick = parameters.stations == "pick"
+        stations = view.pick_stations if pick else view.replenishment_stations
+        distances = PlaceDistances(view, parameters.metric)
+        self._to_station = distances.to_nearest([station.waypoint for station in stations])
+
+    def place(self, robot: Robot) -> int:
+        """Find the shortest way to a station."""
+        return self.least(self._to_station, self.view.storage.is_empty)

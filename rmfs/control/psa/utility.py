@@ -1,0 +1,38 @@
+"""PSA utility: the better the pod, the nearer to a pick station."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.control.psa import PodStorageAssignment
+from rmfs.control.psa.distances import PlaceDistances
+from rmfs.control.psa.ranking import Ranking, RankParameters
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+
+class Utility(PodStorageAssignment[RankParameters]):
+    """Ranks pods by score and places by prominence, and takes a place of the rank that suits.
+
+    Of the empty places seen in the search outward from the target rank, the one with the least
+    travel time is taken; ties: the lowest waypoint.
+
+    Differences from RAWSim-O, where these are defects: the target rank is looked at once; the
+    search ends if no place is empty; the rule needs no monitoring to be switched on.
+    """
+
+    parameters_model = RankParameters
+
+    def __init__(self, parameters: RankParameters, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._ranking = Ranking(view, parameters)
+        self._distances = PlaceDistances(view, "time")
+
+    def place(self, robot: Robot) -> int:
+        """Look outward from the pod's target rank."""
+        seen = self._ranking.seen(self._ranking.target(robot.pod))
+        return self.least(self._distances.away(robot.waypoint), seen)

@@ -1,0 +1,124 @@
+"""Repositioning: which idle pod is moved where, so that it stands better for later work."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from math import inf
+from typing import TYPE_CHECKING, Annotated, NamedTuple, TypeVar
+
+import pydantic
+
+from rmfs.control.base import Controller, Parameters
+from rmfs.control.problems import Problem
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rmfs.control.travel import Metric
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+Seconds = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
+
+
+class Move(NamedTuple):
+    """A stored pod at hand, and the empty place (waypoint) it is to be moved to."""
+
+    pod: int
+    place: int
+
+
+def nearest_place(view: View, pod: int, among: NDArray[np.bool_], metric: Metric) -> int:
+    """Find the place with the shortest way from where a pod is stored; ties: the lowest waypoint.
+
+    Parameters
+    ----------
+    among
+        Whether each of the L places may be taken, shape (L,).
+
+    Returns
+    -------
+    int
+        The waypoint of the place, or -1 if there is none.
+    """
+    places = view.storage.places[among]
+    if not len(places):
+        return -1
+    return int(places[view.travel.between(view.storage.place_of[pod], places, metric).argmin()])
+
+
+class Pauses(Parameters):
+    """Parameters of every rule that moves pods."""
+
+    robot_pause_s: Seconds = 15.0
+    """Seconds after which a robot that was given a move may be given another."""
+    search_pause_s: Seconds = 15.0
+    """Seconds after which a move is looked for again when there was none."""
+
+
+P = TypeVar("P", bound=Parameters)
+
+
+class Repositioning(Controller[P]):
+    """Chooses among the pods that are at hand and the places that are empty.
+
+    It is asked by TA, for a robot without a pod: one that would rest otherwise, or one that does
+    nothing else. Pod and place are kept for the robot at once.
+    """
+
+    problem = Problem.REPOSITIONING
+
+    @abstractmethod
+    def move(self, robot: Robot) -> Move | None:
+        """Choose a pod and its new place; None if all pods stand well."""
+
+    def is_ready(self, robot: Robot) -> bool:
+        """Whether `move` is to be asked now; must cost next to nothing."""
+        return True
+
+
+Q = TypeVar("Q", bound=Pauses)
+
+
+class Pausing(Repositioning[Q]):
+    """A rule that pauses after a move (per robot) and after a search that found none (for all).
+
+    When a pause ends for which a robot was turned away, TA is asked again. (RAWSim-O stores the
+    second pause, but never looks at it.)
+    """
+
+    def __init__(self, parameters: Q, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._robot_from_s = [-inf] * len(view.robots)
+        self._search_from_s = -inf
+        self._again_s = inf
+
+    @abstractmethod
+    def find(self, robot: Robot) -> Move | None:
+        """Look for the best move."""
+
+    def move(self, robot: Robot) -> Move | None:
+        """Look for the best move and begin a pause."""
+        now_s = self.view.now_s
+        found = self.find(robot)
+        if found is not None:
+            self._robot_from_s[robot.index] = now_s + self.parameters.robot_pause_s
+        else:
+            self._search_from_s = now_s + self.parameters.search_pause_s
+            self._again_s = min(self._again_s, self._search_from_s)
+        return found
+
+    def is_ready(self, robot: Robot) -> bool:
+        """Whether neither pause is on."""
+        ready_s = max(self._search_from_s, self._robot_from_s[robot.index])
+        if self.view.now_s >= ready_s:
+            return True
+        self._again_s = min(self._again_s, ready_s)
+        return False
+
+    def next_event_s(self) -> float:
+        """When the first pause ends for which a robot was turned away."""
+        if self._again_s <= self.view.now_s:
+            self._again_s = inf
+        return self._again_s

@@ -1,0 +1,171 @@
+"""Repositioning cache: some places near each pick station are kept free, for useful pods."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, NamedTuple
+
+import numpy as np
+import pydantic
+
+from rmfs.control.repositioning import Move, Pauses, Pausing, nearest_place
+from rmfs.control.trackers.pod_scores import Demand, DemandOnPods
+from rmfs.control.trackers.prominence import Prominence
+from rmfs.control.trackers.zones import ZoneParameters, Zones
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+
+_EQUALS = 32
+"""Of so many equal pods at most, those with the lowest numbers, the moves are measured."""
+
+
+class CacheMoveParameters(ZoneParameters, Pauses):
+    """Parameters of repositioning cache."""
+
+    free_places: Annotated[int, pydantic.Field(ge=0)] = 8
+    """How many places of each cache are to be free."""
+    empty_below: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.4
+    """Pods with a smaller share of their capacity in use are moved near a replenishment station."""
+    count_backlog: bool = True
+    """Whether orders of the backlog count towards the demand for a pod."""
+
+
+class _Pairs(NamedTuple):
+    """Pairs of a pod and a pick station."""
+
+    pods: NDArray[np.intp]
+    stations: NDArray[np.intp]
+
+    def best(self, scores: NDArray[np.float64] | NDArray[np.int64]) -> _Pairs:
+        """Keep the pairs with the highest score."""
+        if len(self.pods) < 2:
+            return self
+        kept = scores == scores.max()
+        return _Pairs(self.pods[kept], self.stations[kept])
+
+
+class Cache(Pausing[CacheMoveParameters]):
+    """Keeps exactly so many places of each pick station's cache free.
+
+    If more are free, a pod from outside all caches is moved in: on the robot's tier if possible;
+    the one with most picks for the station's open requests; with most units that any order wants;
+    the fullest; with the shortest move. If fewer are free, a pod of the cache is moved out: on the
+    robot's tier if possible; with least picks; with least wanted units; the emptiest; the nearest
+    to a pick station. It goes to the nearest place outside all zones or, if the pod is almost
+    empty, to the one nearest to a replenishment station. A move into a cache comes before a move
+    out of one. Moves are measured by Manhattan distance; ties: the lowest pod, then station, then
+    waypoint.
+
+    Differences from RAWSim-O: the tier is that of the robot that asks, not of the first that ever
+    asked; nearness to a pick station comes before the length of the move out.
+    """
+
+    parameters_model = CacheMoveParameters
+
+    def __init__(
+        self, parameters: CacheMoveParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        self._zones = view.trackers.get(Zones, ZoneParameters.of(parameters))
+        self._prominence = view.trackers.get(Prominence)
+        kind: Demand = "unbound" if parameters.count_backlog else "assigned"
+        self._demand = view.trackers.get(DemandOnPods, kind)
+        self._outside = (self._zones.cache_of < 0) & (self._zones.drop_off_of < 0)
+        self._index_at = np.full(view.layout.waypoints, -1, np.intp)
+        self._index_at[view.storage.places] = np.arange(len(view.storage.places))
+        self._to_replenishment = np.full(view.layout.waypoints, np.inf)
+        for station in view.replenishment_stations:
+            to = view.travel.to(station.waypoint, loaded=True)
+            np.minimum(self._to_replenishment, to, out=self._to_replenishment)
+
+    def find(self, robot: Robot) -> Move | None:
+        """Look for a pod to move in, then for one to move out."""
+        free = self._zones.cache_size - self._zones.occupied()
+        wanted = np.minimum(self.parameters.free_places, self._zones.cache_size)
+        pods = self.view.storage.is_at_hand.nonzero()[0]
+        places = self._index_at[self.view.storage.pod_waypoint[pods]]
+        return self._move_in(robot, pods, places, (free > wanted).nonzero()[0]) or self._move_out(
+            robot, pods, places, (free < wanted).nonzero()[0]
+        )
+
+    def _move_in(
+        self,
+        robot: Robot,
+        pods: NDArray[np.intp],
+        places: NDArray[np.intp],
+        stations: NDArray[np.intp],
+    ) -> Move | None:
+        pods = self._on_tier(robot, pods[self._zones.cache_of[places] < 0])
+        if not len(pods) or not len(stations):
+            return None
+        picks = np.stack([self._picks(station, pods) for station in stations.tolist()])
+        row, column = (picks == picks.max()).nonzero()
+        pairs = _Pairs(pods[column], stations[row])
+        pairs = pairs.best(self._demand.units()[pairs.pods])
+        pairs = pairs.best(self._fill(pairs.pods))
+        equals = (pairs.pods[:_EQUALS], pairs.stations[:_EQUALS])
+        moves = [self._into(pod, station) for pod, station in zip(*equals, strict=True)]
+        return min(moves)[-1]
+
+    def _into(self, pod: np.intp, station: np.intp) -> tuple[float, int, Move]:
+        """Length of the shortest move into a cache (it has a free place), pod, and the move."""
+        view = self.view
+        among = view.storage.is_empty & (self._zones.cache_of == station)
+        place = nearest_place(view, int(pod), among, "manhattan")
+        start = view.storage.place_of[int(pod)]
+        length = view.travel.manhattan_metres(start, np.array([place])).item()
+        return length, int(pod), Move(int(pod), place)
+
+    def _move_out(
+        self,
+        robot: Robot,
+        pods: NDArray[np.intp],
+        places: NDArray[np.intp],
+        stations: NDArray[np.intp],
+    ) -> Move | None:
+        empty = self.view.storage.is_empty & self._outside
+        inside = np.isin(self._zones.cache_of[places], stations)
+        pods = self._on_tier(robot, pods[inside])
+        if not len(pods) or not empty.any():
+            return None
+        at = self._index_at[self.view.storage.pod_waypoint[pods]]
+        pairs = _Pairs(pods, self._zones.cache_of[at])
+        picks = np.empty(len(pods), np.int64)
+        for station in np.unique(pairs.stations).tolist():
+            own = pairs.stations == station
+            picks[own] = self._picks(station, pods[own])
+        pairs = pairs.best(-picks)
+        pairs = pairs.best(-self._demand.units()[pairs.pods])
+        pairs = pairs.best(-self._fill(pairs.pods))
+        at = self._index_at[self.view.storage.pod_waypoint[pairs.pods]]
+        pod = int(pairs.best(-self._prominence.seconds[at]).pods[0])
+        if self._fill(np.array([pod])).item() < self.parameters.empty_below:
+            reached = self._to_replenishment[self.view.storage.places[empty]]
+            return Move(pod, int(self.view.storage.places[empty][reached.argmin()]))
+        return Move(pod, nearest_place(self.view, pod, empty, "manhattan"))
+
+    def _on_tier(self, robot: Robot, pods: NDArray[np.intp]) -> NDArray[np.intp]:
+        """Leave out pods on other tiers, if there are any on the robot's."""
+        travel = self.view.travel
+        if travel.tiers == 1:
+            return pods
+        near = pods[travel.tier[self.view.storage.pod_waypoint[pods]] == robot.tier]
+        return near if len(near) else pods
+
+    def _picks(self, station: int, pods: NDArray[np.intp]) -> NDArray[np.int64]:
+        """Open requests of a station that each pod can serve, shape (n,)."""
+        units = np.zeros(len(pods), np.int64)
+        need, available = self.view.need[station], self.view.inventory.available
+        for sku in self.view.pick_stations[station].requests.lines:
+            units += np.minimum(available[sku][pods], need[sku])
+        return units
+
+    def _fill(self, pods: NDArray[np.intp]) -> NDArray[np.float64]:
+        """Share of their capacity in use, shape (n,)."""
+        inventory = self.view.inventory
+        share: NDArray[np.float64] = inventory.used[pods] / inventory.capacity[pods]
+        return share

@@ -1,0 +1,122 @@
+"""Repositioning cache-drop-off: empty the drop-off zones, and keep the caches filled to a level."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import pydantic
+
+from rmfs.control.psa.caching import CacheParameters, Caching
+from rmfs.control.repositioning import Move, Pauses, Pausing, nearest_place
+from rmfs.control.travel import Metric
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+
+class CacheDropOffParameters(CacheParameters, Pauses):
+    """Parameters of repositioning cache-drop-off."""
+
+    target_fill: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
+    """Share of each cache that is to hold pods."""
+    same_tier: bool = False
+    """Whether pods are moved by robots on their tier only."""
+    metric: Metric = "manhattan"
+    """How the length of a move is measured: `euclidean`, `manhattan` (m), `path` (m along the
+    waypoints, as a loaded robot drives) or `time` (s, unhindered)."""
+
+
+class CacheDropOff(Pausing[CacheDropOffParameters]):
+    """Clears drop-off zones into caches and storage, then fills or thins out the caches.
+
+    A pod in a drop-off zone is moved into the cache of its station if it is worth it (as by PSA
+    cache) and otherwise outside all zones. If there is none, the cache is looked at that is
+    farthest from its target fill, in places: if it holds too few, the pod outside all zones with
+    the highest score is moved in, provided that it is worth it; if too many, the pod with the
+    lowest score is moved out; if nothing can be done there, the next cache. Within a step, stations
+    come in this order as well; then pods by score, in a drop-off zone the highest first. Nothing is
+    moved into a drop-off zone. A pod goes to the nearest place; ties: the lowest number.
+
+    Differences from RAWSim-O, where these are defects: pods are moved into a cache only if they are
+    worth it, so that there is an end to moving when the caches are as they should be (there, some
+    move is always found); keeping to the robot's tier works.
+    """
+
+    parameters_model = CacheDropOffParameters
+
+    def __init__(
+        self, parameters: CacheDropOffParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        self._caching = Caching(view, parameters)
+        self._zones = self._caching.zones
+        self._target = np.rint(self._zones.cache_size * parameters.target_fill).astype(np.int64)
+        self._outside = (self._zones.cache_of < 0) & (self._zones.drop_off_of < 0)
+        places = view.storage.places
+        self._drop_off_at = np.full(view.layout.waypoints, -1, np.int64)
+        self._drop_off_at[places] = self._zones.drop_off_of
+
+    def find(self, robot: Robot) -> Move | None:
+        """Look for a pod in a drop-off zone, then for a cache that is not as it should be."""
+        storage = self.view.storage
+        pods = storage.is_at_hand.nonzero()[0]
+        if self.parameters.same_tier:
+            pods = pods[self.view.travel.tier[storage.pod_waypoint[pods]] == robot.tier]
+        scores = self._caching.scores()
+        short = self._target - self._zones.occupied()
+        stations = np.argsort(-np.abs(short), kind="stable").tolist()
+        at = storage.pod_waypoint[pods]
+        for station in stations:
+            dropped = pods[self._drop_off_at[at] == station]
+            if len(dropped):
+                move = self._clear(_best(dropped, scores), station, scores)
+                if move is not None:
+                    return move
+        for station in stations:
+            move = self._level(station, int(short[station]), pods, scores)
+            if move is not None:
+                return move
+        return None
+
+    def _clear(self, pod: int, station: int, scores: NDArray[np.float64]) -> Move | None:
+        """Move a pod out of a drop-off zone."""
+        if self._caching.is_worth(pod, station, scores):
+            move = self._to(pod, self._zones.cache_of == station)
+            if move is not None:
+                return move
+        return self._to(pod, self._outside)
+
+    def _level(
+        self, station: int, short: int, pods: NDArray[np.intp], scores: NDArray[np.float64]
+    ) -> Move | None:
+        """Move a pod into a cache that is short of pods, or out of one that has too many."""
+        at = self.view.storage.pod_waypoint[pods]
+        if short > 0:
+            stored = pods[(self._caching.cache_at[at] < 0) & (self._drop_off_at[at] < 0)]
+            if not len(stored):
+                return None
+            pod = _best(stored, scores)
+            worth = self._caching.is_worth(pod, station, scores)
+            return self._to(pod, self._zones.cache_of == station) if worth else None
+        if short < 0:
+            cached = pods[self._caching.cache_at[at] == station]
+            return self._to(_best(cached, -scores), self._outside) if len(cached) else None
+        return None
+
+    def _to(self, pod: int, zone: NDArray[np.bool_]) -> Move | None:
+        """Move a pod to the nearest empty place of a zone."""
+        among = zone & self.view.storage.is_empty
+        if self.parameters.same_tier:
+            tier = self.view.travel.tier
+            among &= tier[self.view.storage.places] == tier[self.view.storage.place_of[pod]]
+        place = nearest_place(self.view, pod, among, self.parameters.metric)
+        return Move(pod, place) if place >= 0 else None
+
+
+def _best(pods: NDArray[np.intp], scores: NDArray[np.float64]) -> int:
+    """The pod with the highest score, of equals the one with the lowest number."""
+    return int(pods[scores[pods].argmax()])

@@ -1,0 +1,61 @@
+"""Repositioning utility: the pod that stands farthest from where its score says."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.control.psa.ranking import Ranking, RankParameters
+from rmfs.control.repositioning import Move, Pauses, Pausing, Seconds, nearest_place
+
+if TYPE_CHECKING:
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+_TRIES = 8
+"""Pods for which a better place is looked for."""
+
+
+class UtilityParameters(RankParameters, Pauses):
+    """Parameters of repositioning utility."""
+
+    search_pause_s: Seconds = 120.0
+    """Seconds after which a move is looked for again when there was none."""
+
+
+class Utility(Pausing[UtilityParameters]):
+    """Moves the pod with the largest distance between the rank of its place and its target rank.
+
+    Pods and places are ranked as by PSA utility, and the new place is found likewise: of the empty
+    places seen from the target rank outward the one nearest to the pod (Manhattan distance; ties:
+    the lowest waypoint). A pod is moved only if its rank comes nearer to the target; if not, the
+    pod with the next largest distance is looked at, up to eight. Ties: the pod with the lowest
+    number.
+
+    Difference from RAWSim-O: the pause after a search without result takes effect, and no pod is
+    moved that would not stand better.
+    """
+
+    parameters_model = UtilityParameters
+
+    def __init__(self, parameters: UtilityParameters, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._ranking = Ranking(view, parameters)
+
+    def find(self, robot: Robot) -> Move | None:
+        """Look for the pod that stands worst."""
+        storage = self.view.storage
+        rank_at = np.zeros(self.view.layout.waypoints, np.intp)
+        rank_at[storage.places] = self._ranking.prominence.rank
+        targets = self._ranking.targets()
+        away = np.abs(rank_at[storage.pod_waypoint] - targets)
+        away[~storage.is_at_hand] = 0
+        for pod in np.argsort(-away, kind="stable")[:_TRIES].tolist():
+            if not away[pod]:
+                return None
+            target = int(targets[pod])
+            place = nearest_place(self.view, pod, self._ranking.seen(target), "manhattan")
+            if place >= 0 and abs(int(rank_at[place]) - target) < away[pod]:
+                return Move(pod, place)
+        return None

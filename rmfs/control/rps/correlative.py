@@ -1,0 +1,34 @@
+"""RPS correlative: the pod with the SKUs that are ordered together with the bundle's."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.control.rps.buffered import BufferParameters, EvenlyBuffered
+from rmfs.control.trackers.frequency import PairFrequency
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from rmfs.control.view import View
+    from rmfs.world.orders import Bundle
+
+
+class Correlative(EvenlyBuffered[BufferParameters]):
+    """Takes the pod with the highest sum of pair frequencies with the bundle's SKU.
+
+    A pod's sum is over the SKUs it contains; the frequency of a pair is the number of orders in
+    which both SKUs came together, past orders included. All pods are candidates, wherever they
+    are. Ties: the pod with the lowest number.
+    """
+
+    parameters_model = BufferParameters
+
+    def __init__(self, parameters: BufferParameters, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._pairs = view.trackers.get(PairFrequency)
+
+    def choose(self, bundle: Bundle) -> int:
+        """Choose the pod with the highest sum among those with room."""
+        orders = self._pairs.orders_with(bundle.sku)
+        return self.best(bundle, -orders[self.view.inventory.skus_on].sum(axis=1))

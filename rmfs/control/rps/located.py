@@ -1,0 +1,99 @@
+"""RPS rules that look at where the station of a bundle is, and so wait for ROA."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, TypeVar
+
+import numpy as np
+
+from rmfs.control.problems import Problem, Trigger
+from rmfs.control.rps.buffered import BufferParameters, EvenlyBuffered
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.world.orders import Bundle
+
+B = TypeVar("B", bound=BufferParameters)
+
+
+class Located(EvenlyBuffered[B]):
+    """Chooses pods only for bundles whose station is known."""
+
+    subscriptions = frozenset({Trigger.BUNDLE_SENT})
+    waits_for = frozenset({Problem.ROA})
+
+    def candidates(self) -> list[Bundle]:
+        """List the bundles that have a station."""
+        waiting = self.view.bundles.without_pod.values()
+        return [bundle for bundle in waiting if bundle.station >= 0]
+
+
+class Nearest(Located[BufferParameters]):
+    """Takes the pod nearest to the station that ROA chose for the bundle, in a straight line.
+
+    Pods on another tier come after all on the station's, and pods carried by robots, measured from
+    where the robot is, after all that are stored. Ties: the pod with the lowest number. It works
+    with an ROA rule that does not wait for the pod (`random`).
+
+    Difference from RAWSim-O: beside ROA same-pod both would wait for ever there; here such a pair
+    is refused when the controllers are read.
+    """
+
+    parameters_model = BufferParameters
+
+    def choose(self, bundle: Bundle) -> int:
+        """Choose the nearest pod with room, stored ones first."""
+        storage, waypoint = self.view.storage, self.view.stations[bundle.station].waypoint
+        distances = self.view.travel.distances_to(waypoint, "euclidean")
+        metres = np.where(storage.is_stored, distances[storage.pod_waypoint], np.inf)
+        pod = self.best(bundle, metres)
+        if pod < 0 or storage.is_stored[pod]:
+            return pod
+        # only carried pods have room
+        carried = [p for p in self.fits(bundle).nonzero()[0].tolist() if not storage.is_stored[p]]
+        return min(carried, key=lambda pod: distances.item(self.view.pod_waypoint(pod)))
+
+
+class ReactiveParameters(BufferParameters):
+    """Parameters of RPS reactive."""
+
+    among_equals: Literal["random", "emptiest"] = "random"
+    """Which pod of those that are as easy to reach: any, or the one with the lowest share of its
+    capacity stored or promised."""
+
+
+class Reactive(Located[ReactiveParameters]):
+    """Takes a pod that is easy to bring to the station that ROA chose for the bundle.
+
+    Stored pods on the station's tier come first; next those that are carried or on another tier,
+    then those that are both. Among equals any, or the emptiest, ties by number. It works with an
+    ROA rule that does not wait for the pod (`random`).
+
+    Difference from RAWSim-O: beside ROA same-pod both would wait for ever there; here such a pair
+    is refused when the controllers are read.
+    """
+
+    parameters_model = ReactiveParameters
+
+    def choose(self, bundle: Bundle) -> int:
+        """Choose among the pods with room."""
+        inventory = self.view.inventory
+        if self.parameters.among_equals == "random":
+            scores = self.rng.random(len(inventory.capacity))
+        else:
+            # a share can be 1, but then there is no room
+            scores = inventory.load / inventory.capacity
+        return self.best(bundle, scores + self._steps(bundle.station))
+
+    def _steps(self, station: int) -> NDArray[np.int64]:
+        """1 for each pod that is carried, and 1 if on another tier than a station, shape (P,)."""
+        storage, travel = self.view.storage, self.view.travel
+        steps = np.logical_not(storage.is_stored).astype(np.int64)
+        if travel.tiers > 1:
+            waypoints = storage.pod_waypoint.copy()
+            for robot in self.view.robots:
+                if robot.pod >= 0:
+                    waypoints[robot.pod] = travel.robot_waypoint(robot.index)
+            steps += travel.tier[waypoints] != self.view.stations[station].tier
+        return steps

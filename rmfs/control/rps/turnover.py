@@ -1,0 +1,111 @@
+"""RPS turnover: fast SKUs into fast pods, by classes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+import pydantic
+
+from rmfs.control.problems import Trigger
+from rmfs.control.rps.buffered import Buffered
+from rmfs.control.trackers.turnover import TurnoverClasses, TurnoverParameters
+
+if TYPE_CHECKING:
+    from rmfs.control.view import View
+    from rmfs.world.orders import Bundle
+
+Share = Annotated[float, pydantic.Field(ge=0, le=1)]
+Seconds = Annotated[float, pydantic.Field(ge=0)]
+
+
+class TurnoverPodParameters(TurnoverParameters):
+    """Parameters of RPS turnover."""
+
+    emptiest: bool = True
+    """Whether the pod of a class with the lowest share of its capacity stored or promised is taken;
+    otherwise any."""
+    buffer_thresholds: tuple[Share, ...] = (0.8, 0.8, 0.8)
+    """Per class, the share of a pod's capacity, stored and promised, at which its bundles are
+    released."""
+    buffer_timeouts_s: tuple[Seconds, ...] = (1200.0, 1200.0, 1200.0)
+    """Per class, they are released at the latest so long after the last bundle was promised to the
+    pod."""
+
+    @pydantic.model_validator(mode="after")
+    def _one_per_class(self) -> TurnoverPodParameters:
+        classes = len(self.class_borders)
+        for name in ("buffer_thresholds", "buffer_timeouts_s"):
+            if len(getattr(self, name)) != classes:
+                raise ValueError(f"{name} must have {classes} values, one for each class")
+        return self
+
+
+class Turnover(Buffered[TurnoverPodParameters]):
+    """Takes a pod of the class of the bundle's SKU, and so brings fast SKUs close to pickers.
+
+    Classes are made by units ordered (`rmfs.control.trackers.turnover`). If no pod of the class has
+    room, the next slower class is tried, the next faster, the second slower, and so on. Within a
+    class the last pod is taken again while it has room and until a station serves it; then the
+    emptiest, ties by number, or any. All pods are candidates, wherever they are.
+
+    Differences from RAWSim-O: the fastest pods, not the slowest, are of the class with the nearest
+    places; stock at time zero is not placed by this rule, so that all rules start from the same.
+    """
+
+    parameters_model = TurnoverPodParameters
+    hears = frozenset({Trigger.BUNDLE_STORED})
+
+    def __init__(
+        self, parameters: TurnoverPodParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        self._classes = view.trackers.get(TurnoverClasses, TurnoverParameters.of(parameters))
+        self._last = [-1] * self._classes.classes
+
+    def choose(self, bundle: Bundle) -> int:
+        """Choose from the class of the SKU, or from one close to it."""
+        fits = self.fits(bundle)
+        if not fits.any():
+            return -1
+        pod_class = self._classes.pod_class
+        for number in outward(int(self._classes.sku_class[bundle.sku]), self._classes.classes):
+            last = self._last[number]
+            if last >= 0 and fits[last] and pod_class[last] == number:
+                return last
+            pods = (fits & (pod_class == number)).nonzero()[0]
+            if len(pods):
+                pod = self._last[number] = self._among(pods)
+                return pod
+        return -1
+
+    def threshold(self, pod: int) -> float:
+        """Look up the threshold of the pod's class."""
+        return self.parameters.buffer_thresholds[self._classes.pod_class.item(pod)]
+
+    def timeout_s(self, pod: int) -> float:
+        """Look up the time-out of the pod's class."""
+        return self.parameters.buffer_timeouts_s[self._classes.pod_class.item(pod)]
+
+    @property
+    def shortest_timeout_s(self) -> float:
+        """The shortest time-out of a class."""
+        return min(self.parameters.buffer_timeouts_s)
+
+    def hear(self, trigger: Trigger, subject: Any) -> None:
+        """Forget the last pod of a class when it is served at a replenishment station."""
+        self._last = [-1 if pod == subject.pod else pod for pod in self._last]
+
+    def _among(self, pods: np.ndarray[Any, np.dtype[np.intp]]) -> int:
+        if not self.parameters.emptiest:
+            return int(pods[self.draw(len(pods))])
+        inventory = self.view.inventory
+        return int(pods[(inventory.load[pods] / inventory.capacity[pods]).argmin()])
+
+
+def outward(middle: int, count: int) -> list[int]:
+    """List the numbers below `count`: the middle one, the next higher, the next lower, and on."""
+    steps = [middle]
+    for away in range(1, count):
+        steps += [number for number in (middle + away, middle - away) if 0 <= number < count]
+    return steps

@@ -1,0 +1,126 @@
+"""SA backlog-threshold: stations come and go with the work that waits."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING, Annotated
+
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.decisions import SwitchStation
+from rmfs.control.problems import Trigger
+from rmfs.control.sa import StationActivation
+from rmfs.control.sa.order import activation_order
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import numpy as np
+
+    from rmfs.control.view import View
+
+Count = Annotated[int, pydantic.Field(ge=0)]
+Share = Annotated[float, pydantic.Field(ge=0, le=1)]
+
+
+class BacklogThresholdParameters(Parameters):
+    """Parameters of SA backlog-threshold."""
+
+    pause_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 600.0
+    """Seconds between two switches of stations of one kind, and before the first."""
+    orders_on: Count = 50
+    """Orders in the backlog beyond which a pick station is switched on."""
+    bundles_on: Count = 50
+    """Bundles in the backlog beyond which a replenishment station is switched on."""
+    pick_share_off: Share = 0.7
+    """Share of used slots of the active pick stations below which one is switched off."""
+    replenishment_share_off: Share = 0.7
+    """Share of used space of the active replenishment stations below which one is switched off."""
+
+
+class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
+    """Switches stations on when much work waits, and off when the active ones are little used.
+
+    All are on at the start. For each kind by itself, and after each pause: if more work waits than
+    the threshold, and the active stations are used enough, the first one that is off is switched
+    on; if it is the other way round, the last one that is on is switched off; if both or neither,
+    none. First and last are by activation number, ties by number. What waits in RPS's buffers
+    counts.
+
+    Differences from RAWSim-O: the used share of slots is no integer division (which gives 0 unless
+    all are full, so that pick stations are switched off one by one); the last active station of a
+    kind stays on.
+    """
+
+    parameters_model = BacklogThresholdParameters
+    subscriptions = frozenset(
+        {
+            Trigger.NEW_ORDER,
+            Trigger.ORDER_ASSIGNED,
+            Trigger.ORDER_COMPLETED,
+            Trigger.NEW_BUNDLE,
+            Trigger.BUNDLE_SENT,
+            Trigger.BUNDLE_ASSIGNED,
+            Trigger.BUNDLE_STORED,
+        }
+    )
+
+    def __init__(
+        self, parameters: BacklogThresholdParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        self._started = False
+        self._from_s = {True: 0.0, False: 0.0}
+        self._order = {pick: activation_order(view, pick) for pick in (True, False)}
+
+    def decide(self) -> Iterator[SwitchStation]:
+        """Yield all stations at first, later one of each kind at most."""
+        if not self._started:
+            self._started = True
+            self._from_s = dict.fromkeys(self._from_s, self.view.now_s + self.parameters.pause_s)
+            for station in self.view.stations:
+                if not station.active:
+                    yield SwitchStation(station.index, active=True)
+        for pick, from_s in self._from_s.items():
+            if self.view.now_s < from_s:
+                continue
+            switch = self._switch(pick)
+            if switch is not None:
+                self._from_s[pick] = self.view.now_s + self.parameters.pause_s
+                yield switch
+
+    def next_event_s(self) -> float:
+        """When the next pause ends."""
+        return min((at_s for at_s in self._from_s.values() if at_s > self.view.now_s), default=inf)
+
+    def _switch(self, pick: bool) -> SwitchStation | None:
+        active = [s for s in self._order[pick] if self.view.stations[s].active]
+        wants_on, wants_off = self._wants_on(pick), self._used_share(pick) < self._share_off(pick)
+        if wants_on and not wants_off and len(active) < len(self._order[pick]):
+            off = next(s for s in self._order[pick] if s not in active)
+            return SwitchStation(off, active=True)
+        if wants_off and not wants_on and len(active) > 1:
+            return SwitchStation(active[-1], active=False)
+        return None
+
+    def _wants_on(self, pick: bool) -> bool:
+        if pick:
+            return len(self.view.orders) > self.parameters.orders_on
+        return len(self.view.bundles) > self.parameters.bundles_on
+
+    def _share_off(self, pick: bool) -> float:
+        given = self.parameters
+        return given.pick_share_off if pick else given.replenishment_share_off
+
+    def _used_share(self, pick: bool) -> float:
+        """Share of slots, or space, in use at the active stations; 1 if there are none."""
+        if pick:
+            picks = [station for station in self.view.pick_stations if station.active]
+            used: float = sum(len(station.orders) for station in picks)
+            room: float = sum(station.slots for station in picks)
+        else:
+            others = [station for station in self.view.replenishment_stations if station.active]
+            used = sum(station.used for station in others)
+            room = sum(station.capacity for station in others)
+        return used / room if room else 1.0

@@ -1,0 +1,52 @@
+"""SA constant-ratio: a fixed part of the stations is on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.decisions import SwitchStation
+from rmfs.control.sa import StationActivation
+from rmfs.control.sa.order import activation_order
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+Share = Annotated[float, pydantic.Field(ge=0, le=1)]
+
+
+class ConstantRatioParameters(Parameters):
+    """Parameters of SA constant-ratio."""
+
+    active_share: Share = 0.5
+    """Share of all stations that are on."""
+    pick_share: Share = 0.5
+    """Share of these that are pick stations."""
+
+
+class ConstantRatio(StationActivation[ConstantRatioParameters]):
+    """Switches a fixed part of the stations on, the others off, once and for all.
+
+    On are floor(active share x stations), of them floor(pick share x these) pick stations, those
+    with the lowest activation numbers; ties: the lowest number. At least one of each kind is on, as
+    far as there is one (in RAWSim-O it may be none).
+    """
+
+    parameters_model = ConstantRatioParameters
+
+    def decide(self) -> Iterator[SwitchStation]:
+        """Yield the stations that are not as they should be."""
+        on = self._on()
+        for station in self.view.stations:
+            if station.active != (station.index in on):
+                yield SwitchStation(station.index, active=station.index in on)
+
+    def _on(self) -> set[int]:
+        given = self.parameters
+        active = int(len(self.view.stations) * given.active_share + 1e-9)
+        pick = int(active * given.pick_share + 1e-9)
+        picks = activation_order(self.view, pick=True)[: max(pick, 1)]
+        others = activation_order(self.view, pick=False)[: max(active - pick, 1)]
+        return {*picks, *others}

@@ -1,0 +1,79 @@
+"""SA work-shifts: all stations are switched on and off by the clock."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import inf
+from typing import TYPE_CHECKING, Annotated
+
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.decisions import SwitchStation
+from rmfs.control.sa import StationActivation
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+class Shift(Parameters):
+    """From when on stations are on or off."""
+
+    at_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
+    """Seconds since the beginning of the loop."""
+    on: bool
+    """Whether stations are on from then."""
+
+
+class WorkShiftsParameters(Parameters):
+    """Parameters of SA work-shifts."""
+
+    shifts: Annotated[tuple[Shift, ...], pydantic.Field(min_length=1)] = (
+        Shift(at_s=0.0, on=False),
+        Shift(at_s=21600.0, on=True),
+        Shift(at_s=79200.0, on=False),
+    )
+    """When stations are switched (`at_s`, s in the loop) on or off (`on`); the first one at 0."""
+    loop_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 86400.0
+    """Seconds after which the shifts begin again."""
+
+    @pydantic.model_validator(mode="after")
+    def _in_order(self) -> WorkShiftsParameters:
+        times = [shift.at_s for shift in self.shifts]
+        if times[0] != 0:
+            raise ValueError(f"shifts must begin with one at_s = 0 (given: {times[0]:g})")
+        if any(a >= b for a, b in pairwise([*times, self.loop_s])):
+            raise ValueError("shifts must ascend in at_s and end before loop_s")
+        return self
+
+
+class WorkShifts(StationActivation[WorkShiftsParameters]):
+    """Switches all stations together, at the same times of every loop (by default a day)."""
+
+    parameters_model = WorkShiftsParameters
+
+    def decide(self) -> Iterator[SwitchStation]:
+        """Yield the stations that are not as the present shift says."""
+        on = self._present()[0]
+        for station in self.view.stations:
+            if station.active != on:
+                yield SwitchStation(station.index, active=on)
+
+    def next_event_s(self) -> float:
+        """When the next shift begins that differs."""
+        return self._present()[1]
+
+    def _present(self) -> tuple[bool, float]:
+        """Whether stations are on now, and when that changes."""
+        given, now_s = self.parameters, self.view.now_s
+        states = {shift.on for shift in given.shifts}
+        begin_s = now_s // given.loop_s * given.loop_s
+        starts = [
+            (begin_s + loop * given.loop_s + shift.at_s, shift.on)
+            for loop in range(2)
+            for shift in given.shifts
+        ]
+        on = [state for at_s, state in starts if at_s <= now_s][-1]
+        if len(states) == 1:
+            return on, inf
+        return on, next(at_s for at_s, state in starts if at_s > now_s and state != on)

@@ -1,0 +1,162 @@
+"""TA brute-force: of all pairs of a pod and a station, the one that can be served soonest."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING, Annotated, ClassVar, NamedTuple
+
+import numpy as np
+import pydantic
+
+from rmfs.control.decisions import Park, Prepare, TaskDecision
+from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
+from rmfs.control.problems import Problem
+from rmfs.control.ta.solo import Solo, SoloParameters
+from rmfs.control.ta.stations import bring, keeper_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.ta import Consult
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+
+class BruteForceParameters(SoloParameters):
+    """Parameters of TA brute-force."""
+
+    queue_cost_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 1.0
+    """Seconds a robot expects to wait at a station, times the square of the number of robots at, or
+    under way to, the station."""
+
+
+class _Job(NamedTuple):
+    """A pod at a station, and the estimated time until it is there."""
+
+    seconds: float
+    station: int
+    pod: int
+
+
+class BruteForce(Solo[BruteForceParameters]):
+    """Compares every pod at hand, and the pod carried, at every station with work for it.
+
+    The estimate is the straight way from robot to pod at top speed, the time to lift the pod (and
+    first to set down another one), and the greater of the unhindered time to the station and the
+    wait expected there. Robots look for picks as long as there are some, then for bundles as long
+    as there are some: one switch for all. If the best pod is not the one carried, that is parked on
+    the way: where the time there, and the straight way on to the other pod, add up to least.
+    Without work, pods are parked at the nearest place. Ties: the carried pod, then the station,
+    then the pod with the lowest number.
+
+    It chooses pods and places itself, so PPS and PSA must be dummies. Fetching the other pod is a
+    task prepared ahead; if somebody else has taken the pod by then, the robot looks anew.
+
+    Differences from RAWSim-O: bundles go into the pods RPS chose, and a pod that is carried can be
+    used for them; a pod serves all it can at a station, not one request per task; the wait counts
+    robots under way, not those near the station, where the standard robot is never counted.
+    """
+
+    parameters_model = BruteForceParameters
+    decides: ClassVar[frozenset[Problem]] = frozenset({Problem.PPS, Problem.PSA})
+
+    def __init__(
+        self, parameters: BruteForceParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        self._picks = True
+
+    def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
+        """Yield the best job, or what has to be done before it."""
+        view = self.view
+        job = self._best(robot, consult)
+        if job is None:
+            if robot.pod < 0:
+                yield self.to_rest(robot)
+            else:
+                yield from self._park(robot, np.zeros(len(view.storage.places)))
+        elif robot.pod in (-1, job.pod):
+            yield self._bring(robot, job)
+        else:
+            speed = view.layout.robot_kinds[view.layout.robot_kind[robot.index]].top_speed_m_s
+            place = view.storage.place_of[job.pod]
+            on = view.travel.metres(place, view.storage.places) / speed
+            for park in self._park(robot, on):
+                yield park
+                yield Prepare(robot, (bring(view, robot, job.pod, job.station),))
+
+    def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
+        """Find the best job for an empty robot."""
+        job = self._best(robot, consult)
+        return None if job is None else self._bring(robot, job)
+
+    def _bring(self, robot: Robot, job: _Job) -> TaskDecision:
+        if job.pod != robot.pod:
+            robot = keeper_of(self.view, robot, job.pod)
+        return bring(self.view, robot, job.pod, job.station)
+
+    def _park(self, robot: Robot, on_s: NDArray[np.float64]) -> Iterator[Park]:
+        """Park where the time there and the time from there on add up to least.
+
+        Parameters
+        ----------
+        on_s
+            Time on from each place, shape (L,).
+        """
+        storage = self.view.storage
+        there = self.view.travel.away(robot.waypoint, loaded=True)[storage.places]
+        total = np.where(storage.is_empty, there + on_s, inf)
+        best = int(total.argmin())
+        if total[best] < inf:
+            yield Park(robot, int(storage.places[best]))
+
+    def _best(self, robot: Robot, consult: Consult) -> _Job | None:
+        """Find the best job of the present kind or, if there is none, of the other."""
+        to_pods = self._to_pods(robot)
+        for picks in (self._picks, not self._picks):
+            jobs = list(self._jobs(robot, picks, to_pods, consult))
+            if jobs:
+                self._picks = picks
+                return min(jobs, key=lambda job: (job.seconds, job.pod != robot.pod))
+        return None
+
+    def _to_pods(self, robot: Robot) -> NDArray[np.float64]:
+        """Time until the robot has lifted each stored pod, shape (P,)."""
+        view = self.view
+        kind = view.layout.robot_kinds[view.layout.robot_kind[robot.index]]
+        where = view.travel.robot_waypoint(robot.index)
+        transfers = kind.pod_transfer_s * (1 if robot.pod < 0 else 2)
+        seconds = view.travel.metres(where, view.storage.pod_waypoint)
+        seconds /= kind.top_speed_m_s
+        seconds += transfers
+        return seconds
+
+    def _jobs(
+        self, robot: Robot, picks: bool, to_pods: NDArray[np.float64], consult: Consult
+    ) -> Iterator[_Job]:
+        """Yield the best job of each station, by station."""
+        view = self.view
+        for station in view.pick_stations if picks else view.replenishment_stations:
+            index, waypoint = station.index, station.waypoint
+            if not view.has_open_work(index):
+                continue
+            to_station = view.travel.to(waypoint, loaded=True)
+            wait_s = self.parameters.queue_cost_s * len(station.tasks) ** 2
+            if robot.pod >= 0 and consult.serves(robot.pod, index):
+                yield _Job(max(to_station.item(robot.waypoint), wait_s), index, robot.pod)
+            pods = self._pods(robot, index)
+            if len(pods):
+                on_s = np.maximum(to_station[view.storage.pod_waypoint[pods]], wait_s)
+                seconds = to_pods[pods] + on_s
+                best = int(seconds.argmin())
+                yield _Job(float(seconds[best]), index, int(pods[best]))
+
+    def _pods(self, robot: Robot, station: int) -> NDArray[np.intp]:
+        """Pods at hand with work at a station, ascending."""
+        view = self.view
+        if station < len(view.pick_stations):
+            return pick_candidates(view, robot, view.pick_stations[station]).pods
+        others = view.replenishment_stations
+        return replenishment_candidates(view, robot, others[station - len(view.pick_stations)]).pods

@@ -1,0 +1,52 @@
+"""TA constant-ratio: a fixed part of the robots works for pick stations, the others replenish."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import pydantic
+
+from rmfs.control.ta.balance import deal
+from rmfs.control.ta.crews import CrewParameters, Crews
+
+
+class ConstantRatioParameters(CrewParameters):
+    """Parameters of TA constant-ratio."""
+
+    pick_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.75
+    """Share of the robots that work for pick stations, rounded down."""
+
+
+class ConstantRatio(Crews[ConstantRatioParameters]):
+    """Gives a fixed part of the robots to pick stations and the others to replenishment stations.
+
+    Within a kind in turn, stations far from the middle of the tier first. Stations count that are
+    active, or have work left: one that was switched off finishes what it has. Every `period_s`, if
+    other stations count than before, robots are moved, nearest first. Every robot works for its
+    station only: it goes on with its pod as long as the pod can serve an open request there.
+
+    Differences from RAWSim-O, where these are defects: there the pod is parked even if there is
+    more to do for it at the station, and the task just given is cancelled; robots leave a station
+    that is switched off, whatever is left there.
+    """
+
+    parameters_model = ConstantRatioParameters
+
+    def first_stations(self) -> frozenset[int]:
+        """Find the stations that count; all, if none does yet."""
+        return self.stations_now() or super().first_stations()
+
+    def stations_now(self) -> frozenset[int]:
+        """Find the stations that are active or have work left; as before if there are none."""
+        found = frozenset(s.index for s in self.view.stations if s.active or s.has_work)
+        return found or self._active
+
+    def goals(self, active: frozenset[int]) -> dict[int, int]:
+        """Deal the robots of each kind out in turn."""
+        order = [station for station in self._far_first if station in active]
+        robots, kinds = len(self.view.robots), len(self.view.pick_stations)
+        for_picks = int(robots * self.parameters.pick_share + 1e-9)
+        goals = dict.fromkeys(order, 0)
+        deal(for_picks, [s for s in order if s < kinds], robots, goals)
+        deal(robots - for_picks, [s for s in order if s >= kinds], robots, goals)
+        return goals

@@ -1,0 +1,215 @@
+"""Crews: TA rules by which every robot works for one station, and is moved to another in time."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from math import inf
+from typing import TYPE_CHECKING, Annotated, TypeVar
+
+import numpy as np
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.decisions import Park, Rest, TaskDecision
+from rmfs.control.ta import Consult, TaskAllocation
+from rmfs.control.ta.balance import reassign
+from rmfs.control.ta.rest import RestPlaces, RestRule
+from rmfs.control.ta.stations import bring, far_first, keeper_of, waypoints
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
+
+
+class CrewParameters(Parameters):
+    """Parameters of rules by which robots belong to stations."""
+
+    period_s: NotNegative = 30.0
+    """Seconds between re-balancings of the crews; 0 for never."""
+    rest: RestRule = "middle"
+    """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
+    `random`."""
+
+
+P = TypeVar("P", bound=CrewParameters)
+
+
+class Crews(TaskAllocation[P]):
+    """Gives each robot work of its station.
+
+    A robot that carries a pod goes on with it as long as the pod can serve the robot's station,
+    then parks it. An empty robot gets the pod that PPS chooses; if another robot without work
+    stands beneath that pod, that one gets the job and the two change stations. A robot for which
+    there is nothing to do rests, and is given work as soon as there is some.
+
+    Every `period_s`, if the stations that count are others than before, the robots are divided
+    anew: robots are moved to stations below their goal, the nearest pair of robot and station
+    first. If none counted, this happens at once when one does.
+    """
+
+    def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        stations = len(view.stations)
+        self._rest = RestPlaces(view, parameters.rest, self.draw)
+        self._waypoints = waypoints(view)
+        self._far_first = far_first(view)
+        self._station_of = [-1] * len(view.robots)
+        self._works_for = [_station_of_task(robot) for robot in view.robots]
+        self._workers = [self._works_for.count(station) for station in range(stations)]
+        self._searched: list[tuple[int, ...]] = [(-1, -1)] * stations
+        self._active: frozenset[int] = frozenset()
+        self._balance(self.first_stations())
+        self._balance_due_s = view.now_s + parameters.period_s if parameters.period_s else inf
+
+    # --- what the rules say ---------------------------------------------------------------------
+
+    @abstractmethod
+    def stations_now(self) -> frozenset[int]:
+        """Find the stations that are to have robots."""
+
+    @abstractmethod
+    def goals(self, active: frozenset[int]) -> dict[int, int]:
+        """Work out how many robots each of these stations is to have."""
+
+    def first_stations(self) -> frozenset[int]:
+        """Find the stations that are to have robots when the rule is installed."""
+        return frozenset(range(len(self.view.stations)))
+
+    def may_work(self, robot: Robot, station: int) -> bool:
+        """Whether a robot may be given work of a station now."""
+        return station >= 0
+
+    def stations_for(self, robot: Robot) -> Sequence[int]:
+        """Stations whose work a robot may be given, the first with work counts."""
+        station = self._station_of[robot.index]
+        return (station,) if station >= 0 else ()
+
+    def go_elsewhere(self, robot: Robot, consult: Consult) -> TaskDecision | None:
+        """Use a pod at a station of which its robot is no crew, before it is parked."""
+        return None
+
+    def instead_of_rest(self, robot: Robot, consult: Consult) -> TaskDecision | None:
+        """Find something for a robot to do for which no station has work."""
+        return None
+
+    # --- tasks ----------------------------------------------------------------------------------
+
+    def next_event_s(self) -> float:
+        """When robots are to be divided anew."""
+        return self._balance_due_s
+
+    def decide(self, consult: Consult) -> Iterator[TaskDecision]:
+        """Yield a task for every robot that asks, and work for robots at rest."""
+        if self.view.now_s >= self._balance_due_s:
+            self._balance_due_s = self.view.now_s + self.parameters.period_s
+            self._balance(self.stations_now())
+        elif not self._active and self.parameters.period_s:
+            # nobody has a station: do not let new work wait for the end of the period
+            self._balance(self.stations_now())
+        for robot in list(self.view.asking.values()):
+            while robot.task is None:
+                task = self._next_task(robot, consult)
+                if task is None:
+                    break
+                yield task
+        yield from self._wake(consult)
+
+    def rest_place(self, robot: Robot) -> int:
+        """Choose by the rest rule."""
+        return self._rest.choose(robot)
+
+    def _next_task(self, robot: Robot, consult: Consult) -> TaskDecision | None:
+        if robot.pod >= 0:
+            return self._go_on(robot, consult)
+        return (
+            self._fetch(robot, consult)
+            or self.instead_of_rest(robot, consult)
+            or self._to_rest(robot)
+        )
+
+    def _go_on(self, robot: Robot, consult: Consult) -> TaskDecision | None:
+        """Use a pod that has been served again, or park it."""
+        for station in self.stations_for(robot):
+            if self.may_work(robot, station) and consult.serves(robot.pod, station):
+                return self.bring(robot, robot.pod, station)
+        task = self.go_elsewhere(robot, consult)
+        if task is not None:
+            return task
+        place = consult.place_for(robot)
+        return Park(robot, place) if place >= 0 else None
+
+    def _fetch(self, robot: Robot, consult: Consult) -> TaskDecision | None:
+        """Find a pod for an empty robot, unless nothing has changed since none was found."""
+        for station in self.stations_for(robot):
+            if not self.may_work(robot, station) or not self.view.has_open_work(station):
+                continue
+            version = self.view.work_version(station)
+            if self._searched[station] == version:
+                continue
+            pod = consult.pod_for(robot, station)
+            if pod >= 0:
+                return self._send(robot, pod, station)
+            self._searched[station] = version
+        return None
+
+    def _send(self, robot: Robot, pod: int, station: int) -> TaskDecision:
+        """Let a robot, or the one beneath the pod, bring it."""
+        chosen = keeper_of(self.view, robot, pod)
+        if chosen is not robot:
+            stations = self._station_of
+            one, other = robot.index, chosen.index
+            stations[one], stations[other] = stations[other], stations[one]
+        return self.bring(chosen, pod, station)
+
+    def bring(self, robot: Robot, pod: int, station: int) -> TaskDecision:
+        """Let a robot bring a pod, and count it as worker of the station."""
+        self.count(robot, station)
+        return bring(self.view, robot, pod, station)
+
+    def count(self, robot: Robot, station: int) -> None:
+        """Count a robot as worker of a station (-1: of none) from now on."""
+        former = self._works_for[robot.index]
+        if former >= 0:
+            self._workers[former] -= 1
+        if station >= 0:
+            self._workers[station] += 1
+        self._works_for[robot.index] = station
+
+    def workers(self, station: int, besides: Robot) -> int:
+        """How many robots work for a station, one robot left out."""
+        return self._workers[station] - (self._works_for[besides.index] == station)
+
+    def _to_rest(self, robot: Robot) -> Rest:
+        self.count(robot, -1)
+        place = self._rest.choose(robot)
+        return Rest(robot, place if place >= 0 else robot.waypoint)
+
+    def _wake(self, consult: Consult) -> Iterator[TaskDecision]:
+        """Give work to robots at rest whose station has some that is new."""
+        for robot in list(self.view.resting.values()):
+            if robot.index in self.view.resting:
+                task = self._fetch(robot, consult) or self.instead_of_rest(robot, consult)
+                if task is not None:
+                    yield task
+
+    # --- who works for which station ------------------------------------------------------------
+
+    def _balance(self, active: frozenset[int]) -> None:
+        if active == self._active:
+            return
+        self._active = active
+        targets = np.array([self.view.robot_target(robot) for robot in self.view.robots])
+        distance = np.stack(
+            [self.view.travel.metres(waypoint, targets) for waypoint in self._waypoints.tolist()],
+            axis=1,
+        )
+        self._station_of = reassign(self._station_of, self.goals(active), distance)
+
+
+def _station_of_task(robot: Robot) -> int:
+    """Station for which a robot works when a rule is installed, or -1."""
+    return robot.task.station if robot.task is not None else -1

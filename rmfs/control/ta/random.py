@@ -1,0 +1,142 @@
+"""TA random: any pod with any work."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+import numpy as np
+import pydantic
+
+from rmfs.control.decisions import Prepare, Reposition, TaskDecision
+from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
+from rmfs.control.problems import Problem
+from rmfs.control.ta.rest import RestRule
+from rmfs.control.ta.solo import Solo, SoloParameters
+from rmfs.control.ta.stations import bring, keeper_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.ta import Consult
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+    from rmfs.world.stations import PickStation, ReplenishmentStation
+
+Probability = Annotated[float, pydantic.Field(ge=0, le=1)]
+
+
+class RandomTasksParameters(SoloParameters):
+    """Parameters of TA random."""
+
+    rest: RestRule = "random"
+    """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
+    `random`."""
+    switch_probability: Probability = 0.1
+    """With which a robot that asks changes from picking to replenishment, or back."""
+    keep_pod_probability: Probability = 0.95
+    """With which a robot looks for more work for the pod it carries before it parks it."""
+    reposition_probability: Probability = 0.05
+    """With which an empty robot first asks for an idle pod to move."""
+    other_kind: bool = True
+    """Whether a robot takes work of the other kind if there is none of its own."""
+    prefer_same_tier: bool = True
+    """Whether stations on the pod's tier come first."""
+
+
+class RandomTasks(Solo[RandomTasksParameters]):
+    """Gives each robot a pod drawn among those with work, and a station drawn where it has some.
+
+    A robot is a picker or a replenisher, at first by the share of pick stations, and changes now
+    and then. It chooses pods itself, so PPS must be a dummy (whose parameters say what is bound on
+    the way); PSA chooses where pods are parked.
+
+    Differences from RAWSim-O, where these are defects: a robot that finds no pod to move looks for
+    work, instead of staying without task; the two switches without effect are not there.
+    """
+
+    parameters_model = RandomTasksParameters
+    decides: ClassVar[frozenset[Problem]] = frozenset({Problem.PPS})
+
+    def __init__(
+        self, parameters: RandomTasksParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        share = len(view.pick_stations) / len(view.stations)
+        self._picks: list[bool] = (rng.random(len(view.robots)) < share).tolist()
+
+    def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
+        """Yield a task after drawing what to do."""
+        given = self.parameters
+        if self._happens(given.switch_probability):
+            self._picks[robot.index] = not self._picks[robot.index]
+        if robot.pod >= 0:
+            station = self._next_station(robot, consult)
+            if station >= 0:
+                yield bring(self.view, robot, robot.pod, station)
+            else:
+                yield from self.park(robot, consult)
+            return
+        if self._happens(given.reposition_probability):
+            move = consult.move_for(robot)
+            if move is not None:
+                yield Reposition(keeper_of(self.view, robot, move.pod), move.pod, move.place)
+                return
+        yield self.work_for(robot, consult) or self.to_rest(robot)
+
+    def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
+        """Draw a pod among all at hand that have work of the robot's kind, then a station."""
+        for picks in self._kinds(robot):
+            stations = [s.index for s in self._stations(picks) if self.view.has_open_work(s.index)]
+            useful = np.zeros((len(stations), len(self.view.storage.is_at_hand)), np.bool_)
+            for row, station in zip(useful, stations, strict=True):
+                row[self._pods(robot, station)] = True
+            pods = np.flatnonzero(useful.any(axis=0))
+            if len(pods):
+                pod = int(pods[self.draw(len(pods))])
+                rows = useful[:, pod].nonzero()[0].tolist()
+                station = self._any_of([stations[row] for row in rows], pod)
+                return bring(self.view, keeper_of(self.view, robot, pod), pod, station)
+        return None
+
+    def _pods(self, robot: Robot, station: int) -> NDArray[np.intp]:
+        """Pods at hand that have work at a station."""
+        view = self.view
+        if station < len(view.pick_stations):
+            return pick_candidates(view, robot, view.pick_stations[station]).pods
+        others = view.replenishment_stations
+        return replenishment_candidates(view, robot, others[station - len(view.pick_stations)]).pods
+
+    def _next_station(self, robot: Robot, consult: Consult) -> int:
+        """Draw a station where the carried pod has work, or -1 if it is to be parked."""
+        if not self._happens(self.parameters.keep_pod_probability):
+            return -1
+        for picks in self._kinds(robot):
+            stations = [
+                station.index
+                for station in self._stations(picks)
+                if consult.serves(robot.pod, station.index)
+            ]
+            if stations:
+                return self._any_of(stations, robot.pod)
+        return -1
+
+    def _any_of(self, stations: list[int], pod: int) -> int:
+        """Draw a station, if possible on the tier of a pod."""
+        if self.parameters.prefer_same_tier and self.view.travel.tiers > 1:
+            tier = self.view.travel.tier[self.view.pod_waypoint(pod)]
+            near = [s for s in stations if self.view.stations[s].tier == tier]
+            stations = near or stations
+        return stations[self.draw(len(stations))]
+
+    def _kinds(self, robot: Robot) -> tuple[bool, ...]:
+        """Whether to look for picks: the robot's own kind, then, if allowed, the other."""
+        own = self._picks[robot.index]
+        return (own, not own) if self.parameters.other_kind else (own,)
+
+    def _stations(self, picks: bool) -> list[PickStation] | list[ReplenishmentStation]:
+        return self.view.pick_stations if picks else self.view.replenishment_stations
+
+    def _happens(self, probability: float) -> bool:
+        return float(self.rng.random()) < probability

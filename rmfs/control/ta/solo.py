@@ -1,0 +1,86 @@
+"""Robots that look for work by themselves: what TA random, brute-force and swarm share."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, TypeVar
+
+from rmfs.control.base import Parameters
+from rmfs.control.decisions import Park, Prepare, Rest, TaskDecision
+from rmfs.control.ta import Consult, TaskAllocation
+from rmfs.control.ta.rest import RestPlaces, RestRule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import numpy as np
+
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+
+class SoloParameters(Parameters):
+    """Parameters of rules by which robots look for work by themselves."""
+
+    rest: RestRule = "nearest"
+    """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
+    `random`."""
+
+
+P = TypeVar("P", bound=SoloParameters)
+
+
+class Solo(TaskAllocation[P]):
+    """Asks robot by robot; robots at rest are asked when something has changed at the stations."""
+
+    def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._rest = RestPlaces(view, parameters.rest, self.draw)
+        self._nothing_at: tuple[tuple[int, ...], ...] | None = None
+
+    @abstractmethod
+    def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
+        """Yield a task for a robot that asks, and perhaps what it is to do after that."""
+
+    @abstractmethod
+    def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
+        """Find work for a robot at rest."""
+
+    def decide(self, consult: Consult) -> Iterator[TaskDecision | Prepare]:
+        """Yield a task for every robot that asks, and work for robots at rest."""
+        for robot in list(self.view.asking.values()):
+            while robot.task is None:
+                given = 0
+                for task in self.task_for(robot, consult):
+                    given += 1
+                    yield task
+                if not given:
+                    break
+        for robot in list(self.view.resting.values()):
+            now = self._work_versions()
+            if now == self._nothing_at:
+                return
+            if robot.index in self.view.resting:
+                found = self.work_for(robot, consult)
+                if found is None:
+                    self._nothing_at = now
+                else:
+                    yield found
+
+    def rest_place(self, robot: Robot) -> int:
+        """Choose by the rest rule."""
+        return self._rest.choose(robot)
+
+    def to_rest(self, robot: Robot) -> Rest:
+        """Let a robot rest where the rule says, or where it is."""
+        place = self._rest.choose(robot)
+        return Rest(robot, place if place >= 0 else robot.waypoint)
+
+    def park(self, robot: Robot, consult: Consult) -> Iterator[Park]:
+        """Store the pod of a robot where PSA says, if there is room."""
+        place = consult.place_for(robot)
+        if place >= 0:
+            yield Park(robot, place)
+
+    def _work_versions(self) -> tuple[tuple[int, ...], ...]:
+        return tuple(self.view.work_version(station.index) for station in self.view.stations)

@@ -1,0 +1,66 @@
+"""What several TA rules share: how far stations are, and what is done for one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.control.decisions import BringForBundles, BringForPicks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.decisions import TaskDecision
+    from rmfs.control.ta import Consult
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+
+def waypoints(view: View) -> NDArray[np.int64]:
+    """Where the stations are, in the common numbering, shape (S,)."""
+    return np.array([station.waypoint for station in view.stations])
+
+
+def bring(view: View, robot: Robot, pod: int, station: int) -> TaskDecision:
+    """Let a robot bring a pod to a station of either kind."""
+    if station < len(view.pick_stations):
+        return BringForPicks(robot, pod, station)
+    return BringForBundles(robot, pod, station)
+
+
+def keeper_of(view: View, robot: Robot, pod: int) -> Robot:
+    """The idle robot that stands beneath a stored pod; if there is none, the given robot."""
+    storage = view.storage
+    keeper = storage.kept_by[storage.place_of[pod]]
+    return robot if keeper < 0 else view.robots[keeper]
+
+
+def near_by(
+    view: View, robot: Robot, radius_m: float, among: Iterable[int], consult: Consult
+) -> list[int]:
+    """Stations on the robot's tier, at most so far away, that can be served with its pod."""
+    stations = [view.stations[index] for index in among]
+    if not stations:
+        return []
+    where = np.array([station.waypoint for station in stations])
+    metres = view.travel.metres(robot.waypoint, where).tolist()
+    return [
+        station.index
+        for station, distance in zip(stations, metres, strict=True)
+        if distance <= radius_m
+        and station.tier == robot.tier
+        and consult.serves(robot.pod, station.index)
+    ]
+
+
+def far_first(view: View) -> list[int]:
+    """Stations, those far from the middle of their tier first, ties by number."""
+    layout, at = view.layout, waypoints(view)
+    tiers = [layout.tiers[tier] for tier in layout.tier[at].tolist()]
+    x = layout.x_m[at] - np.array([tier.length_m / 2 for tier in tiers])
+    y = layout.y_m[at] - np.array([tier.width_m / 2 for tier in tiers])
+    order: list[int] = np.argsort(-(x * x + y * y), kind="stable").tolist()
+    return order

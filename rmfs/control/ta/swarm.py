@@ -1,0 +1,157 @@
+"""TA swarm: stations attract robots, the more work they have and the nearer they are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import pydantic
+
+from rmfs.control.decisions import Prepare, TaskDecision
+from rmfs.control.ta.solo import Solo, SoloParameters
+from rmfs.control.ta.stations import bring, keeper_of, near_by, waypoints
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.ta import Consult
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
+
+
+class SwarmParameters(SoloParameters):
+    """Parameters of TA swarm."""
+
+    work_limit: Annotated[int, pydantic.Field(ge=1)] = 6
+    """Orders, or bundles, of a station that count at most: so many robots it attracts at most."""
+    threshold_weight: NotNegative = 1.0
+    """Weight (alpha) of half that limit, squared: how hard it is to attract any robot."""
+    distance_weight: NotNegative = 1.0
+    """Weight (beta) of the distance in m, squared (Manhattan)."""
+    growth: Annotated[float, pydantic.Field(ge=1, allow_inf_nan=False)] = 1.2
+    """By which the attraction of a station grows each time another one is chosen."""
+    growth_limit: Annotated[float, pydantic.Field(ge=1, allow_inf_nan=False)] = 30.0
+    """Up to which it grows."""
+    rest_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
+    """Share of stations that attract nobody, beyond which a robot may draw rest as well."""
+    other_stations: bool = False
+    """Whether a pod that has been served may go on to another station near by."""
+    search_radius_m: NotNegative = 5.0
+    """Metres to that station at most (Euclidean)."""
+
+
+class Swarm(Solo[SwarmParameters]):
+    """Lets each empty robot draw a station, and PPS choose a pod for it.
+
+    A station's stimulus is s = max(min(orders or bundles there, limit) - robots matched with it, 0)
+    times a multiplier. It is drawn with a probability proportional to
+    s^2 / (s^2 + alpha T^2 + beta d^2), where T is half the limit, rounded down, and d the distance.
+    The multiplier of the station drawn becomes 1, those of the others grow; those of stations
+    without stimulus become 1. If more than the rest share of the stations attract nobody, by e
+    stations, rest is drawn with the weight e^3 / (stations - rest share of the stations)^3. A robot
+    stays matched with its station as long as it carries a pod.
+
+    Difference from RAWSim-O: robots at rest draw again when there is new work. What is bound to
+    pods on their way, PPS says; there it is nothing.
+    """
+
+    parameters_model = SwarmParameters
+
+    def __init__(self, parameters: SwarmParameters, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._waypoints = waypoints(view)
+        self._multiplier = np.ones(len(view.stations))
+        self._matched = [
+            robot.task.station if robot.task is not None else -1 for robot in view.robots
+        ]
+
+    def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
+        """Go on with a pod, or draw a station."""
+        if robot.pod < 0:
+            yield self.work_for(robot, consult) or self.to_rest(robot)
+            return
+        station = self._next_station(robot, consult)
+        if station >= 0:
+            self._matched[robot.index] = station
+            yield bring(self.view, robot, robot.pod, station)
+        else:
+            yield from self.park(robot, consult)
+
+    def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
+        """Draw a station and ask PPS for a pod; None for rest, or if there is no pod."""
+        self._matched[robot.index] = -1
+        station = self._draw_station(robot)
+        if station < 0 or not self.view.has_open_work(station):
+            return None
+        pod = consult.pod_for(robot, station)
+        if pod < 0:
+            return None
+        chosen = keeper_of(self.view, robot, pod)
+        self._matched[chosen.index] = station
+        return bring(self.view, chosen, pod, station)
+
+    def _next_station(self, robot: Robot, consult: Consult) -> int:
+        """Where a carried pod is served next; -1 if it is to be parked."""
+        matched = self._matched[robot.index]
+        if matched < 0:
+            matched = self._draw_station(robot)
+        if matched >= 0 and consult.serves(robot.pod, matched):
+            return matched
+        if self.parameters.other_stations:
+            everywhere = range(len(self.view.stations))
+            radius_m = self.parameters.search_radius_m
+            stations = near_by(self.view, robot, radius_m, everywhere, consult)
+            if stations:
+                return consult.next_station(robot, stations)
+        return -1
+
+    def _draw_station(self, robot: Robot) -> int:
+        """Draw a station, or -1 for rest, and change the multipliers."""
+        given = self.parameters
+        stimulus = self._stimulus()
+        where = self.view.travel.robot_waypoint(robot.index)
+        distance = self.view.travel.manhattan_metres(where, self._waypoints)
+        threshold = given.work_limit // 2
+        squared = stimulus * stimulus
+        resistance = given.threshold_weight * threshold**2 + given.distance_weight * (
+            distance * distance
+        )
+        attracts = stimulus > 0
+        weights = np.zeros(len(stimulus) + 1)
+        weights[:-1][attracts] = squared[attracts] / (squared + resistance)[attracts]
+        weights[-1] = self._rest_weight(int((~attracts).sum()))
+        chosen = self._draw_by(weights)
+        self._multiplier[~attracts] = 1.0
+        if chosen == len(stimulus):
+            return -1
+        grown = np.minimum(self._multiplier[attracts] * given.growth, given.growth_limit)
+        self._multiplier[attracts] = grown
+        self._multiplier[chosen] = 1.0
+        return chosen
+
+    def _stimulus(self) -> NDArray[np.float64]:
+        """How much each station attracts robots, shape (S,)."""
+        view = self.view
+        work = [len(station.orders) for station in view.pick_stations]
+        work += [station.bundles for station in view.replenishment_stations]
+        matched = np.bincount([s for s in self._matched if s >= 0], minlength=len(work))
+        missing = np.minimum(work, self.parameters.work_limit) - matched
+        stimulus: NDArray[np.float64] = np.maximum(missing, 0) * self._multiplier
+        return stimulus
+
+    def _rest_weight(self, unattractive: int) -> float:
+        stations = len(self.view.stations)
+        threshold = round(self.parameters.rest_share * stations)
+        excess = unattractive - threshold
+        return (excess / (stations - threshold)) ** 3 if excess > 0 else 0.0
+
+    def _draw_by(self, weights: NDArray[np.float64]) -> int:
+        """Draw a position by weight; the last one if all weights are 0."""
+        ends = np.cumsum(weights)
+        if ends[-1] <= 0:
+            return len(weights) - 1
+        return int(np.searchsorted(ends, float(self.rng.random()) * ends[-1], side="right"))

@@ -1,0 +1,77 @@
+"""How often SKUs are ordered, alone and together."""
+
+from __future__ import annotations
+
+from itertools import permutations
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rmfs.control.problems import Trigger
+from rmfs.control.trackers import Tracker
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+
+
+class Frequency(Tracker):
+    """Units ordered of each SKU, in the past orders and since time zero.
+
+    RAWSim-O too starts from made-up orders, 5000 of them, and counts on.
+    """
+
+    def __init__(self, view: View) -> None:
+        super().__init__(view)
+        self._before = np.zeros(len(view.skus), np.int64)
+        for draft in view.past_orders:
+            for sku, units in zip(draft.skus, draft.units, strict=True):
+                self._before[sku] += units
+
+    @property
+    def units(self) -> NDArray[np.int64]:
+        """Units ordered of each SKU, shape (K,)."""
+        return self._before + self.view.inventory.ordered
+
+    @property
+    def share(self) -> NDArray[np.float64]:
+        """Units ordered as a share of those of the SKU ordered most, shape (K,)."""
+        units = self.units
+        return units / max(int(units.max()), 1)
+
+
+class PairFrequency(Tracker):
+    """In how many orders two SKUs came together; starts from past orders and the backlog."""
+
+    hears = frozenset({Trigger.NEW_ORDER})
+
+    def __init__(self, view: View) -> None:
+        super().__init__(view)
+        self._orders: dict[int, dict[int, int]] = {}
+        for draft in view.past_orders:
+            self._count(draft.skus)
+        for order in view.orders:
+            self._count(line.sku for line in order.lines)
+
+    def hear(self, trigger: Trigger, subject: Any) -> None:
+        """Count the pairs of a new order."""
+        self._count(line.sku for line in subject.lines)
+
+    def orders_with(self, sku: int) -> NDArray[np.int64]:
+        """In how many orders each SKU came together with this one, and a 0, shape (K + 1,).
+
+        The 0 at the end is for `Inventory.skus_on`.
+        """
+        counts = np.zeros(len(self.view.skus) + 1, np.int64)
+        partners = self._orders.get(sku)
+        if partners:
+            counts[list(partners)] = list(partners.values())
+        return counts
+
+    def _count(self, skus: Iterable[int]) -> None:
+        for one, other in permutations(skus, 2):
+            partners = self._orders.setdefault(one, {})
+            partners[other] = partners.get(other, 0) + 1

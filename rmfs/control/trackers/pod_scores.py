@@ -1,0 +1,121 @@
+"""How much of what customers want, and how popular, are the contents of each pod."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from rmfs.control.problems import Trigger
+from rmfs.control.trackers import Tracker
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+
+Demand = Literal["assigned", "unbound", "wanted"]
+"""Units of orders: open ones at the stations; open ones of all orders; all not yet picked."""
+
+_STEPS = 1 << 20  # popularity is counted in integers, so that sums never drift
+
+
+def demand(view: View, kind: Demand) -> NDArray[np.int64]:
+    """Units of each SKU that orders want, shape (K,)."""
+    if kind == "wanted":
+        return view.inventory.wanted
+    units: NDArray[np.int64] = view.need.sum(axis=0, dtype=np.int64)
+    if kind == "unbound":
+        units += view.inventory.free_stock
+        units -= view.inventory.uncommitted
+    return units
+
+
+class DemandOnPods(Tracker):
+    """For each pod, the sum over SKUs of what it holds of them, but at most what orders want.
+
+    Changes of stock are counted as they happen, changes of demand when the sums are asked for: only
+    SKUs whose demand is another than before are gone through.
+    """
+
+    hears = frozenset({Trigger.UNIT_PICKED, Trigger.BUNDLE_STORED})
+
+    def __init__(self, view: View, kind: Demand) -> None:
+        super().__init__(view)
+        self._kind = kind
+        self._demand = demand(view, kind).copy()
+        contained = view.inventory.contained
+        self._units = np.zeros(contained.shape[1], np.int64)
+        for sku in self._demand.nonzero()[0].tolist():
+            self._units += np.minimum(contained[sku], self._demand[sku])
+
+    def hear(self, trigger: Trigger, subject: Any) -> None:
+        """Count a unit that left its pod, or a bundle that went into it."""
+        if trigger is Trigger.UNIT_PICKED:
+            (pod, sku), change = subject, -1
+        else:
+            pod, sku, change = subject.pod, subject.sku, subject.units
+        wanted = self._demand.item(sku)
+        if wanted:
+            now = self.view.inventory.contained.item(sku, pod)
+            self._units[pod] += min(now, wanted) - min(now - change, wanted)
+
+    def units(self) -> NDArray[np.int64]:
+        """Wanted units on each pod, shape (P,)."""
+        new = demand(self.view, self._kind)
+        contained, old = self.view.inventory.contained, self._demand
+        for sku in (new != old).nonzero()[0].tolist():
+            self._units += np.minimum(contained[sku], new[sku])
+            self._units -= np.minimum(contained[sku], old[sku])
+        old[:] = new
+        return self._units
+
+
+class PodScores(Tracker):
+    """Scores of pods: how useful they are now, and how fast they will be needed again.
+
+    *Utility* is the number of units on a pod that orders want (`DemandOnPods` of all orders not yet
+    picked); *speed* is the sum over its units of the popularity of their SKU. Both are given as
+    shares of the best pod's. RAWSim-O keeps these scores only if the monitoring of
+    "well-sortedness" is switched on, and has 0 for all pods otherwise; here they are kept whenever
+    a rule asks.
+    """
+
+    hears = DemandOnPods.hears
+
+    def __init__(self, view: View) -> None:
+        super().__init__(view)
+        self._useful = view.trackers.get(DemandOnPods, "wanted")
+        popularity = view.skus.popularity
+        weights = np.rint(popularity * (_STEPS / popularity.max())).astype(np.int64)
+        self._weight: list[int] = weights.tolist()
+        self._speed = np.zeros(len(view.inventory.capacity), np.int64)
+        for sku, row in enumerate(view.inventory.contained):
+            self._speed += row * weights[sku]
+
+    def hear(self, trigger: Trigger, subject: Any) -> None:
+        """Count a unit that left its pod, or a bundle that went into it."""
+        if trigger is Trigger.UNIT_PICKED:
+            pod, sku = subject
+            self._speed[pod] -= self._weight[sku]
+        else:
+            self._speed[subject.pod] += self._weight[subject.sku] * subject.units
+
+    def scores(self, utility_weight: float, speed_weight: float) -> NDArray[np.float64]:
+        """Weighted means of utility and speed, each from 0 to 1, shape (P,).
+
+        Parameters
+        ----------
+        utility_weight, speed_weight
+            Not both 0.
+        """
+        score = np.zeros(len(self._speed))
+        if utility_weight:
+            score += utility_weight * _share_of_best(self._useful.units())
+        if speed_weight:
+            score += speed_weight * _share_of_best(self._speed)
+        return score / (utility_weight + speed_weight)
+
+
+def _share_of_best(values: NDArray[np.int64]) -> NDArray[np.float64]:
+    return values / max(int(values.max()), 1)

@@ -1,0 +1,42 @@
+"""Prominence of storage places: how soon a pod from there is at a pick station."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.control.trackers import Tracker
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+
+
+class Prominence(Tracker):
+    """Places ranked by the time a loaded robot needs to the nearest pick station.
+
+    Equal times share a rank; ranks are counted from 0, the most prominent, without gaps.
+
+    Attributes
+    ----------
+    seconds
+        Time from each of the L storage places to its nearest pick station, shape (L,).
+    rank
+        Rank of each place, shape (L,).
+    in_order
+        Places by index, the most prominent first, ties by index, shape (L,).
+    """
+
+    def __init__(self, view: View) -> None:
+        super().__init__(view)
+        self.seconds: NDArray[np.float64] = np.min(
+            [
+                view.travel.to(station.waypoint, loaded=True)[view.storage.places]
+                for station in view.pick_stations
+            ],
+            axis=0,
+        )
+        self.rank: NDArray[np.intp] = np.unique(self.seconds, return_inverse=True)[1]
+        self.in_order: NDArray[np.intp] = np.argsort(self.seconds, kind="stable")

@@ -1,0 +1,143 @@
+"""Turnover classes: places near pick stations, fast pods and fast SKUs belong together."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.trackers import Tracker
+from rmfs.control.trackers.frequency import Frequency
+from rmfs.control.travel import Metric
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+
+
+class TurnoverParameters(Parameters):
+    """How classes are made; rules that work together (RPS, PSA) must agree on it."""
+
+    class_borders: Annotated[tuple[float, ...], pydantic.Field(min_length=1)] = (0.1, 0.3, 1.0)
+    """Cumulative shares of the storage places at which classes end, nearest places first; the last
+    is 1."""
+    place_metric: Metric = "time"
+    """How the distance from a place to its nearest pick station is measured."""
+    reallocation_period_s: Annotated[float, pydantic.Field(ge=0)] = 0.0
+    """Seconds after which pods and SKUs are classed anew; 0 for never."""
+    reallocation_orders: Annotated[int, pydantic.Field(ge=0)] = 0
+    """New orders after which they are; 0 for never."""
+
+    @pydantic.field_validator("class_borders")
+    @classmethod
+    def _ascending(cls, value: tuple[float, ...]) -> tuple[float, ...]:
+        if value[-1] != 1 or value[0] <= 0 or any(a >= b for a, b in pairwise(value)):
+            raise ValueError("must ascend from above 0 to 1, for example [0.1, 0.3, 1.0]")
+        return value
+
+    @classmethod
+    def of(cls, parameters: TurnoverParameters) -> TurnoverParameters:
+        """Take this part out of the parameters of a rule."""
+        names = TurnoverParameters.model_fields
+        return TurnoverParameters(**{name: getattr(parameters, name) for name in names})
+
+
+class TurnoverClasses(Tracker):
+    """Classes of storage places, pods and SKUs, from 0, the fastest, to `classes` - 1.
+
+    - Places are sorted by distance to the nearest pick station and cut at the class borders, the
+      number of places up to a border rounded down.
+    - Pods are sorted by the mean, over the SKUs they contain, of units ordered, the fastest first,
+      ties by distance to the nearest pick station and then by number, and fill the classes in
+      proportion to the places.
+    - SKUs are sorted by units ordered, the most first, ties by number. A class takes SKUs until
+      their sum of (share of units ordered + share of the space of one unit of each SKU) / 2 reaches
+      the class's share of the pods' capacity.
+
+    Units are counted since the last classing, at first since the past orders. Pods and SKUs are
+    classed when a rule first asks for the tracker, and anew when period or orders are reached and
+    somebody looks; places keep their class.
+
+    Difference from RAWSim-O, where this is a defect: there pods are sorted the slowest first, so
+    that the pods with the slowest SKUs get the nearest places.
+    """
+
+    def __init__(self, view: View, parameters: TurnoverParameters) -> None:
+        super().__init__(view)
+        self.parameters = parameters
+        self.classes = len(parameters.class_borders)
+        self._frequency = view.trackers.get(Frequency)
+        self._distance = np.min(
+            [
+                view.travel.distances_to(station.waypoint, parameters.place_metric)
+                for station in view.pick_stations
+            ],
+            axis=0,
+        )
+        places = view.storage.places
+        self._place_ends = [int(b * len(places) + 1e-9) for b in parameters.class_borders]
+        nearest_first = np.argsort(self._distance[places], kind="stable")
+        self.place_class = _cut(nearest_first, self._place_ends)
+        self._counted = np.zeros(len(view.skus), np.int64)
+        self._class_anew()
+
+    @property
+    def pod_class(self) -> NDArray[np.int64]:
+        """Class of each pod, shape (P,)."""
+        self._keep_up()
+        return self._pod_class
+
+    @property
+    def sku_class(self) -> NDArray[np.int64]:
+        """Class of each SKU, shape (K,)."""
+        self._keep_up()
+        return self._sku_class
+
+    def _keep_up(self) -> None:
+        """Class pods and SKUs anew if it is time."""
+        given, view = self.parameters, self.view
+        late = 0 < given.reallocation_period_s <= view.now_s - self._classed_s
+        if late or 0 < given.reallocation_orders <= view.orders_created - self._classed_orders:
+            self._class_anew()
+
+    def _class_anew(self) -> None:
+        self._classed_s = self.view.now_s
+        self._classed_orders = self.view.orders_created
+        units = self._frequency.units
+        ordered = units - self._counted
+        self._counted = units
+        self._pod_class = self._class_pods(ordered)
+        self._sku_class = self._class_skus(ordered)
+
+    def _class_pods(self, ordered: NDArray[np.int64]) -> NDArray[np.int64]:
+        skus_on = self.view.inventory.skus_on
+        kinds = (skus_on < len(ordered)).sum(axis=1)
+        speed = np.append(ordered, 0)[skus_on].sum(axis=1) / np.maximum(kinds, 1)
+        distance = self._distance[self.view.storage.pod_waypoint]
+        fastest_first = np.lexsort((distance, -speed))
+        pods, places = len(kinds), self._place_ends[-1]
+        return _cut(fastest_first, [pods * end // places for end in self._place_ends])
+
+    def _class_skus(self, ordered: NDArray[np.int64]) -> NDArray[np.int64]:
+        # spaces and capacities are multiples of a power of two: sums are exact in any order
+        space = self.view.skus.space_per_unit
+        shares = (ordered / max(int(ordered.sum()), 1) + space / space.sum()) / 2
+        most_first = np.argsort(-ordered, kind="stable")
+        before = np.cumsum(shares[most_first]) - shares[most_first]
+        capacity = self.view.inventory.capacity
+        in_class = np.bincount(self._pod_class, weights=capacity, minlength=self.classes)
+        borders = np.cumsum(in_class / capacity.sum())[:-1]
+        sku_class = np.empty(len(ordered), np.int64)
+        sku_class[most_first] = np.searchsorted(borders, before, side="right")
+        return sku_class
+
+
+def _cut(in_order: NDArray[np.intp], ends: list[int]) -> NDArray[np.int64]:
+    """Give each of n things its class: the first `ends[0]` in the order class 0, and so on."""
+    classes = np.empty(len(in_order), np.int64)
+    classes[in_order] = np.searchsorted(ends, np.arange(len(in_order)), side="right")
+    return classes

@@ -1,0 +1,101 @@
+"""Zones of the storage area: a cache near each pick station, and a drop-off zone at its exit."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.trackers import Tracker
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+
+ZonePriority = Literal["drop-off", "cache", "equal"]
+
+
+class ZoneParameters(Parameters):
+    """How zones are laid out; rules that work together (PSA, repositioning) must agree on it."""
+
+    cache_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.25
+    """Share of all storage places that belong to caches, divided equally over the pick stations."""
+    drop_off_places: Annotated[int, pydantic.Field(ge=0)] = 0
+    """Places of each pick station's drop-off zone."""
+    zone_priority: ZonePriority = "drop-off"
+    """Which zones choose their places first: `drop-off`, `cache`, or both alike (`equal`)."""
+
+    @classmethod
+    def of(cls, parameters: ZoneParameters) -> ZoneParameters:
+        """Take this part out of the parameters of a rule."""
+        names = ZoneParameters.model_fields
+        return ZoneParameters(**{name: getattr(parameters, name) for name in names})
+
+
+class Zones(Tracker):
+    """For every storage place the zone it belongs to.
+
+    A cache has ceil(cache share x places / pick stations) places, a drop-off zone the given number.
+    Zones take places one after another: of all pairs of a free place and a zone that is not full,
+    by priority of the kind of zone; then the least time of a loaded robot, to the station from a
+    place of its cache, from the station to a place of its drop-off zone; then the longest time in
+    the other direction; ties: the place, then the station, with the lowest number, and the drop-off
+    zone before the cache.
+
+    Attributes
+    ----------
+    cache_of, drop_off_of
+        Pick station to whose cache, or drop-off zone, each place belongs, or -1, shape (L,).
+    cache_size
+        Places of each cache, as far as there were enough, shape (S,).
+    """
+
+    def __init__(self, view: View, parameters: ZoneParameters) -> None:
+        super().__init__(view)
+        stations, places = len(view.pick_stations), len(view.storage.places)
+        cache = ceil(places * parameters.cache_share / stations - 1e-9)
+        drop_off = parameters.drop_off_places
+        zone_of = _greedy(view, parameters.zone_priority, cache, drop_off)
+        self.cache_of: NDArray[np.int64] = np.where(zone_of >= stations, zone_of - stations, -1)
+        self.drop_off_of: NDArray[np.int64] = np.where(zone_of < stations, zone_of, -1)
+        held = self.cache_of[self.cache_of >= 0]
+        self.cache_size: NDArray[np.int64] = np.bincount(held, minlength=stations)
+        self.caches: list[NDArray[np.intp]] = [
+            (self.cache_of == station).nonzero()[0] for station in range(stations)
+        ]
+        self._cache_mask: NDArray[np.bool_] = self.cache_of >= 0
+
+    def occupied(self) -> NDArray[np.int64]:
+        """Places of each cache that hold a pod, or are kept by a robot, shape (S,)."""
+        taken = self._cache_mask & ~self.view.storage.is_empty
+        return np.bincount(self.cache_of[taken], minlength=len(self.cache_size))
+
+
+def _greedy(view: View, priority: ZonePriority, cache: int, drop_off: int) -> NDArray[np.int64]:
+    """Zone of each place: station for its drop-off zone, S + station for its cache, or -1, (L,)."""
+    places = view.storage.places
+    waypoints = [station.waypoint for station in view.pick_stations]
+    to = np.stack([view.travel.to(waypoint, loaded=True)[places] for waypoint in waypoints])
+    back = np.stack([view.travel.away(waypoint, loaded=True)[places] for waypoint in waypoints])
+    # pairs of zone and place: drop-off zones of the S stations first, then their caches
+    near, far = np.concatenate([back, to]).ravel(), np.concatenate([to, back]).ravel()
+    zone, place = np.divmod(np.arange(len(near)), len(places))
+    rank = {"drop-off": 1, "cache": -1, "equal": 0}[priority]
+    kind = rank * (zone >= len(waypoints))
+    in_order = np.lexsort((zone, place, -far, near, kind))
+    left = [drop_off] * len(waypoints) + [cache] * len(waypoints)
+    zone_of = np.full(len(places), -1, np.int64)
+    wanted = sum(left)
+    for position in in_order.tolist():
+        if not wanted:
+            break
+        row, column = divmod(position, len(places))
+        if left[row] and zone_of[column] < 0 and near.item(position) < np.inf:
+            zone_of[column] = row
+            left[row] -= 1
+            wanted -= 1
+    return zone_of

@@ -1,0 +1,104 @@
+"""Simulated time in whole microseconds, and times that come again.
+
+Whole microseconds add up exactly, are the same on every processor, and survive being written as
+decimals: a stream read from a file is the stream that was written.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from math import ceil
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rmfs.scenario.parameters import DownPeriods
+
+US_PER_S = 1_000_000
+US_PER_H = 3600 * US_PER_S
+
+NEVER_US = 1 << 62
+"""Later than any event."""
+
+
+def nearest_us(time_s: float) -> int:
+    """Return the microsecond nearest to a time."""
+    return round(time_s * US_PER_S)
+
+
+def first_us(time_s: float) -> int:
+    """Return the first microsecond that is not before a time."""
+    time_us = ceil(time_s * US_PER_S)
+    if (time_us - 1) / US_PER_S >= time_s:
+        return time_us - 1
+    return time_us if time_us / US_PER_S >= time_s else time_us + 1
+
+
+class Cycle:
+    """A cycle of which a part is gone at time zero.
+
+    Parameters
+    ----------
+    length_s
+        After so long everything comes again.
+    gone_s
+        Time of the cycle at time zero; may exceed its length.
+    """
+
+    def __init__(self, length_s: float, gone_s: float) -> None:
+        self.length_us = nearest_us(length_s)
+        self._gone_us = nearest_us(gone_s) % self.length_us
+
+    def phase_us(self, time_us: int) -> int:
+        """Return the time of the cycle at a simulated time."""
+        return (time_us + self._gone_us) % self.length_us
+
+    def times_us(self, phases_us: Sequence[int]) -> Iterator[tuple[int, int]]:
+        """Yield when given times of the cycle come, and which it is, without end.
+
+        Parameters
+        ----------
+        phases_us
+            Times of the cycle in order, each less than its length, one at least.
+        """
+        start_us = -self._gone_us
+        while True:
+            for which, phase_us in enumerate(phases_us):
+                if start_us + phase_us >= 0:
+                    yield start_us + phase_us, which
+            start_us += self.length_us
+
+
+class Openings:
+    """Tells when generation is down.
+
+    Parameters
+    ----------
+    config
+        Down periods, or None: never down.
+    gone_s
+        Time of all cycles at time zero.
+    """
+
+    def __init__(self, config: DownPeriods | None, gone_s: float) -> None:
+        self._borders: list[int] = []
+        if config is not None:
+            self._cycle = Cycle(config.cycle_s, gone_s)
+            # begin, end, begin, end, ...: down after an odd number of borders
+            self._borders = [nearest_us(s) for period in config.periods_s for s in period]
+
+    def is_open(self, time_us: int) -> bool:
+        """Say whether things are generated at a time; a period ends just before its last s."""
+        return self.open_from_us(time_us) == time_us
+
+    def open_from_us(self, time_us: int) -> int:
+        """Return the first time, from a given one on, at which things are generated."""
+        while self._borders:
+            phase_us = self._cycle.phase_us(time_us)
+            passed = bisect_right(self._borders, phase_us)
+            if passed % 2 == 0:
+                break
+            # a period that ends with the cycle may be followed by one that begins with it
+            time_us += self._borders[passed] - phase_us
+        return time_us

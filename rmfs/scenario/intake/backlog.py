@@ -1,0 +1,132 @@
+"""Backlogs of constant length."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.scenario.clock import NEVER_US, US_PER_S, first_us
+from rmfs.scenario.intake.intake import BundleArrival, OrderArrival
+from rmfs.scenario.top_up import BundleTopUp, OrderTopUp
+
+if TYPE_CHECKING:
+    from rmfs.scenario.bundles import BundleSource
+    from rmfs.scenario.clock import Openings
+    from rmfs.scenario.intake.contents import Contents
+    from rmfs.scenario.intake.state import State
+    from rmfs.scenario.parameters import BacklogDemand, BacklogReplenishment
+
+
+class Rest:
+    """Keeps the time from which on a process may go on: after a failure, or a down period.
+
+    Attributes
+    ----------
+    until_us
+        When to ask again, `NEVER_US` if nothing keeps the process from going on.
+    """
+
+    def __init__(self, openings: Openings) -> None:
+        self._openings = openings
+        self._blocked_us = 0
+        self.until_us = NEVER_US
+
+    def ends(self, now_us: int) -> bool:
+        """Say whether the process may go on at a time."""
+        until_us = self._openings.open_from_us(max(now_us, self._blocked_us))
+        self.until_us = until_us if until_us > now_us else NEVER_US
+        return until_us == now_us
+
+    def block(self, now_us: int, until_s: float) -> None:
+        """Let nothing go on before a time."""
+        self._blocked_us = first_us(until_s)
+        self.ends(now_us)
+
+
+class BacklogOrders:
+    """Tops up a backlog of orders (a process of an intake).
+
+    Parameters
+    ----------
+    config
+        The table `demand` of a scenario.
+    contents
+        Draws what orders contain.
+    capacity
+        Space units of all pods together.
+    openings
+        When generation is down.
+    """
+
+    def __init__(
+        self, config: BacklogDemand, contents: Contents, capacity: float, openings: Openings
+    ) -> None:
+        self._top_up = OrderTopUp(config, capacity)
+        self._contents = contents
+        self._rest = Rest(openings)
+        self._drawn = 0
+
+    @property
+    def next_us(self) -> int:
+        """When a failed attempt may be repeated, or a down period ends."""
+        return self._rest.until_us
+
+    def draw(self, now_us: int, state: State) -> OrderArrival | None:
+        """Return an order if the backlog lacks one that stock can serve."""
+        # asked in any case, since it has to know every change of stock
+        wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_orders, state.stored_space)
+        if not self._rest.ends(now_us) or not wanted:
+            return None
+        draft = self._contents(self._drawn, state)
+        self._drawn += 1
+        if draft is None:
+            self._top_up.failed(now_us / US_PER_S)
+            self._rest.block(now_us, self._top_up.blocked_until_s)
+            return None
+        return OrderArrival.of(draft, now_us)
+
+
+class BacklogBundles:
+    """Tops up a backlog of bundles (a process of an intake).
+
+    Parameters
+    ----------
+    config
+        The table `replenishment` of a scenario.
+    source
+        Draws bundles.
+    capacity
+        Space units of all pods together.
+    openings
+        When generation is down.
+    """
+
+    def __init__(
+        self,
+        config: BacklogReplenishment,
+        source: BundleSource,
+        capacity: float,
+        openings: Openings,
+    ) -> None:
+        self._top_up = BundleTopUp(config, capacity)
+        self._source = source
+        self._rest = Rest(openings)
+        self._drawn = 0
+
+    @property
+    def next_us(self) -> int:
+        """When a failed attempt may be repeated, or a down period ends."""
+        return self._rest.until_us
+
+    def draw(self, now_us: int, state: State) -> BundleArrival | None:
+        """Return a bundle if the backlog lacks one and the next one is not too large."""
+        load = state.load
+        wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_bundles, load)
+        if not self._rest.ends(now_us) or not wanted:
+            return None
+        draft = self._source.draw(self._drawn)
+        self._drawn += 1
+        if not self._top_up.accepts(load, draft.space):
+            self._top_up.failed(now_us / US_PER_S)
+            self._rest.block(now_us, self._top_up.blocked_until_s)
+            return None
+        return BundleArrival(now_us, *draft)

@@ -1,0 +1,81 @@
+"""Batches: things that come all at once, at given times of a cycle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
+
+from rmfs.scenario.clock import Cycle, nearest_us
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from rmfs.scenario.intake.state import State
+
+T = TypeVar("T")
+
+
+class Batch(NamedTuple):
+    """A batch.
+
+    Attributes
+    ----------
+    time_s
+        When it comes, time of the cycle.
+    lacks
+        Given the state and how many things of the batch have come, says whether more are to come.
+    """
+
+    time_s: float
+    lacks: Callable[[State, int], bool]
+
+
+def add(time_s: float, number: int) -> Batch:
+    """Return a batch of a given number of things, whatever the state."""
+    return Batch(time_s, lambda _state, come: come < number)
+
+
+class Batches(Generic[T]):
+    """Lets batches come (a process of an intake).
+
+    Parameters
+    ----------
+    batches
+        One at least.
+    cycle_s, gone_s
+        Length of the cycle, and its time at time zero.
+    make
+        Makes the k-th thing of all batches at a time; None if there is nothing to make it of, which
+        ends the batch.
+    """
+
+    def __init__(
+        self,
+        batches: Sequence[Batch],
+        cycle_s: float,
+        gone_s: float,
+        make: Callable[[int, int, State], T | None],
+    ) -> None:
+        self._batches = sorted(batches, key=lambda batch: batch.time_s)
+        phases_us = [nearest_us(batch.time_s) for batch in self._batches]
+        self._times = Cycle(cycle_s, gone_s).times_us(phases_us)
+        self._make = make
+        self._ordinal = 0
+        self._go_on()
+
+    def _go_on(self) -> None:
+        """Turn to the next batch."""
+        self.next_us, which = next(self._times)
+        self._lacks = self._batches[which].lacks
+        self._come = 0
+
+    def draw(self, now_us: int, state: State) -> T | None:
+        """Return the next thing of the batches whose time has come."""
+        while self.next_us <= now_us:
+            if self._lacks(state, self._come):
+                thing = self._make(self._ordinal, now_us, state)
+                self._ordinal += 1
+                if thing is not None:
+                    self._come += 1
+                    return thing
+            self._go_on()
+        return None

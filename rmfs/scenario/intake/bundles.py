@@ -1,0 +1,149 @@
+"""The intake of bundles."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.random import Stream
+from rmfs.scenario.bundles import BundleSource
+from rmfs.scenario.clock import Openings, first_us
+from rmfs.scenario.intake.backlog import BacklogBundles
+from rmfs.scenario.intake.batches import Batch, Batches, add
+from rmfs.scenario.intake.contents import BATCHES, INITIAL, REGULAR
+from rmfs.scenario.intake.intake import BundleArrival, Intake, Process
+from rmfs.scenario.intake.needed import NeededBundles
+from rmfs.scenario.intake.rates import rate_of
+from rmfs.scenario.intake.thinning import Candidate, poisson
+from rmfs.scenario.intake.timed import Timed, at_zero, share_of
+from rmfs.scenario.parameters import (
+    BacklogReplenishment,
+    NeededReplenishment,
+    PoissonReplenishment,
+    StreamReplenishment,
+)
+from rmfs.scenario.sources import bundle_stream
+from rmfs.scenario.substreams import Substreams
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from rmfs.scenario.intake.state import Site, State
+    from rmfs.scenario.parameters import BundleBatches, Scenario
+    from rmfs.scenario.skus import SkuSet
+    from rmfs.scenario.streams import StreamRecorder
+
+
+def bundle_intake(
+    scenario: Scenario,
+    skus: SkuSet,
+    site: Site,
+    seed: int,
+    recorder: StreamRecorder | None = None,
+) -> Intake[BundleArrival]:
+    """Return the intake of the bundles of a run.
+
+    Parameters
+    ----------
+    skus
+        Those of the scenario (`sku_set(scenario.skus)`).
+    site
+        What it needs to know of the warehouse.
+    seed
+        The run's seed.
+    recorder
+        Keeps all bundles.
+
+    Raises
+    ------
+    InputError
+        If a file is broken, or a bundle fits into no pod.
+    """
+    return _Bundles(scenario, skus, site, seed).intake(recorder)
+
+
+class _Bundles:
+    """Puts the intake of bundles together."""
+
+    def __init__(self, scenario: Scenario, skus: SkuSet, site: Site, seed: int) -> None:
+        self._scenario = scenario
+        self._skus = skus
+        self._site = site
+        self._seed = seed
+        self._gone_s = scenario.time_of_day_s
+        self._openings = Openings(scenario.replenishment.down, self._gone_s)
+
+    def intake(self, recorder: StreamRecorder | None) -> Intake[BundleArrival]:
+        processes = list(self._regular())
+        if self._scenario.replenishment.batches is not None:
+            processes.append(self._batches(self._scenario.replenishment.batches))
+        if recorder is None:
+            return Intake(processes)
+        keep = recorder.bundles.add
+        return Intake(processes, lambda bundle: keep(bundle.time_us, bundle.sku, bundle.units))
+
+    def _regular(self) -> Iterator[Process[BundleArrival]]:
+        config, capacity = self._scenario.replenishment, self._site.capacity
+        if isinstance(config, BacklogReplenishment):
+            yield BacklogBundles(config, self._source(REGULAR), capacity, self._openings)
+        elif isinstance(config, NeededReplenishment):
+            yield NeededBundles(config, self._skus, capacity, self._openings)
+        elif isinstance(config, StreamReplenishment):
+            yield self._from_file(config)
+        else:
+            if config.initial_bundles:
+                make = _drawn(self._source(INITIAL))
+                yield Timed(at_zero(config.initial_bundles), make)
+            yield self._poisson(config)
+
+    def _poisson(self, config: PoissonReplenishment) -> Timed[BundleArrival]:
+        scale = float(self._site.replenishment_stations) if config.per_station else 1.0
+        rate = rate_of(config.profile, config.bundles_per_h, scale, self._gone_s, self._seed)
+        until_us = first_us(self._scenario.warmup_s + self._scenario.duration_s)
+        substreams = Substreams(self._seed, Stream.BUNDLE_ARRIVALS)
+        return Timed(
+            poisson(rate, substreams, self._openings, until_us),
+            _drawn(self._source(REGULAR)),
+            share_of(config.tied_to),
+        )
+
+    def _from_file(self, config: StreamReplenishment) -> Timed[BundleArrival]:
+        stream = bundle_stream(config, self._skus, self._site.largest_pod)
+        space_per_unit: list[float] = self._skus.space_per_unit.tolist()
+        times_us = [self._openings.open_from_us(time_us) for time_us in stream.time_us.tolist()]
+
+        def make(candidate: Candidate, _state: State) -> BundleArrival:
+            sku, units = int(stream.sku[candidate.ordinal]), int(stream.units[candidate.ordinal])
+            return BundleArrival(candidate.time_us, sku, units, units * space_per_unit[sku])
+
+        return Timed((Candidate(*which) for which in enumerate(times_us)), make)
+
+    def _batches(self, config: BundleBatches) -> Batches[BundleArrival]:
+        source = self._source(BATCHES)
+        batches = [
+            *(_up_to(time_s, share * self._site.capacity) for time_s, share in config.fill_to),
+            *(add(time_s, number) for time_s, number in config.add),
+        ]
+        return Batches(
+            batches,
+            config.cycle_s,
+            self._gone_s,
+            lambda ordinal, now_us, _state: BundleArrival(now_us, *source.draw(ordinal)),
+        )
+
+    def _source(self, path: tuple[int, ...]) -> BundleSource:
+        config = self._scenario.replenishment
+        returns = 0.0
+        if isinstance(config, BacklogReplenishment | PoissonReplenishment):
+            returns = config.return_share
+        return BundleSource(self._skus, self._seed, returns, path)
+
+
+def _up_to(time_s: float, load: float) -> Batch:
+    """Return a batch after which the load is so many space units at least."""
+    return Batch(time_s, lambda state, _come: state.load < load)
+
+
+def _drawn(source: BundleSource) -> Callable[[Candidate, State], BundleArrival]:
+    return lambda candidate, _state: BundleArrival(
+        candidate.time_us, *source.draw(candidate.ordinal)
+    )

@@ -1,0 +1,64 @@
+"""What the orders of a scenario contain, whichever way they come."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.scenario.orders import OrderSource
+from rmfs.scenario.parameters import BacklogDemand, LetterSkus, WordOrders
+from rmfs.scenario.skus.letters import read_alphabet
+from rmfs.scenario.words import WordSource
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rmfs.scenario.intake.state import State
+    from rmfs.scenario.orders import OrderDraft
+    from rmfs.scenario.parameters import Scenario
+    from rmfs.scenario.skus import SkuSet
+
+    Contents = Callable[[int, State], OrderDraft | None]
+
+# numbers below the stream of contents: orders that are counted apart do not shift the others
+REGULAR: tuple[int, ...] = ()
+BATCHES = (1,)
+INITIAL = (2,)
+DUE_TIMES = (3,)
+
+_UNLIMITED = 2**62
+
+
+def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...]) -> Contents:
+    """Return the function that draws the contents of the k-th order.
+
+    Only those of a constant backlog look at stock; all others are the same whatever happens in a
+    run. Words never look at stock.
+
+    Parameters
+    ----------
+    path
+        Which orders.
+
+    Raises
+    ------
+    InputError
+        If an order may need more lines than there are SKUs to order.
+    """
+    if isinstance(scenario.orders, WordOrders):
+        assert isinstance(scenario.skus, LetterSkus)
+        words = WordSource(scenario.orders, read_alphabet(scenario.skus), seed, path)
+        return lambda ordinal, _state: words.draw(ordinal)
+    source = OrderSource(scenario.orders, skus, seed, scenario.name, path)
+    if isinstance(scenario.demand, BacklogDemand):
+        return lambda ordinal, state: source.draw(ordinal, state.uncommitted)
+    ordered = int(np.count_nonzero(skus.popularity))
+    if ordered < scenario.orders.lines.max:
+        raise InputError(
+            f"{scenario.name}: orders: lines.max = {scenario.orders.lines.max} exceeds the "
+            f"{ordered} SKUs with a popularity above zero"
+        )
+    unlimited = np.full(len(skus), _UNLIMITED)
+    return lambda ordinal, _state: source.draw(ordinal, unlimited)

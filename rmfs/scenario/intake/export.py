@@ -1,0 +1,99 @@
+"""Writing a stream that is fixed in advance."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, NoReturn, cast
+
+from rmfs.errors import InputError
+from rmfs.scenario.clock import first_us
+from rmfs.scenario.intake.bundles import bundle_intake
+from rmfs.scenario.intake.orders import order_intake
+from rmfs.scenario.sources import sku_set
+from rmfs.scenario.streams import StreamRecorder, write_stream
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rmfs.scenario.intake.intake import Intake
+    from rmfs.scenario.intake.state import Site, State
+    from rmfs.scenario.parameters import Scenario
+
+
+class ExportedStream(NamedTuple):
+    """A stream that was written.
+
+    Attributes
+    ----------
+    path
+        The file.
+    digest
+        SHA-256 of its content (`rmfs.scenario.streams.digest`).
+    number
+        Orders, or bundles, in it.
+    """
+
+    path: Path
+    digest: str
+    number: int
+
+
+class _DependsOnRunError(Exception):
+    """The state of a run was asked for."""
+
+
+class _NoState:
+    """Stands for the state of a run where there is none."""
+
+    def __getattr__(self, name: str) -> NoReturn:
+        raise _DependsOnRunError
+
+
+def export_stream(
+    scenario: Scenario,
+    what: Literal["orders", "bundles"],
+    path: Path,
+    site: Site,
+    seed: int = 0,
+) -> ExportedStream:
+    """Write all that a scenario lets come, from time zero to its end.
+
+    Parameters
+    ----------
+    path
+        Ends in .csv or .parquet.
+    site
+        The warehouse, for rates per station.
+    seed
+        The run's seed.
+
+    Raises
+    ------
+    InputError
+        If the stream depends on what happens in a run (a constant backlog, rates tied to active
+        stations, batches that fill up): such a stream can only be recorded.
+    """
+    skus = sku_set(scenario.skus)
+    recorder = StreamRecorder()
+    end_us = first_us(scenario.warmup_s + scenario.duration_s)
+    try:
+        if what == "orders":
+            _run(order_intake(scenario, skus, site, seed, recorder), end_us)
+            stream: Any = recorder.orders.build()
+        else:
+            _run(bundle_intake(scenario, skus, site, seed, recorder), end_us)
+            stream = recorder.bundles.build()
+    except _DependsOnRunError:
+        table = "demand" if what == "orders" else "replenishment"
+        raise InputError(
+            f"{scenario.name}: {table}: its {what} depend on what happens in a run; "
+            "they can be recorded, not exported"
+        ) from None
+    return ExportedStream(path, write_stream(stream, skus, path), len(stream))
+
+
+def _run(intake: Intake[Any], end_us: int) -> None:
+    now_us = 0
+    while now_us <= end_us:
+        for _ in intake.due(now_us, cast("State", _NoState())):
+            pass
+        now_us = intake.next_us

@@ -1,0 +1,111 @@
+"""An intake: several processes by which orders, or bundles, come into being."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar
+
+from rmfs.scenario.clock import US_PER_S, nearest_us
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from rmfs.scenario.intake.state import State
+    from rmfs.scenario.orders import OrderDraft
+
+
+class OrderArrival(NamedTuple):
+    """An order that comes now.
+
+    Attributes
+    ----------
+    time_us
+        Now.
+    skus, units
+        The SKU of each line, all different, and how many units of it.
+    due_us
+        When it is due.
+    redraws
+        How often a SKU was drawn of which too little was uncommitted.
+    """
+
+    time_us: int
+    skus: tuple[int, ...]
+    units: tuple[int, ...]
+    due_us: int
+    redraws: int
+
+    @classmethod
+    def of(cls, draft: OrderDraft, time_us: int) -> OrderArrival:
+        """Let a drawn order come at a time."""
+        due_us = time_us + nearest_us(draft.due_offset_s)
+        return cls(time_us, draft.skus, draft.units, due_us, draft.redraws)
+
+    @property
+    def due_s(self) -> float:
+        """When it is due, in s."""
+        return self.due_us / US_PER_S
+
+
+class BundleArrival(NamedTuple):
+    """A bundle that comes now: so many units of one SKU, and the space units they take."""
+
+    time_us: int
+    sku: int
+    units: int
+    space: float
+
+
+T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
+
+
+class Process(Protocol[T_co]):
+    """One way in which things come into being."""
+
+    @property
+    def next_us(self) -> int:
+        """When to be asked again at the latest; `NEVER_US`: after a change of state only."""
+
+    def draw(self, now_us: int, state: State) -> T_co | None:
+        """Return the next thing that comes now, or None if nothing more does."""
+
+
+class Intake(Generic[T]):
+    """All orders, or all bundles, of a run.
+
+    Parameters
+    ----------
+    processes
+        How they come into being; at one time, those of the first process come first.
+    record
+        Told of each.
+    """
+
+    def __init__(
+        self, processes: Sequence[Process[T]], record: Callable[[T], None] | None = None
+    ) -> None:
+        self._processes = processes
+        self._record = record
+
+    @property
+    def next_us(self) -> int:
+        """When to be asked again at the latest, after all that is due has been taken."""
+        return min(process.next_us for process in self._processes)
+
+    def due(self, now_us: int, state: State) -> Iterator[T]:
+        """Yield what comes now; the caller adds each to the state before it asks for the next.
+
+        To be asked at time zero, at `next_us`, and after every change of backlog or stock.
+
+        Parameters
+        ----------
+        now_us
+            Present time, not before that of the call before.
+        state
+            Is read anew for each thing.
+        """
+        for process in self._processes:
+            while (thing := process.draw(now_us, state)) is not None:
+                if self._record is not None:
+                    self._record(thing)
+                yield thing

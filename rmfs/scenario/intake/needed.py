@@ -1,0 +1,66 @@
+"""Bundles of what waiting orders lack."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.scenario.bundles import bundle_of_each
+from rmfs.scenario.clock import US_PER_S
+from rmfs.scenario.intake.backlog import Rest
+from rmfs.scenario.intake.intake import BundleArrival
+
+if TYPE_CHECKING:
+    from rmfs.scenario.clock import Openings
+    from rmfs.scenario.intake.state import State
+    from rmfs.scenario.parameters import NeededReplenishment
+    from rmfs.scenario.skus import SkuSet
+
+
+class NeededBundles:
+    """Orders from the supplier what is short (a process of an intake).
+
+    What is left of a SKU for further orders are the units stored and in bundles on their way, less
+    those that orders want; below the reorder point it is short. (With a reorder point of 0 only
+    what waiting orders lack comes.) The SKU of which least is left comes first; of several, the one
+    with the lowest index.
+
+    Parameters
+    ----------
+    config
+        The table `replenishment` of a scenario.
+    skus
+        The SKUs, with their bundle sizes.
+    capacity
+        Space units of all pods together.
+    openings
+        When generation is down.
+    """
+
+    def __init__(
+        self, config: NeededReplenishment, skus: SkuSet, capacity: float, openings: Openings
+    ) -> None:
+        self._config = config
+        self._bundles = bundle_of_each(skus)
+        self._limit = config.load_limit_share * capacity
+        self._rest = Rest(openings)
+
+    @property
+    def next_us(self) -> int:
+        """When a failed attempt may be repeated, or a down period ends."""
+        return self._rest.until_us
+
+    def draw(self, now_us: int, state: State) -> BundleArrival | None:
+        """Return a bundle if a SKU is short."""
+        if not self._rest.ends(now_us) or state.waiting_bundles >= self._config.bundles:
+            return None
+        left = state.uncommitted + state.incoming
+        sku = int(np.argmin(left))
+        if left[sku] >= self._config.reorder_below_units:
+            return None
+        bundle = self._bundles[sku]
+        if state.load + bundle.space > self._limit:
+            self._rest.block(now_us, now_us / US_PER_S + self._config.retry_s)
+            return None
+        return BundleArrival(now_us, *bundle)

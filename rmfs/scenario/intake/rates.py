@@ -1,0 +1,133 @@
+"""Rates of arrival that change over time."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from itertools import pairwise
+from typing import TYPE_CHECKING, Protocol
+
+from rmfs.errors import InputError
+from rmfs.random import Stream
+from rmfs.scenario.clock import US_PER_H, Cycle, nearest_us
+from rmfs.scenario.parameters.rates import HighLowRate, Steps
+from rmfs.scenario.substreams import Substreams
+
+if TYPE_CHECKING:
+    from rmfs.scenario.parameters.rates import AnyRate
+
+
+MOST_PER_H = 1e8
+"""Greatest rate: arrivals have to be some microseconds apart."""
+
+
+class Rate(Protocol):
+    """A rate of arrival per h.
+
+    Attributes
+    ----------
+    peak_per_h
+        No rate is greater.
+    """
+
+    peak_per_h: float
+
+    def per_h(self, time_us: int) -> float:
+        """Return the rate at a time."""
+
+
+def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: int) -> Rate:
+    """Return the rate that a scenario asks for.
+
+    Parameters
+    ----------
+    config
+        The table `profile`.
+    per_h
+        Its mean; with high-low its low value.
+    scale
+        Multiplies all rates of the scenario: how many stations they are for.
+    gone_s
+        Time of all cycles at time zero.
+    seed
+        The run's seed.
+
+    Raises
+    ------
+    InputError
+        If the rate is very large at some time.
+    """
+    rate: Rate
+    if isinstance(config, HighLowRate):
+        rate = _HighLow(config, per_h * scale, config.high_per_h * scale, seed)
+    elif isinstance(config, Steps):
+        rate = _InSteps(config, per_h * scale, gone_s)
+    else:
+        rate = _Constant(per_h * scale)
+    if rate.peak_per_h > MOST_PER_H:
+        raise InputError(f"a rate of {rate.peak_per_h:g} per h is too large (most: {MOST_PER_H:g})")
+    return rate
+
+
+class _Constant:
+    def __init__(self, per_h: float) -> None:
+        self.peak_per_h = per_h
+
+    def per_h(self, time_us: int) -> float:
+        return self.peak_per_h
+
+
+class _InSteps:
+    """Steps with the given mean over a cycle.
+
+    Each weight counts with the length of its own step. (RAWSim-O multiplies it by the length of the
+    step before: there the first step counts nothing and the last is left out.)
+    """
+
+    def __init__(self, config: Steps, mean_per_h: float, gone_s: float) -> None:
+        self._cycle = Cycle(config.cycle_s, gone_s)
+        count = len(config.weights)
+        starts_s = config.starts_s or [config.cycle_s * step / count for step in range(count)]
+        ends_s = [*starts_s, config.cycle_s]
+        # fsum is correctly rounded, so that the rates are the same on every processor
+        total = math.fsum(
+            weight * (end - start)
+            for weight, (start, end) in zip(config.weights, pairwise(ends_s), strict=True)
+        )
+        self._starts_us = [nearest_us(start_s) for start_s in starts_s]
+        self._per_h = [mean_per_h * weight * config.cycle_s / total for weight in config.weights]
+        self.peak_per_h = max(self._per_h)
+
+    def per_h(self, time_us: int) -> float:
+        return self._per_h[bisect_right(self._starts_us, self._cycle.phase_us(time_us)) - 1]
+
+
+class _HighLow:
+    """Low and high periods of exponential length, the same for orders and bundles of a run."""
+
+    def __init__(self, config: HighLowRate, low_per_h: float, high_per_h: float, seed: int) -> None:
+        self._rates = low_per_h, high_per_h
+        self.peak_per_h = max(self._rates)
+        self._switches_per_h = config.low_to_high_per_h, config.high_to_low_per_h
+        self._substreams = Substreams(seed, Stream.ORDER_ARRIVALS, (1,))
+        self._switches_us: list[int] = []
+
+    def per_h(self, time_us: int) -> float:
+        switches = self._switches_us
+        while not switches or switches[-1] <= time_us:
+            switches.append((switches[-1] if switches else 0) + self._length_us(len(switches)))
+        return self._rates[bisect_right(switches, time_us) % 2]
+
+    def _length_us(self, period: int) -> int:
+        """Length of a period; those with even numbers are low."""
+        uniform = self._substreams.at(period)()
+        return exponential_us(uniform, self._switches_per_h[period % 2])
+
+
+def exponential_us(uniform: float, per_h: float) -> int:
+    """Turn a number in [0, 1) into the time to the next event of a Poisson process.
+
+    In whole microseconds it is the same on every processor, whose logarithms may differ in the last
+    bits.
+    """
+    return round(-math.log1p(-uniform) / per_h * US_PER_H)

@@ -1,0 +1,68 @@
+"""Things that come at times fixed in advance."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Generic, TypeVar
+
+from rmfs.scenario.clock import NEVER_US
+from rmfs.scenario.intake.thinning import Candidate
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from rmfs.scenario.intake.state import State
+    from rmfs.scenario.parameters.rates import TiedTo
+
+T = TypeVar("T")
+
+
+class Timed(Generic[T]):
+    """Lets things come at the times of candidates (a process of an intake).
+
+    Parameters
+    ----------
+    candidates
+        In order of time.
+    make
+        Makes the thing of a candidate.
+    share
+        Share of active stations to which the rate is tied, if it is.
+    """
+
+    def __init__(
+        self,
+        candidates: Iterator[Candidate],
+        make: Callable[[Candidate, State], T],
+        share: Callable[[State], float] | None = None,
+    ) -> None:
+        self._candidates = candidates
+        self._make = make
+        self._share = share
+        self._next = next(candidates, None)
+
+    @property
+    def next_us(self) -> int:
+        """Time of the next candidate."""
+        return NEVER_US if self._next is None else self._next.time_us
+
+    def draw(self, now_us: int, state: State) -> T | None:
+        """Return the next thing whose time has come."""
+        while (candidate := self._next) is not None and candidate.time_us <= now_us:
+            self._next = next(self._candidates, None)
+            if self._share is None or candidate.needed_share < self._share(state):
+                return self._make(candidate, state)
+        return None
+
+
+def at_zero(number: int) -> Iterator[Candidate]:
+    """Yield a number of arrivals at time zero."""
+    return (Candidate(ordinal, 0) for ordinal in range(number))
+
+
+def share_of(tied_to: TiedTo) -> Callable[[State], float] | None:
+    """Return the function that reads the share of active stations, if a rate is tied to them."""
+    if tied_to == "pick-stations":
+        return lambda state: state.active_pick_share
+    if tied_to == "replenishment-stations":
+        return lambda state: state.active_replenishment_share
+    return None

@@ -1,0 +1,30 @@
+"""What a scenario file says.
+
+Names and default values follow the settings of RAWSim-O (its file format .xsett), in plain words
+and with the unit as suffix. A `Field` description is the one place where a parameter is explained:
+`rmfs scenario show` writes it into the file as a comment.
+"""
+
+from rmfs.scenario.parameters.calendar import BundleBatches as BundleBatches
+from rmfs.scenario.parameters.calendar import DownPeriods as DownPeriods
+from rmfs.scenario.parameters.calendar import OrderBatches as OrderBatches
+from rmfs.scenario.parameters.demand import BacklogDemand as BacklogDemand
+from rmfs.scenario.parameters.demand import Demand as Demand
+from rmfs.scenario.parameters.demand import PoissonDemand as PoissonDemand
+from rmfs.scenario.parameters.demand import StreamDemand as StreamDemand
+from rmfs.scenario.parameters.orders import AnyOrders as AnyOrders
+from rmfs.scenario.parameters.orders import Orders as Orders
+from rmfs.scenario.parameters.orders import WordOrders as WordOrders
+from rmfs.scenario.parameters.orders import not_above_skus as not_above_skus
+from rmfs.scenario.parameters.replenishment import BacklogReplenishment as BacklogReplenishment
+from rmfs.scenario.parameters.replenishment import NeededReplenishment as NeededReplenishment
+from rmfs.scenario.parameters.replenishment import PoissonReplenishment as PoissonReplenishment
+from rmfs.scenario.parameters.replenishment import Replenishment as Replenishment
+from rmfs.scenario.parameters.replenishment import StreamReplenishment as StreamReplenishment
+from rmfs.scenario.parameters.scenario import Scenario as Scenario
+from rmfs.scenario.parameters.scenario import Stock as Stock
+from rmfs.scenario.parameters.skus import GeneratedAffinity as GeneratedAffinity
+from rmfs.scenario.parameters.skus import GeneratedSkus as GeneratedSkus
+from rmfs.scenario.parameters.skus import LetterSkus as LetterSkus
+from rmfs.scenario.parameters.skus import SkuFile as SkuFile
+from rmfs.scenario.parameters.skus import Skus as Skus

@@ -1,0 +1,103 @@
+"""What happens at given times of a cycle, usually the day: down periods and batches."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Annotated
+
+import pydantic
+from pydantic import Field
+
+from rmfs.scenario.quantities import Block, Count, NotNegative, Positive
+
+DAY_S = 86400.0
+LEAST_OPEN_S = 1.0
+
+Cycle = Annotated[float, Field(ge=1, description="s after which everything comes again")]
+
+Period = Annotated[tuple[NotNegative, Positive], pydantic.Strict(strict=False)]
+Periods = Annotated[tuple[Period, ...], pydantic.Strict(strict=False)]
+Number = Annotated[tuple[NotNegative, Count], pydantic.Strict(strict=False)]
+Numbers = Annotated[tuple[Number, ...], pydantic.Strict(strict=False)]
+Level = Annotated[
+    tuple[NotNegative, Annotated[float, Field(gt=0, le=1)]], pydantic.Strict(strict=False)
+]
+Levels = Annotated[tuple[Level, ...], pydantic.Strict(strict=False)]
+
+
+class DownPeriods(Block):
+    """Times at which nothing is generated.
+
+    A backlog is not topped up, a Poisson rate is zero, and what a file gives for such a time comes
+    when the period ends. Batches come in any case.
+    """
+
+    cycle_s: Cycle = DAY_S
+    periods_s: Periods = Field(
+        min_length=1, description="pairs of first and last s of the cycle, in order"
+    )
+
+    @pydantic.field_validator("periods_s")
+    @classmethod
+    def _in_order(
+        cls, value: tuple[Period, ...], info: pydantic.ValidationInfo
+    ) -> tuple[Period, ...]:
+        cycle_s = info.data.get("cycle_s")
+        if cycle_s is None:
+            return value
+        last_s = 0.0
+        for begin_s, end_s in value:
+            if not last_s <= begin_s < end_s <= cycle_s:
+                raise ValueError(
+                    f"must be in order, not overlap and end by cycle_s = {cycle_s:g}: "
+                    f"[{begin_s:g}, {end_s:g}] does not"
+                )
+            last_s = end_s
+        if sum(end_s - begin_s for begin_s, end_s in value) > cycle_s - LEAST_OPEN_S:
+            raise ValueError(f"must leave {LEAST_OPEN_S:g} s of the cycle at least")
+        return value
+
+
+class _Batches(Block):
+    cycle_s: Cycle = DAY_S
+    fill_to: tuple[tuple[float, float], ...]
+    add: Numbers = Field((), description="pairs of s of the cycle and how many more come then")
+
+    @pydantic.field_validator("fill_to", "add")
+    @classmethod
+    def _in_order(
+        cls, value: tuple[tuple[float, float], ...], info: pydantic.ValidationInfo
+    ) -> tuple[tuple[float, float], ...]:
+        cycle_s = info.data.get("cycle_s")
+        times_s = [time_s for time_s, _ in value]
+        if cycle_s is not None and times_s and times_s[-1] >= cycle_s:
+            raise ValueError(f"times must be less than cycle_s = {cycle_s:g}")
+        if any(later <= sooner for sooner, later in itertools.pairwise(times_s)):
+            raise ValueError("times must be in order")
+        return value
+
+    @pydantic.model_validator(mode="after")
+    def _not_empty(self) -> _Batches:
+        if not self.fill_to and not self.add:
+            raise ValueError("fill_to or add must list a batch")
+        return self
+
+
+class OrderBatches(_Batches):
+    """Orders that come all at once, besides all others."""
+
+    fill_to: Numbers = Field(
+        (),
+        description="pairs of s of the cycle and orders to wait then: what is missing comes",
+    )
+    per_station: bool = Field(True, description="whether orders are counted per pick station")
+
+
+class BundleBatches(_Batches):
+    """Bundles that come all at once, besides all others."""
+
+    fill_to: Levels = Field(
+        (),
+        description="pairs of s of the cycle and share of the pods' capacity: bundles come until "
+        "the load (stored, under way, waiting) reaches it",
+    )

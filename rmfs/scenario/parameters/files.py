@@ -1,0 +1,35 @@
+"""Files that a scenario names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import pydantic
+
+
+def existing(*suffixes: str) -> pydantic.AfterValidator:
+    """Check that a file exists and is of a kind that can be read.
+
+    Parameters
+    ----------
+    suffixes
+        The endings it may have, such as `.csv`; none: any.
+    """
+
+    def check(path: Path) -> Path:
+        if suffixes and path.suffix.lower() not in suffixes:
+            raise ValueError(f"must end in {' or '.join(suffixes)}")
+        if not path.is_file():
+            raise ValueError("no such file")
+        return path
+
+    return pydantic.AfterValidator(check)
+
+
+StreamFile = Annotated[Path, pydantic.Strict(strict=False), existing(".csv", ".parquet", ".xitem")]
+"""Orders or bundles with their times."""
+
+SkuSetFile = Annotated[Path, pydantic.Strict(strict=False), existing(".json", ".xgenc", ".xitem")]
+
+WordFile = Annotated[Path, pydantic.Strict(strict=False), existing()]

@@ -1,0 +1,55 @@
+"""The whole scenario."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import pydantic
+from pydantic import Field
+
+from rmfs.scenario.parameters.demand import BacklogDemand, Demand
+from rmfs.scenario.parameters.orders import AnyOrders, Orders, WordOrders, not_above_skus
+from rmfs.scenario.parameters.replenishment import BacklogReplenishment, Replenishment
+from rmfs.scenario.parameters.skus import GeneratedSkus, LetterSkus, Skus
+from rmfs.scenario.quantities import Block, NotNegative, Positive, Share
+
+
+class Stock(Block):
+    """What the pods hold at time zero."""
+
+    initial_share: Share = Field(0.7, description="share of the pods' capacity filled at time zero")
+
+
+class Scenario(Block):
+    """All that a run is asked to do, apart from the warehouse and its controllers."""
+
+    format: Literal["rmfs-scenario/1"] = Field(description="version of this format")
+    name: str = Field(min_length=1, description="name shown in results")
+    description: str = Field("", description="what the scenario is for")
+    duration_s: Positive = Field(description="s, measured, after the warm-up")
+    warmup_s: NotNegative = Field(3600.0, description="s simulated first and not measured")
+    time_of_day_s: NotNegative = Field(
+        0.0, description="s of all cycles (profiles, batches, down periods) gone at time zero"
+    )
+    skus: Skus = Field(GeneratedSkus(), description="the SKUs, and how often each is ordered")
+    orders: AnyOrders = Field(Orders(), description="what an order contains")
+    stock: Stock = Field(Stock(), description="what the pods hold at time zero")
+    demand: Demand = Field(BacklogDemand(), description="when orders arrive")
+    replenishment: Replenishment = Field(BacklogReplenishment(), description="when bundles arrive")
+
+    @pydantic.field_validator("orders", "demand", "replenishment", mode="before")
+    @classmethod
+    def _default_kind(cls, value: Any, info: pydantic.ValidationInfo) -> Any:
+        """Let a table that does not name its kind be of the default kind."""
+        key, kind = ("content", "skus") if info.field_name == "orders" else ("mode", "backlog")
+        return {key: kind, **value} if isinstance(value, dict) else value
+
+    @pydantic.field_validator("orders")
+    @classmethod
+    def _fits_skus(cls, value: AnyOrders, info: pydantic.ValidationInfo) -> AnyOrders:
+        skus = info.data.get("skus")
+        if isinstance(value, Orders) and isinstance(skus, GeneratedSkus):
+            not_above_skus(value.lines.max, skus.count)
+        if skus is not None and isinstance(value, WordOrders) != isinstance(skus, LetterSkus):
+            raise ValueError('content = "words" and skus.words need each other')
+        return value

@@ -1,0 +1,119 @@
+"""Where the SKUs come from: drawn, from a file, or the letters of words."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import pydantic
+from pydantic import Field
+
+from rmfs.scenario.counts import Counts, UniformCount
+from rmfs.scenario.distributions import Constant, Gamma, Popularity, Space, Uniform
+from rmfs.scenario.parameters.files import SkuSetFile, WordFile
+from rmfs.scenario.quantities import Block, Count, Natural, NotNegative, Positive, Share
+
+OWN_SEED = "seed of the SKUs, not of the run: runs with different seeds share their SKUs"
+
+
+class _Sizes(Block):
+    seed: Natural = Field(0, description=OWN_SEED)
+    space_per_unit: Space = Field(
+        Uniform(min=2.0, max=8.0), description="space units that one unit of a SKU takes"
+    )
+    bundle_units: Counts = Field(
+        UniformCount(min=4, max=12), description="units in a replenishment bundle of a SKU"
+    )
+
+
+class GeneratedAffinity(Block):
+    """Pairs of SKUs that are ordered together.
+
+    Each SKU is a point drawn in the unit square; the weight of a pair is sqrt(2) less the distance
+    of its points.
+    """
+
+    share: Share = Field(
+        description="probability that a further line follows affinity, not popularity"
+    )
+    pairs: Natural = Field(0, description="pairs of SKUs with a weight of their own, drawn")
+    default_weight: NotNegative = Field(0.2, description="weight of all other pairs")
+
+
+class GeneratedSkus(_Sizes):
+    """SKUs drawn from distributions.
+
+    Their seed belongs to the scenario, as a published SKU file would: runs with different seeds
+    share their SKUs and differ in stock and demand.
+    """
+
+    count: Count = Field(1000, description="number of SKUs")
+    popularity: Popularity = Field(
+        Gamma(shape=1.0, scale=2.0, min=1.0),
+        description="relative weight with which a SKU is ordered and replenished",
+    )
+    affinity: GeneratedAffinity | None = Field(
+        None, description="which SKUs are ordered together; default: each line for itself"
+    )
+
+    @pydantic.field_validator("affinity")
+    @classmethod
+    def _enough_skus(
+        cls, value: GeneratedAffinity | None, info: pydantic.ValidationInfo
+    ) -> GeneratedAffinity | None:
+        count = info.data.get("count")
+        if value is not None and count is not None and value.pairs > count * (count - 1) // 2:
+            raise ValueError(f"{count} SKUs have only {count * (count - 1) // 2} pairs")
+        return value
+
+
+class SkuFile(_Sizes):
+    """SKUs from a file.
+
+    Popularity and affinity come from the file; space and bundle sizes too, unless it has none:
+    then they are drawn as said here.
+    """
+
+    file: SkuSetFile = Field(
+        description="SKU set: .json (rmfs-skus/1), .xgenc or .xitem, relative to the scenario file"
+    )
+
+
+class LetterSkus(_Sizes):
+    """The letters of a list of words, each in several colours (Alphabet Soup).
+
+    A SKU is a letter in one colour; how often it is ordered follows from the words.
+    """
+
+    words: WordFile = Field(description="text file, a word a line, relative to the scenario file")
+    colours: dict[str, Positive] = Field(
+        {"blue": 1.0, "green": 1.0, "red": 1.0},
+        min_length=1,
+        max_length=100,
+        description="relative weight of each colour",
+    )
+    space_per_unit: Space = Field(
+        Constant(value=5.0), description="space units that one unit of a SKU takes"
+    )
+    bundle_units: Counts = Field(
+        UniformCount(min=6, max=6), description="units in a replenishment bundle of a SKU"
+    )
+
+
+_SOURCES = {"file": SkuFile, "words": LetterSkus}
+
+
+def _source(value: Any) -> str:
+    """Tell which of the tables of SKUs is meant."""
+    if isinstance(value, GeneratedSkus | SkuFile | LetterSkus):
+        return type(value).__name__
+    given = value if isinstance(value, dict) else {}
+    named = [source for key, source in _SOURCES.items() if key in given]
+    return (named[0] if named else GeneratedSkus).__name__
+
+
+Skus = Annotated[
+    Annotated[GeneratedSkus, pydantic.Tag("GeneratedSkus")]
+    | Annotated[SkuFile, pydantic.Tag("SkuFile")]
+    | Annotated[LetterSkus, pydantic.Tag("LetterSkus")],
+    pydantic.Discriminator(_source),
+]

@@ -1,0 +1,42 @@
+"""All problems of a file in one line."""
+
+from __future__ import annotations
+
+from rmfs.errors import InputError
+
+MOST_SHOWN = 10
+"""Problems named in one message; the others are counted."""
+
+
+class Problems:
+    """Collects what is wrong with a file.
+
+    Parameters
+    ----------
+    source
+        Name of the file.
+    """
+
+    def __init__(self, source: object) -> None:
+        self._source = source
+        self._shown: list[str] = []
+        self.count = 0
+
+    def add(self, problem: str) -> None:
+        """Take note of a problem; memory does not grow with their number."""
+        self.count += 1
+        if len(self._shown) < MOST_SHOWN:
+            self._shown.append(problem)
+
+    def stop_if_any(self) -> None:
+        """Raise an error if there is a problem.
+
+        Raises
+        ------
+        InputError
+            One line with the first problems and the number of the others.
+        """
+        if self.count:
+            more = self.count - len(self._shown)
+            tail = [f"and {more} more"] if more else []
+            raise InputError(f"{self._source}: {'; '.join(self._shown + tail)}")

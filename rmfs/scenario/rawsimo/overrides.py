@@ -1,0 +1,57 @@
+"""The block of a settings file that changes the layout."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rmfs.scenario.rawsimo.settings import Settings
+
+_NUMBERS = {
+    "OverrideBotPodTransferTime": "pod_transfer_s",
+    "OverrideBotMaxAcceleration": "acceleration_m_s2",
+    "OverrideBotMaxDeceleration": "deceleration_m_s2",
+    "OverrideBotMaxVelocity": "top_speed_m_s",
+    "OverrideBotTurnSpeed": "full_turn_s",
+    "OverridePodCapacity": "pod_capacity",
+    "OverrideInputStationCapacity": "replenishment_station_capacity",
+    "OverrideInputStationItemBundleTransferTime": "bundle_transfer_s",
+    "OverrideOutputStationItemTransferTime": "unit_transfer_s",
+    "OverrideOutputStationItemPickTime": "unit_pick_s",
+}
+_COUNTS = {"OverrideOutputStationCapacity": "order_slots"}
+_OF_THE_LAYOUT = {
+    "OverrideInputStationCount": "a factor: set the replenishment stations of the layout",
+    "OverrideOutputStationCount": "a factor: set the pick stations of the layout",
+    "OverrideBotCountPerOStation": "set layout.robots to this many times its pick stations",
+}
+
+
+def layout_overrides(block: Settings) -> list[tuple[list[str], Any]]:
+    """Return what is asked of the layout as pairs of path and value.
+
+    A switch is an element, its value another one whose name begins alike.
+
+    Raises
+    ------
+    InputError
+        If a switch or a value is wrong.
+    """
+    overrides: list[tuple[list[str], Any]] = []
+    for switch in (*_NUMBERS, *_COUNTS, *_OF_THE_LAYOUT):
+        values = [tag for tag in block.tags if tag.startswith(switch) and tag != switch]
+        if not block.switch(switch, default=False):
+            block.leave(values, f"{switch} is not true")
+            continue
+        if len(values) != 1:
+            raise block.error(switch, "is true, but has not one value")
+        if switch in _OF_THE_LAYOUT:
+            given = block.number(values[0], 0.0)
+            block.note(f"{switch} = {given:g} not applied: {_OF_THE_LAYOUT[switch]}")
+            continue
+        key = _NUMBERS.get(switch) or _COUNTS[switch]
+        value = block.whole(values[0], 0) if switch in _COUNTS else block.number(values[0], 0.0)
+        overrides.append((["layout", key], value))
+        block.note(f"{switch} belongs to the layout: --set layout.{key}={value:g}")
+    block.leave_rest()
+    return overrides

@@ -1,0 +1,45 @@
+"""Where RAWSim-O looks for the files that its settings name."""
+
+from __future__ import annotations
+
+from pathlib import Path, PureWindowsPath
+
+from rmfs.errors import InputError
+
+_FOLDERS = (
+    *(".", "Resources", "resources", "Wordlists", "wordlists", "Resources/Wordlists"),
+    *("Material/Resources", "Material/Resources/Wordlists"),
+)
+
+
+def find_beside(settings: Path, named: str, suffix: str) -> Path:
+    """Find a file that a settings file names.
+
+    First the path as given, from the folder of the settings file; then the bare name there and in
+    every folder above, each with its folders of resources.
+
+    Parameters
+    ----------
+    suffix
+        How the name must end: a settings file from anybody does not make us read other files.
+
+    Raises
+    ------
+    InputError
+        If there is no such file.
+    """
+    # the names were written on Windows
+    path = Path(PureWindowsPath(named).as_posix())
+    if path.suffix.lower() != suffix:
+        raise InputError(f"{settings}: names the file {named!r:.80}, expected a {suffix} file")
+    folder = settings.resolve().parent
+    candidates = [folder / path]
+    for above in (folder, *folder.parents):
+        candidates += [above / resources / path.name for resources in _FOLDERS]
+    for candidate in candidates:
+        if candidate.is_file():
+            return candidate.resolve()
+    raise InputError(
+        f"{settings}: names the file {named}, which is not beside it and in no folder of resources "
+        "above it"
+    )

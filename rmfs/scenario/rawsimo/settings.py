@@ -1,0 +1,140 @@
+"""Typed access to the elements of an .xsett file, with notes on what was not asked for."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
+    from xml.etree.ElementTree import Element
+
+
+class Settings:
+    """One block of a settings file; remembers which elements have been read.
+
+    Parameters
+    ----------
+    element
+        The block; None: absent, all values are the defaults.
+    path
+        The file, for messages.
+    notes
+        Where to say what is not used.
+    """
+
+    def __init__(self, element: Element | None, path: Path, notes: list[str]) -> None:
+        self._path = path
+        self._notes = notes
+        self._elements: dict[str, Element] = {}
+        self._read: set[str] = set()
+        for child in () if element is None else element:
+            if child.tag in self._elements:
+                raise self.error(child.tag, "occurs twice")
+            self._elements[child.tag] = child
+
+    def __contains__(self, tag: str) -> bool:
+        return tag in self._elements
+
+    @property
+    def tags(self) -> list[str]:
+        """Names of all elements there are."""
+        return list(self._elements)
+
+    def error(self, tag: str, problem: str) -> InputError:
+        """Return the error that names an element and what is wrong with it."""
+        return InputError(f"{self._path}: {tag}: {problem}")
+
+    def note(self, text: str) -> None:
+        """Add a remark."""
+        self._notes.append(text)
+
+    def text(self, tag: str, default: str = "") -> str:
+        """Return the text of an element."""
+        self._read.add(tag)
+        element = self._elements.get(tag)
+        return default if element is None else (element.text or "").strip()
+
+    def choice(self, tag: str, choices: Mapping[str, str], default: str) -> str:
+        """Return what a word stands for."""
+        word = self.text(tag, default)
+        if word not in choices:
+            raise self.error(tag, f"must be one of {', '.join(choices)} (given: {word!r:.40})")
+        return choices[word]
+
+    def number(self, tag: str, default: float) -> float:
+        """Return a finite number."""
+        return default if tag not in self else self._number(tag, self.text(tag))
+
+    def whole(self, tag: str, default: int) -> int:
+        """Return a whole number."""
+        number = self.number(tag, default)
+        if number % 1:
+            raise self.error(tag, f"must be a whole number (given: {number:g})")
+        return int(number)
+
+    def switch(self, tag: str, default: bool) -> bool:
+        """Return true or false."""
+        return default if tag not in self else self._switch(tag, self.text(tag))
+
+    def block(self, tag: str) -> Settings:
+        """Return a block within this one."""
+        self._read.add(tag)
+        return Settings(self._elements.get(tag), self._path, self._notes)
+
+    def pairs(self, tag: str) -> list[tuple[float, float]]:
+        """Return a list of keys and values, in order of the keys."""
+        return sorted(
+            (self._number(tag, key), self._number(tag, value)) for key, value in self._pairs(tag)
+        )
+
+    def switches(self, tag: str) -> list[tuple[float, bool]]:
+        """Return a list of keys, and true or false for each, in order of the keys."""
+        return sorted(
+            (self._number(tag, key), self._switch(tag, value)) for key, value in self._pairs(tag)
+        )
+
+    def weights(self, tag: str) -> dict[str, float]:
+        """Return a list of words and their positive numbers; words with zero are left out."""
+        numbers = {key: self._number(tag, value) for key, value in self._pairs(tag)}
+        return {key: number for key, number in numbers.items() if number}
+
+    def leave(self, tags: Iterable[str], reason: str) -> None:
+        """Note of elements that are known and not used why that is."""
+        present = [tag for tag in tags if tag in self]
+        self._read.update(present)
+        if present:
+            self.note(f"{', '.join(present)} not used: {reason}")
+
+    def leave_rest(self) -> None:
+        """Note the elements that nobody asked for."""
+        unknown = [tag for tag in self._elements if tag not in self._read]
+        if unknown:
+            self.note(
+                f"{', '.join(unknown)} unknown, left out "
+                "(RAWSim-O ignores what it does not know without a word)"
+            )
+
+    def _pairs(self, tag: str) -> list[tuple[str, str]]:
+        self._read.add(tag)
+        return [
+            ((pair.findtext("Key") or "").strip(), (pair.findtext("Value") or "").strip())
+            for pair in self._elements.get(tag, ())
+        ]
+
+    def _number(self, tag: str, text: str) -> float:
+        try:
+            number = float(text)
+        except ValueError:
+            number = math.nan
+        if not math.isfinite(number):
+            raise self.error(tag, f"must be a finite number (given: {text!r:.40})")
+        return number
+
+    def _switch(self, tag: str, text: str) -> bool:
+        if text not in ("true", "false", "1", "0"):
+            raise self.error(tag, f"must be true or false (given: {text!r:.40})")
+        return text in ("true", "1")

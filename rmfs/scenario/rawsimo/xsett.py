@@ -1,0 +1,81 @@
+"""Reader for RAWSim-O's scenarios (.xsett).
+
+Every element is mapped to a parameter of ours, or named in a note together with the reason why not.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from rmfs.scenario.rawsimo.inventory import Inventory
+from rmfs.scenario.rawsimo.overrides import layout_overrides
+from rmfs.scenario.rawsimo.settings import Settings
+from rmfs.xml import read_root
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from typing import Any
+
+    from rmfs.config import Table
+
+ROOT = "SettingConfiguration"
+
+_NOT_USED = {
+    "the seed is given with the run": ("Seed",),
+    "what is printed and written does not depend on the scenario": (
+        *("LogLevel", "LogFileLevel", "DebugMode", "MonitorWellSortedness"),
+        *("IntenseLocationPolling", "StationShutdownThresholdTime"),
+    ),
+    "robots stop exactly at waypoints": ("Tolerance",),
+    "robots always accelerate, turn in time and use queue zones": (
+        *("UseAcceleration", "UseTurnDelay", "QueueHandlingEnabled"),
+    ),
+    "drawing only": ("RotatePods",),
+    "a controller that needs it counts for itself": ("CorrelativeFrequencyTracking",),
+    "RAWSim-O itself has dropped it": ("HeatMode", "PPInstanceDumpFrequency"),
+}
+_COMMENTS = ("CommentTag1", "CommentTag2", "CommentTag3")
+
+
+class ImportedSettings(NamedTuple):
+    """What a settings file says.
+
+    Attributes
+    ----------
+    table
+        The scenario, not yet validated; files in it are absolute.
+    notes
+        What was left out and what we do differently.
+    layout
+        What the file asks of the layout, as overrides: paths that begin with `layout`, and values.
+    """
+
+    table: Table
+    notes: list[str]
+    layout: list[tuple[list[str], Any]]
+
+
+def read_xsett(path: Path) -> ImportedSettings:
+    """Read a settings file; what it does not say takes RAWSim-O's default.
+
+    Raises
+    ------
+    InputError
+        If the file is not such XML, a value is wrong, or a file it names is missing.
+    """
+    notes: list[str] = []
+    settings = Settings(read_root(path, ROOT), path, notes)
+    table: Table = {
+        "format": "rmfs-scenario/1",
+        "name": settings.text("Name") or path.stem,
+        "duration_s": settings.number("SimulationDuration", 172800.0),
+        "warmup_s": settings.number("SimulationWarmupTime", 0.0),
+    }
+    comments = [text for tag in _COMMENTS if (text := settings.text(tag))]
+    table["description"] = "; ".join(comments) or f"imported from RAWSim-O's {path.name}"
+    table |= Inventory(settings.block("InventoryConfiguration"), path).tables()
+    layout = layout_overrides(settings.block("OverrideConfig"))
+    for reason, tags in _NOT_USED.items():
+        settings.leave(tags, reason)
+    settings.leave_rest()
+    return ImportedSettings(table, notes, layout)

@@ -1,0 +1,21 @@
+"""SKUs: sets of them as arrays, drawn, read, written and drawn as a curve."""
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.scenario.skus.affinity import Affinity as Affinity
+from rmfs.scenario.skus.drawing import draw_sku_set as draw_sku_set
+from rmfs.scenario.skus.file import read_sku_set as read_sku_set
+from rmfs.scenario.skus.file import write_sku_set as write_sku_set
+from rmfs.scenario.skus.sku_set import SkuSet as SkuSet
+
+if TYPE_CHECKING:
+    from rmfs.scenario.skus.picture import draw_popularity as draw_popularity
+
+
+def __getattr__(name: str) -> Any:
+    """Import what draws when it is asked for: runs do without matplotlib."""
+    if name == "draw_popularity":
+        from rmfs.scenario.skus import picture
+
+        return picture.draw_popularity
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

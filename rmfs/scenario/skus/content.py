@@ -1,0 +1,40 @@
+"""What a RAWSim-O file says of its SKUs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rmfs.scenario.skus.affinity import Affinity
+
+
+@dataclass(frozen=True)
+class SkuFileContent:
+    """K SKUs in the order in which the file lists them; what is None the file does not say.
+
+    Attributes
+    ----------
+    ids
+        Number of each SKU, shape (K,).
+    popularity
+        Relative weight with which each is ordered, shape (K,).
+    space_per_unit
+        Space units, shape (K,).
+    bundle_units
+        Units per bundle, shape (K,).
+    affinity
+        Weights of pairs; None if the file neither lists any nor uses them.
+    names
+        What each SKU is called, or nothing.
+    """
+
+    ids: NDArray[np.int64]
+    popularity: NDArray[np.float64]
+    space_per_unit: NDArray[np.float64] | None = None
+    bundle_units: NDArray[np.int64] | None = None
+    affinity: Affinity | None = None
+    names: tuple[str, ...] = ()

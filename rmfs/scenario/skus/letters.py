@@ -1,0 +1,126 @@
+"""Coloured letters as SKUs, after Alphabet Soup.
+
+The simulator "Alphabet Soup" emulates orders as words: each letter is a tile of some colour that
+has to be picked. RAWSim-O kept that as its letter mode (item type Letter).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.scenario import exact
+from rmfs.scenario.problems import Problems
+from rmfs.scenario.skus.drawing import draw_bundle_units, draw_space
+from rmfs.scenario.skus.sku_set import SkuSet
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rmfs.scenario.parameters import LetterSkus
+
+LONGEST_WORD = 64
+MOST_WORDS = 1_000_000
+
+_LONGEST_LINE = 8 * LONGEST_WORD
+
+
+@dataclass(frozen=True)
+class Alphabet:
+    """Words and the colours of their letters; a SKU is a letter in one colour.
+
+    SKUs are numbered letter by letter in alphabetical order, and for each letter colour by colour
+    in the order given.
+
+    Attributes
+    ----------
+    words
+        Each as the numbers of its letters.
+    letters
+        All letters of the words, in order.
+    colours
+        Weight of each colour by its name.
+    """
+
+    words: tuple[tuple[int, ...], ...]
+    letters: tuple[str, ...]
+    colours: dict[str, float]
+
+    def sku(self, letter: int, colour: int) -> int:
+        """Return the SKU of a letter in a colour."""
+        return letter * len(self.colours) + colour
+
+
+def letter_sku_set(config: LetterSkus) -> SkuSet:
+    """Return the SKUs of a list of words.
+
+    A letter is as popular as it is frequent in all words together, a colour as its weight says.
+
+    Raises
+    ------
+    InputError
+        If the words cannot be read.
+    """
+    alphabet = read_alphabet(config)
+    frequency = Counter(letter for word in alphabet.words for letter in word)
+    often = [frequency[letter] for letter in range(len(alphabet.letters))]
+    popularity = np.outer(often, list(alphabet.colours.values())).ravel()
+    count = len(popularity)
+    return SkuSet(
+        ids=np.arange(count, dtype=np.int64),
+        popularity=exact.significant(popularity),
+        space_per_unit=draw_space(config.space_per_unit, config.seed, count),
+        bundle_units=draw_bundle_units(config.bundle_units, config.seed, count),
+        names=tuple(
+            f"{letter} {colour}" for letter in alphabet.letters for colour in alphabet.colours
+        ),
+    )
+
+
+def read_alphabet(config: LetterSkus) -> Alphabet:
+    """Read the words that a scenario names.
+
+    Raises
+    ------
+    InputError
+        If the words cannot be read.
+    """
+    words = _read_words(config.words)
+    letters = tuple(sorted({letter for word in words for letter in word}))
+    number = {letter: index for index, letter in enumerate(letters)}
+    coded = tuple(tuple(number[letter] for letter in word) for word in words)
+    return Alphabet(coded, letters, config.colours)
+
+
+def _read_words(path: Path) -> tuple[str, ...]:
+    """Read a text file with a word a line; case does not matter, empty lines are left out."""
+    problems = Problems(path)
+    words = []
+    try:
+        with path.open("rb") as file:
+            for number in range(1, MOST_WORDS + 2):
+                raw = file.readline(_LONGEST_LINE)
+                if not raw:
+                    break
+                if len(raw) == _LONGEST_LINE or number > MOST_WORDS:
+                    problems.add(f"line {number}: too long, or one too many")
+                    break
+                word = raw.decode("utf-8-sig" if number == 1 else "utf-8").strip().lower()
+                if len(word) > LONGEST_WORD:
+                    problems.add(f"line {number}: longer than {LONGEST_WORD} letters")
+                elif word and not word.isalpha():
+                    problems.add(f"line {number}: {word!r:.40} has other signs than letters")
+                elif word:
+                    words.append(word)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: not text in UTF-8") from None
+    if not words:
+        problems.add("no word")
+    problems.stop_if_any()
+    return tuple(words)

@@ -1,0 +1,11 @@
+"""Orders and bundles with their times: kept as arrays, read, written, recorded, exported."""
+
+from rmfs.scenario.streams.reading import read_bundles as read_bundles
+from rmfs.scenario.streams.reading import read_orders as read_orders
+from rmfs.scenario.streams.recorder import StreamRecorder as StreamRecorder
+from rmfs.scenario.streams.stream import BundleStream as BundleStream
+from rmfs.scenario.streams.stream import BundleStreamBuilder as BundleStreamBuilder
+from rmfs.scenario.streams.stream import OrderStream as OrderStream
+from rmfs.scenario.streams.stream import OrderStreamBuilder as OrderStreamBuilder
+from rmfs.scenario.streams.writing import digest as digest
+from rmfs.scenario.streams.writing import write_stream as write_stream

@@ -1,0 +1,67 @@
+"""Rows of a CSV file, however long, wrong or binary it is."""
+
+from __future__ import annotations
+
+import csv
+from typing import TYPE_CHECKING
+
+from rmfs.scenario.streams.columns import MOST_ROWS, Columns
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rmfs.scenario.problems import Problems
+    from rmfs.scenario.streams.rows import Rows
+
+LONGEST_LINE = 4096
+"""Bytes of a line."""
+
+
+class _UnreadableError(ValueError):
+    """It makes no sense to read on."""
+
+
+def read_csv(path: Path, rows: Rows, problems: Problems) -> None:
+    """Hand the rows of a CSV file on; line 1 holds the names of the columns.
+
+    A line is read only as far as it may reach, so that memory is bounded. After a line that is
+    too long or not text reading ends.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    """
+    columns: Columns | None = None
+    number = 0
+    with path.open("rb") as file:
+        while raw := file.readline(LONGEST_LINE + 1):
+            number += 1
+            try:
+                fields = _fields(raw, number)
+                if columns is None:
+                    columns = Columns(fields, rows)
+                elif number > MOST_ROWS:
+                    raise _UnreadableError(f"more than {MOST_ROWS} lines")
+                elif fields:
+                    rows.take(number, columns.arranged(fields))
+            except csv.Error as error:
+                problems.add(f"line {number}: {error}")
+            except ValueError as error:
+                problems.add(f"line {number}: {error}")
+                if columns is None or isinstance(error, _UnreadableError):
+                    return
+    if columns is None:
+        problems.add("empty; line 1 must hold the names of the columns")
+
+
+def _fields(raw: bytes, number: int) -> list[str]:
+    if len(raw) > LONGEST_LINE:
+        raise _UnreadableError(f"longer than {LONGEST_LINE} bytes")
+    if b"\0" in raw:
+        raise _UnreadableError("not text: holds a zero byte")
+    try:
+        text = raw.decode("utf-8-sig" if number == 1 else "utf-8")
+    except UnicodeDecodeError:
+        raise _UnreadableError("not text in UTF-8") from None
+    return [field.strip() for field in next(csv.reader([text.strip("\r\n")], strict=True), [])]

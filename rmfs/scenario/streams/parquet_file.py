@@ -1,0 +1,65 @@
+"""Rows of a Parquet file, read and written."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa  # type: ignore[import-untyped]
+from pyarrow import parquet
+
+from rmfs.scenario.streams.columns import MOST_ROWS, Columns
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from rmfs.scenario.problems import Problems
+    from rmfs.scenario.streams.rows import Rows
+
+ROWS_AT_ONCE = 1 << 14
+
+LARGEST_HEADER = 1 << 24
+"""Bytes that descriptions in the file may claim."""
+
+
+def read_parquet(path: Path, rows: Rows, problems: Problems) -> None:
+    """Hand the rows of a Parquet file on, as text; row 1 is the first.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    """
+    number = 0
+    try:
+        with parquet.ParquetFile(
+            path,
+            thrift_string_size_limit=LARGEST_HEADER,
+            thrift_container_size_limit=LARGEST_HEADER,
+        ) as file:
+            columns = Columns(file.schema_arrow.names, rows)
+            if file.metadata.num_rows > MOST_ROWS:
+                problems.add(f"more than {MOST_ROWS} rows")
+                return
+            for batch in file.iter_batches(ROWS_AT_ONCE):
+                for fields in zip(*(column.to_pylist() for column in batch.columns), strict=True):
+                    number += 1
+                    rows.take(number, columns.arranged([_text(field) for field in fields]))
+    except (pa.ArrowException, OSError) as error:
+        if isinstance(error, OSError) and error.errno is not None:
+            raise
+        problems.add(f"not a complete Parquet file ({str(error).splitlines()[0]:.200})")
+    except ValueError as error:
+        problems.add(str(error))
+
+
+def _text(field: Any) -> str:
+    """Return what a CSV file would say."""
+    return "" if field is None or field != field else str(field).strip()
+
+
+def write_parquet(columns: dict[str, NDArray[Any]], path: Path) -> None:
+    """Write columns; nan becomes an empty field."""
+    table = pa.table({name: pa.array(values, from_pandas=True) for name, values in columns.items()})
+    parquet.write_table(table, path)

@@ -1,0 +1,127 @@
+"""Orders and bundles with their times, as arrays."""
+
+from __future__ import annotations
+
+from array import array
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+NO_DUE_US = -1
+"""Due time of an order for which none is given."""
+
+
+class _Frozen:
+    def __post_init__(self) -> None:
+        for field in fields(self):  # type: ignore[arg-type]
+            getattr(self, field.name).setflags(write=False)
+
+
+@dataclass(frozen=True)
+class OrderStream(_Frozen):
+    """n orders with m lines in all, in order of time.
+
+    Attributes
+    ----------
+    time_us
+        When each order arrives, shape (n,).
+    due_us
+        When each is due, shape (n,); `NO_DUE_US` where none is given.
+    first_line
+        Line at which each order begins, and at last m, shape (n + 1,).
+    sku, units
+        SKU (index) and units of each line, shape (m,).
+    """
+
+    time_us: NDArray[np.int64]
+    due_us: NDArray[np.int64]
+    first_line: NDArray[np.int64]
+    sku: NDArray[np.int64]
+    units: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return len(self.time_us)
+
+    def lines(self, order: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Return the SKUs of an order and the units of each."""
+        here = slice(int(self.first_line[order]), int(self.first_line[order + 1]))
+        return tuple(self.sku[here].tolist()), tuple(self.units[here].tolist())
+
+
+@dataclass(frozen=True)
+class BundleStream(_Frozen):
+    """n bundles in order of time.
+
+    Attributes
+    ----------
+    time_us
+        When each arrives, shape (n,).
+    sku, units
+        SKU (index) and units of each, shape (n,).
+    """
+
+    time_us: NDArray[np.int64]
+    sku: NDArray[np.int64]
+    units: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return len(self.time_us)
+
+
+class OrderStreamBuilder:
+    """Collects orders, 16 bytes a line and 24 an order."""
+
+    def __init__(self) -> None:
+        self._time_us, self._due_us, self._first_line = array("q"), array("q"), array("q")
+        self._sku, self._units = array("q"), array("q")
+
+    def add(self, time_us: int, due_us: int, skus: Sequence[int], units: Sequence[int]) -> None:
+        """Add an order; times may not decrease."""
+        self._time_us.append(time_us)
+        self._due_us.append(due_us)
+        self._first_line.append(len(self._sku))
+        self._sku.extend(skus)
+        self._units.extend(units)
+
+    def __len__(self) -> int:
+        return len(self._time_us)
+
+    def build(self) -> OrderStream:
+        """Return the orders added so far."""
+        return OrderStream(
+            _copied(self._time_us),
+            _copied(self._due_us),
+            np.append(_copied(self._first_line), len(self._sku)),
+            _copied(self._sku),
+            _copied(self._units),
+        )
+
+
+class BundleStreamBuilder:
+    """Collects bundles, 24 bytes each."""
+
+    def __init__(self) -> None:
+        self._time_us, self._sku, self._units = array("q"), array("q"), array("q")
+
+    def add(self, time_us: int, sku: int, units: int) -> None:
+        """Add a bundle; times may not decrease."""
+        self._time_us.append(time_us)
+        self._sku.append(sku)
+        self._units.append(units)
+
+    def __len__(self) -> int:
+        return len(self._time_us)
+
+    def build(self) -> BundleStream:
+        """Return the bundles added so far."""
+        return BundleStream(*map(_copied, (self._time_us, self._sku, self._units)))
+
+
+def _copied(column: array[int]) -> NDArray[np.int64]:
+    return np.array(column, dtype=np.int64)

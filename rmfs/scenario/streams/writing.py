@@ -1,0 +1,102 @@
+"""Streams as files, and the hash by which a stream is known.
+
+There is one text for a stream: the CSV file written here, with times in s to the microsecond. Its
+SHA-256 is the stream's digest, whatever the file the stream was read from looks like; of a CSV file
+written here it is the SHA-256 of the file.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.files import replacing
+from rmfs.scenario.clock import US_PER_S
+from rmfs.scenario.streams.stream import NO_DUE_US, BundleStream, OrderStream
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from rmfs.scenario.skus import SkuSet
+
+ORDER_COLUMNS = ("time", "order", "sku", "quantity", "due")
+BUNDLE_COLUMNS = ("time", "order", "sku", "quantity")
+
+Stream = OrderStream | BundleStream
+
+
+def write_stream(stream: Stream, skus: SkuSet, path: Path) -> str:
+    """Write a stream and return its digest.
+
+    Parameters
+    ----------
+    skus
+        The SKUs, whose ids are written.
+    path
+        Ends in .csv or .parquet.
+
+    Raises
+    ------
+    InputError
+        If the name ends otherwise or the file cannot be written.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in (".csv", ".parquet"):
+        raise InputError(f"{path}: must end in .csv or .parquet")
+    with replacing(path) as temporary:
+        if suffix == ".csv":
+            with temporary.open("w", encoding="utf-8", newline="") as file:
+                file.writelines(_text(stream, skus))
+        else:
+            from rmfs.scenario.streams.parquet_file import write_parquet  # slow to import
+
+            write_parquet(_columns(stream, skus), temporary)
+    return digest(stream, skus)
+
+
+def digest(stream: Stream, skus: SkuSet) -> str:
+    """Return the SHA-256 of a stream's one text."""
+    hashed = hashlib.sha256()
+    for line in _text(stream, skus):
+        hashed.update(line.encode())
+    return hashed.hexdigest()
+
+
+def _text(stream: Stream, skus: SkuSet) -> Iterator[str]:
+    ids = skus.ids[stream.sku].tolist()
+    units = stream.units.tolist()
+    times = [_seconds(time_us) for time_us in stream.time_us.tolist()]
+    if isinstance(stream, BundleStream):
+        yield f"{','.join(BUNDLE_COLUMNS)}\n"
+        for order, row in enumerate(zip(times, ids, units, strict=True)):
+            time, sku, quantity = row
+            yield f"{time},{order},{sku},{quantity}\n"
+        return
+    yield f"{','.join(ORDER_COLUMNS)}\n"
+    first_line = stream.first_line.tolist()
+    for order, (time, due_us) in enumerate(zip(times, stream.due_us.tolist(), strict=True)):
+        due = "" if due_us == NO_DUE_US else _seconds(due_us)
+        for line in range(first_line[order], first_line[order + 1]):
+            yield f"{time},{order},{ids[line]},{units[line]},{due}\n"
+
+
+def _seconds(time_us: int) -> str:
+    """Write a time in s with six decimals, exactly."""
+    return f"{time_us // US_PER_S}.{time_us % US_PER_S:06d}"
+
+
+def _columns(stream: Stream, skus: SkuSet) -> dict[str, NDArray[Any]]:
+    """Return a stream as columns; due is nan where none is given."""
+    lines = {"sku": skus.ids[stream.sku], "quantity": stream.units}
+    if isinstance(stream, BundleStream):
+        return {"time": stream.time_us / US_PER_S, "order": np.arange(len(stream)), **lines}
+    order = np.repeat(np.arange(len(stream)), np.diff(stream.first_line))
+    due_us = stream.due_us[order]
+    due = np.where(due_us == NO_DUE_US, np.nan, due_us / US_PER_S)
+    return {"time": stream.time_us[order] / US_PER_S, "order": order, **lines, "due": due}

@@ -1,0 +1,54 @@
+"""Orders that are coloured words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.random import Stream
+from rmfs.scenario.categorical import Categorical
+from rmfs.scenario.orders import OrderDraft
+from rmfs.scenario.substreams import Substreams
+
+if TYPE_CHECKING:
+    from rmfs.scenario.parameters import WordOrders
+    from rmfs.scenario.skus.letters import Alphabet
+
+
+class WordSource:
+    """Draws words: any word alike, each letter in a colour, each with a number of units.
+
+    Order k is drawn from substream (seed, k) and depends on nothing else: words do not look at
+    stock. Equal letters of one colour become one line.
+
+    Parameters
+    ----------
+    config
+        The table `orders` of a scenario.
+    alphabet
+        The words and colours of its table `skus`.
+    seed
+        The run's seed.
+    path
+        Numbers below the stream, for orders that are counted apart.
+    """
+
+    def __init__(
+        self, config: WordOrders, alphabet: Alphabet, seed: int, path: tuple[int, ...] = ()
+    ) -> None:
+        self._alphabet = alphabet
+        self._colour = Categorical(list(alphabet.colours.values())).pick
+        self._units = config.units_per_letter.sampler()
+        self._due = config.due.sampler()
+        self._substreams = Substreams(seed, Stream.ORDER_CONTENTS, path)
+
+    def draw(self, ordinal: int) -> OrderDraft:
+        """Draw the order of an ordinal, 0 or greater."""
+        uniform = self._substreams.at(ordinal)
+        words = self._alphabet.words
+        word = words[int(uniform() * len(words))]
+        due_offset_s = self._due(uniform())
+        lines: dict[int, int] = {}
+        for letter in word:
+            sku = self._alphabet.sku(letter, self._colour(uniform()))
+            lines[sku] = lines.get(sku, 0) + self._units(uniform())
+        return OrderDraft(tuple(lines), tuple(lines.values()), due_offset_s, redraws=0)

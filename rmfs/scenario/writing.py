@@ -1,0 +1,68 @@
+"""A scenario as files that need no others."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rmfs.errors import InputError
+from rmfs.files import write_text
+from rmfs.scenario.parameters import LetterSkus, SkuFile, StreamDemand, StreamReplenishment
+from rmfs.scenario.skus import write_sku_set
+from rmfs.scenario.sources import bundle_stream, order_stream, sku_set
+from rmfs.scenario.streams import write_stream
+from rmfs.scenario.toml import to_toml
+
+if TYPE_CHECKING:
+    from rmfs.scenario.parameters import Scenario
+
+
+def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
+    """Write a scenario with the files it names, in formats of ours.
+
+    Parameters
+    ----------
+    path
+        The .toml file. What belongs to it stands beside: NAME-skus.json, NAME-words.txt,
+        NAME-orders.csv, NAME-bundles.csv.
+
+    Returns
+    -------
+    All files written.
+
+    Raises
+    ------
+    InputError
+        If the name does not end in .toml, or a file cannot be read or written.
+    """
+    if path.suffix.lower() != ".toml":
+        raise InputError(f"{path}: must end in .toml")
+    skus = sku_set(scenario.skus)
+    changes: dict[str, object] = {}
+    written = [path]
+
+    def beside(end: str) -> Path:
+        written.append(path.with_name(f"{path.stem}-{end}"))
+        return written[-1]
+
+    if isinstance(scenario.skus, SkuFile):
+        target = beside("skus.json")
+        write_sku_set(skus, target, scenario.description)
+        changes["skus"] = scenario.skus.model_copy(update={"file": Path(target.name)})
+    elif isinstance(scenario.skus, LetterSkus):
+        target = beside("words.txt")
+        write_text(target, scenario.skus.words.read_text("utf-8-sig"))
+        changes["skus"] = scenario.skus.model_copy(update={"words": Path(target.name)})
+    if isinstance(scenario.demand, StreamDemand):
+        target = beside("orders.csv")
+        digest = write_stream(order_stream(scenario.demand, skus), skus, target)
+        named = {"file": Path(target.name), "digest": digest}
+        changes["demand"] = scenario.demand.model_copy(update=named)
+    if isinstance(scenario.replenishment, StreamReplenishment):
+        target = beside("bundles.csv")
+        bundles = bundle_stream(scenario.replenishment, skus, math.inf)
+        named = {"file": Path(target.name), "digest": write_stream(bundles, skus, target)}
+        changes["replenishment"] = scenario.replenishment.model_copy(update=named)
+    write_text(path, to_toml(scenario.model_copy(update=changes)))
+    return written

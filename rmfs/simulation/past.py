@@ -1,0 +1,42 @@
+"""Orders from before the run, for rules that learn from what was ordered."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.scenario import OrderSource
+from rmfs.scenario.parameters import LetterSkus, WordOrders
+from rmfs.scenario.skus.letters import read_alphabet
+from rmfs.scenario.words import WordSource
+
+if TYPE_CHECKING:
+    from rmfs.scenario import OrderDraft, Scenario, SkuSet
+
+PAST_ORDERS = 5000
+"""So many are remembered (as many as RAWSim-O makes up)."""
+
+_PAST = (1000,)  # below the stream of contents: far from the numbers of orders in the run
+_PLENTY = 2**40
+
+
+def past_orders(scenario: Scenario, skus: SkuSet, seed: int) -> list[OrderDraft]:
+    """Draw orders as the scenario draws them, had every SKU been in stock.
+
+    Parameters
+    ----------
+    seed
+        The run's seed; they come from substreams of their own, so that drawing them changes
+        nothing else.
+    """
+    drafts: list[OrderDraft | None]
+    if isinstance(scenario.orders, WordOrders):
+        assert isinstance(scenario.skus, LetterSkus)
+        words = WordSource(scenario.orders, read_alphabet(scenario.skus), seed, _PAST)
+        drafts = [words.draw(ordinal) for ordinal in range(PAST_ORDERS)]
+    else:
+        source = OrderSource(scenario.orders, skus, seed, scenario.name, _PAST)
+        stock = np.full(len(skus), _PLENTY)
+        drafts = [source.draw(ordinal, stock) for ordinal in range(PAST_ORDERS)]
+    return [draft for draft in drafts if draft is not None]

@@ -1,0 +1,45 @@
+"""The page on writing controllers is executed; the catalogue is what the code says."""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rmfs.control.catalogue import markdown
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+
+
+@pytest.fixture(scope="module")
+def page():
+    return (DOCS / "write-a-controller.md").read_text("utf-8")
+
+
+def test_the_example_runs(page, tmp_path, monkeypatch):
+    """Its code blocks, in their order, in a folder of their own."""
+    rule, comparison = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    (tmp_path / "my_rules.py").write_text(rule)
+    (tmp_path / "compare.py").write_text(comparison)
+    done = subprocess.run(
+        [sys.executable, "compare.py"], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    near, ours = done.stdout.splitlines()
+    assert near.startswith("nearest ")
+    assert ours.startswith("my_rules:WantedNear ")
+    assert near.split()[1:] != ours.split()[1:]
+
+
+def test_the_command_runs(page, tmp_path):
+    rule = re.search(r"```python\n(.*?)```", page, re.DOTALL)[1]
+    (tmp_path / "my_rules.py").write_text(rule)
+    command = re.search(r"```sh\nPYTHONPATH=\. rmfs (.*?)\n```", page)[1]
+    subprocess.run([sys.executable, "-m", "rmfs", *shlex.split(command)], cwd=tmp_path, check=True)
+    assert (tmp_path / "results/wanted-near/footprint.csv").is_file()
+
+
+def test_the_catalogue_is_up_to_date():
+    """Otherwise: python -m rmfs.control.catalogue > docs/controllers.md."""
+    assert (DOCS / "controllers.md").read_text("utf-8") == markdown()
