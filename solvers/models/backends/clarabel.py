@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import time
 import warnings
-from dataclasses import dataclass
 
 import cvxpy as cp
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
+from solvers.models.backends.outcome import Relaxation as Relaxation
 from solvers.models.backends.safe_bound import safe_bound
 from solvers.models.checks import require
 from solvers.models.program import LinearProgram
@@ -24,32 +24,6 @@ from solvers.models.solution import NO_LIMITS, Limits, WallGuardError
 
 NAME = "clarabel"
 _DEFAULT_ITERATIONS = 200
-
-
-@dataclass(frozen=True)
-class Relaxation:
-    """The end of one relaxed solve.
-
-    Parameters
-    ----------
-    x
-        Value per column, fractional and feasible to the solver's tolerance; None if it found none.
-    multipliers
-        One per row, positive where a lower bound binds; zeros if the solver gave none.
-    bound
-        Lower bound of the program and of its integer version, rounded to the safe side.
-    work
-        Interior-point iterations.
-    build_s, wall_s
-        Seconds for setting parameters (and compiling, the first time), and for the whole call.
-    """
-
-    x: NDArray[np.float64] | None
-    multipliers: NDArray[np.float64]
-    bound: float
-    work: float
-    build_s: float
-    wall_s: float
 
 
 class LinearRelaxation:

@@ -122,9 +122,10 @@ def check_guard(solver: cp_model.CpSolver, status: CpSolverStatus, limits: Limit
     """
     if limits.wall_guard_s is None or status in (cp_model.OPTIMAL, cp_model.INFEASIBLE):
         return
-    counted = limits.deterministic_s
-    # CP-SAT ends a little before its limits, so the one that did not end it is what tells
-    if counted is None or solver.deterministic_time < 0.9 * counted:
+    worked_off = limits.deterministic_s is not None and (
+        solver.deterministic_time >= limits.deterministic_s * (1.0 - 1e-6)
+    )
+    if not worked_off:
         raise WallGuardError(f"CP-SAT was stopped after {solver.wall_time:.1f} s")
 
 

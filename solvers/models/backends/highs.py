@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 
 import highspy  # type: ignore[import-untyped]
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends.outcome import NUMERICAL_TOLERANCE, Outcome, trivial
+from solvers.models.backends.outcome import NUMERICAL_TOLERANCE, Outcome, Relaxation, trivial
+from solvers.models.backends.safe_bound import safe_bound
 from solvers.models.program import LinearProgram
 from solvers.models.solution import NO_LIMITS, Limits, Status, WallGuardError
 
@@ -65,6 +67,47 @@ def solve(
     built = time.perf_counter()
     solver.run()
     return _outcome(program, solver, began, built)
+
+
+def relax(program: LinearProgram, limits: Limits = NO_LIMITS) -> Relaxation:
+    """Solve the linear relaxation with the simplex method.
+
+    Parameters
+    ----------
+    program
+        The program; integrality is ignored.
+    limits
+        ``iterations`` limits the simplex method. Default: none.
+
+    Returns
+    -------
+    The relaxed point and a safe bound, as from `clarabel.relax`.
+
+    Raises
+    ------
+    WallGuardError
+        If the wall-clock guard ran out.
+    """
+    began = time.perf_counter()
+    relaxed = replace(program, integer=np.zeros(program.columns, dtype=np.bool_))
+    solver = highspy.Highs()
+    _set_options(solver, limits, seed=0)
+    solver.passModel(_lp(relaxed))
+    built = time.perf_counter()
+    solver.run()
+    outcome = _outcome(relaxed, solver, began, built)
+    solution = solver.getSolution()
+    multipliers = np.zeros(program.rows)
+    if solution.dual_valid:
+        multipliers = np.array(solution.row_dual, dtype=np.float64)
+    return Relaxation(
+        x=outcome.x,
+        multipliers=multipliers,
+        bound=safe_bound(program, multipliers),
+        work=outcome.work,
+        build_s=built - began,
+        wall_s=time.perf_counter() - began,
+    )
 
 
 def _set_options(solver: highspy.Highs, limits: Limits, seed: int) -> None:

@@ -1,4 +1,4 @@
-"""What an adapter returns: the raw columns, before a model makes its own values of them."""
+"""What an adapter returns, before a model makes its own values of it: columns, bounds, work."""
 
 from __future__ import annotations
 
@@ -80,6 +80,32 @@ class Outcome:
             build_s=self.build_s + build_s,
             work=self.work,
         )
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """The end of one relaxed solve.
+
+    Parameters
+    ----------
+    x
+        Value per column, fractional and feasible to the solver's tolerance; None if it found none.
+    multipliers
+        One per row, positive where a lower bound binds; zeros if the solver gave none.
+    bound
+        Lower bound of the program and of its integer version, rounded to the safe side.
+    work
+        Iterations of the back end.
+    build_s, wall_s
+        Seconds for setting parameters (and compiling, the first time), and for the whole call.
+    """
+
+    x: NDArray[np.float64] | None
+    multipliers: NDArray[np.float64]
+    bound: float
+    work: float
+    build_s: float
+    wall_s: float
 
 
 def trivial(program: LinearProgram, backend: str) -> Outcome | None:

@@ -1,0 +1,228 @@
+"""Which pairs are worth looking at: pods and stations, orders and stations, robots and pods.
+
+The *price* of a pod at a station is the cost of the call, shared by the order lines the pod could
+serve alone; the price of an order there is what the cheapest pods for its missing lines ask.
+Pruning keeps, by price, the best few pods per wanted SKU and station, the best few orders per
+station, and the best few stations per order; and the nearest few robots per pod. Versatile pods are
+cheap and appear for many SKUs, so that the union stays small. What pruning loses is measured in
+`tests/benchmarks/test_models_pile_on.py`; a bound of the pruned model is not one of the full model
+(`relaxation.bound` repairs that).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solvers.models.checks import flags, integers
+from solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
+from solvers.models.pile_on.values import Assignment
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """The pairs a model may use.
+
+    Parameters
+    ----------
+    calls
+        Whether a pod may be called to a station, shape (P, S).
+    places
+        Whether an order may go to a station, shape (O, S).
+    fetches
+        Whether a robot may fetch a pod, shape (R, P).
+
+    Raises
+    ------
+    ModelError
+        If a shape is wrong.
+    """
+
+    calls: Flags
+    places: Flags
+    fetches: Flags
+
+    def __post_init__(self) -> None:
+        for field in ("calls", "places", "fetches"):
+            object.__setattr__(self, field, flags(field, getattr(self, field), (None, None)))
+
+    def including(self, values: Assignment) -> Candidates:
+        """Add the pairs that a decision uses, so that it can start a solver.
+
+        Parameters
+        ----------
+        values
+            The decision.
+        """
+        calls, fetches = self.calls.copy(), self.fetches.copy()
+        places = self.places | values.slot
+        for table, station in ((calls, values.pod_station), (places, values.prospect)):
+            used = np.flatnonzero(station >= 0)
+            table[used, station[used]] = True
+        fetched = np.flatnonzero(values.pod_robot >= 0)
+        fetches[values.pod_robot[fetched], fetched] = True
+        return Candidates(calls, places, fetches)
+
+
+@dataclass(frozen=True)
+class Pruning:
+    """How many of each kind to keep; more keeps more of the optimum and takes longer.
+
+    Parameters
+    ----------
+    pods_per_sku
+        Pods per wanted SKU and station. Default 4.
+    orders_per_slot
+        Orders per free slot of a station. Default 16.
+    stations_per_order
+        Stations per order, so that none is left out. Default 4.
+    robots_per_pod
+        Robots per pod. Default 4.
+
+    Raises
+    ------
+    ModelError
+        If a number is below 1.
+    """
+
+    pods_per_sku: int = 4
+    orders_per_slot: int = 16
+    stations_per_order: int = 4
+    robots_per_pod: int = 4
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            integers(f"pruning.{name}", value, (), low=1)
+
+
+def everything(data: PileOn) -> Candidates:
+    """All pairs that can be of use: no loss.
+
+    Parameters
+    ----------
+    data
+        The input.
+
+    Returns
+    -------
+    Available pods that hold a SKU wanted at the station, free robots for those pods, and every
+    order wherever there are slots.
+    """
+    on_order = np.zeros(data.skus, dtype=np.bool_)
+    on_order[data.line_sku] = True
+    takes_orders = data.slots > 0
+    wanted = (takes_orders[:, None] & on_order) | (data.shortage > 0)
+    # Float products are much faster than boolean ones.
+    calls = (data.stock > 0).astype(np.float32) @ wanted.T.astype(np.float32) > 0
+    calls &= data.available[:, None]
+    places = np.broadcast_to(takes_orders, (data.orders, data.stations))
+    return Candidates(calls, places, _fetches(data, calls))
+
+
+def prune(data: PileOn, pruning: Pruning | None = None) -> Candidates:
+    """Keep the pairs of least price.
+
+    Parameters
+    ----------
+    data
+        The input.
+    pruning
+        How many to keep. Default: the defaults of `Pruning`.
+    """
+    keep = Pruning() if pruning is None else pruning
+    if not data.stations:
+        return everything(data)
+    price = call_price(data)
+    pod, column = np.nonzero((data.stock[:, data.wanted] > 0) & data.available[:, None])
+    sku = data.wanted[column]
+    # Entries by SKU, then price, one row per station; the SKUs are the same in every row.
+    order = np.stack([np.lexsort((pod, price[pod, s], sku)) for s in range(data.stations)])
+    rank = _rank_in_group(np.sort(sku))
+    sku_price = np.full((data.skus, data.stations), np.inf)
+    cheapest = order[:, rank == 0]
+    stations = np.arange(data.stations)
+    sku_price[sku[cheapest], stations[:, None]] = price[pod[cheapest], stations[:, None]]
+    places = _best_places(data, _order_price(data, sku_price), keep)
+    asked = data.shortage > 0
+    line, station = np.nonzero(places[data.line_order])
+    asked[station, data.line_sku[line]] = True
+    best = order[:, rank < keep.pods_per_sku]
+    calls = np.zeros((data.pods, data.stations), dtype=np.bool_)
+    station, entry = np.nonzero(asked[stations[:, None], sku[best]])
+    calls[pod[best[station, entry]], station] = True
+    fetches = np.array(_fetches(data, calls))
+    if data.fetch is not None:
+        free = data.free_robots
+        rank = np.argsort(np.argsort(data.fetch[free], axis=0, kind="stable"), axis=0)
+        fetches[free] &= rank < keep.robots_per_pod
+    return Candidates(calls, places, fetches)
+
+
+def _order_price(data: PileOn, sku_price: Floats) -> Floats:
+    """What the missing lines of each order cost at each station, shape (O, S)."""
+    missing = data.line_units[:, None] > data.surplus[:, data.line_sku].T
+    price = np.where(missing, sku_price[data.line_sku], 0.0)
+    if not data.orders:
+        return np.zeros((0, data.stations))
+    total: Floats = np.add.reduceat(price, data.first_line[:-1], axis=0)
+    return total - data.order_worth[:, None]
+
+
+def _best_places(data: PileOn, price: Floats, keep: Pruning) -> Flags:
+    """The cheapest orders of each station and the cheapest stations of each order."""
+    open_price = np.where(data.slots > 0, price, np.inf)
+    by_station = np.argsort(np.argsort(open_price, axis=0, kind="stable"), axis=0)
+    by_order = np.argsort(np.argsort(open_price, axis=1, kind="stable"), axis=1)
+    best = (by_station < keep.orders_per_slot * data.slots) | (by_order < keep.stations_per_order)
+    takes: Flags = best & (data.slots > 0)
+    return takes
+
+
+def call_price(data: PileOn) -> Floats:
+    """Cost of calling a pod, nearest robot included, per line it could serve alone, shape (P, S).
+
+    Parameters
+    ----------
+    data
+        The input.
+    """
+    return (data.call_cost + fetch_estimate(data)[:, None]) / np.maximum(_lines(data), 1)[:, None]
+
+
+def fetch_estimate(data: PileOn) -> Floats:
+    """Weighted cost of the nearest free robot per pod; 0 where none is needed, shape (P,).
+
+    Parameters
+    ----------
+    data
+        The input.
+    """
+    if data.fetch is None or not data.free_robots.size:
+        return np.zeros(data.pods)
+    nearest = data.fetch[data.free_robots].min(axis=0)
+    return np.where(data.needs_robot, data.weights.travel * nearest, 0.0)
+
+
+def _lines(data: PileOn) -> Integers:
+    """Order lines that a pod could serve alone, shape (P,)."""
+    # Lines of the same SKU and units are counted together.
+    kinds, count = np.unique(np.stack([data.line_sku, data.line_units]), axis=1, return_counts=True)
+    enough = data.stock[:, kinds[0]] >= kinds[1]
+    lines: Integers = enough @ count
+    return lines
+
+
+def _fetches(data: PileOn, calls: Flags) -> Flags:
+    """Which free robots may fetch the pods that may be called, shape (R, P)."""
+    fetches = np.zeros((data.robots, data.pods), dtype=np.bool_)
+    fetches[data.free_robots] = calls.any(axis=1) & data.needs_robot
+    return fetches
+
+
+def _rank_in_group(group: Integers) -> Integers:
+    """Position of each element within its run of equal values."""
+    index = np.arange(group.size)
+    starts = np.flatnonzero(np.diff(group, prepend=-1))
+    rank: Integers = index - np.repeat(starts, np.diff(np.append(starts, group.size)))
+    return rank

@@ -1,0 +1,251 @@
+"""The columns of the pile-on program: what they cost, and how they become a decision.
+
+Columns exist for candidate pairs only, and only where the pods that may come can cover something.
+In `Variant.WHOLE` the columns z of lines *are* those of their orders, so that every row family is
+written once for all variants.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solvers.models.pile_on.candidates import Candidates
+from solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
+from solvers.models.pile_on.values import Assignment, complete, uncovered
+from solvers.models.pile_on.variant import Variant
+from solvers.models.program import ProgramBuilder
+
+NONE = np.zeros(0, dtype=np.int64)
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Index of every column, by family, with what it stands for.
+
+    Parameters
+    ----------
+    pod, station, call
+        Pod, station and column x of each call.
+    order, at, slot, prospect
+        Order, station and columns y and g of each place; `prospect` is empty if prospects are not
+        rewarded.
+    line, place, cover
+        Line, index of the place of its order, and column z of each line that a place could cover;
+        z is y in `Variant.WHOLE`.
+    complete, started
+        Columns e and w of each order, empty in variants that do without.
+    short_station, short_sku, short
+        Station, SKU and column v of each shortage.
+    robot, fetched, fetch
+        Robot, pod and column b of each pair.
+    """
+
+    pod: Integers
+    station: Integers
+    call: Integers
+    order: Integers
+    at: Integers
+    slot: Integers
+    prospect: Integers
+    line: Integers
+    place: Integers
+    cover: Integers
+    complete: Integers
+    started: Integers
+    short_station: Integers
+    short_sku: Integers
+    short: Integers
+    robot: Integers
+    fetched: Integers
+    fetch: Integers
+
+
+def add_columns(builder: ProgramBuilder, data: PileOn, candidates: Candidates) -> Columns:
+    """Add all columns to a program.
+
+    Parameters
+    ----------
+    builder
+        Where to add them.
+    data
+        The input.
+    candidates
+        The pairs to use.
+    """
+    weights, variant = data.weights, data.variant
+    whole = variant is Variant.WHOLE
+    pod, station = np.nonzero(candidates.calls)
+    call = builder.columns(pod.size, cost=data.call_cost[pod, station])
+    coverable = coverable_lines(data, candidates)
+    fillable = every(coverable, data)
+    order, at = np.nonzero(candidates.places & fillable if whole else candidates.places)
+    slot = builder.columns(order.size, cost=_slot_cost(data)[order])
+    prospect = NONE
+    if weights.prospects:
+        prospect = builder.columns(order.size, cost=-weights.complete, upper=fillable[order, at])
+    line, place = _lines_of(data, order)
+    kept = coverable[line, at[place]]
+    line, place = line[kept], place[kept]
+    gain = weights.line + (weights.open_line if variant is Variant.LATER else 0.0)
+    cover = slot[place] if whole else builder.columns(line.size, cost=-gain)
+    partial = variant is Variant.LATER or variant.leaves_backlog
+    short_station, short_sku = np.nonzero(data.shortage)
+    short = builder.columns(
+        short_sku.size, cost=weights.open_unit, upper=data.shortage[short_station, short_sku]
+    )
+    robot, fetched = np.nonzero(candidates.fetches)
+    fetch_cost: Floats | float = 0.0
+    if data.fetch is not None:
+        fetch_cost = weights.travel * data.fetch[robot, fetched]
+    return Columns(
+        pod=pod,
+        station=station,
+        call=call,
+        order=order,
+        at=at,
+        slot=slot,
+        prospect=prospect,
+        line=line,
+        place=place,
+        cover=cover,
+        complete=builder.columns(data.orders, cost=-weights.complete) if partial else NONE,
+        started=(
+            builder.columns(data.orders, cost=_start_cost(data)) if variant.many_stations else NONE
+        ),
+        short_station=short_station,
+        short_sku=short_sku,
+        short=short,
+        robot=robot,
+        fetched=fetched,
+        fetch=builder.columns(robot.size, cost=fetch_cost),
+    )
+
+
+def decode(data: PileOn, columns: Columns, x: Floats) -> Assignment:
+    """Make a decision of column values.
+
+    Parameters
+    ----------
+    data
+        The input.
+    columns
+        The columns of the program.
+    x
+        One whole value per column.
+    """
+    taken = x > 0.5
+    slot = np.zeros((data.orders, data.stations), dtype=np.bool_)
+    slot[columns.order, columns.at] = taken[columns.slot]
+    chosen = taken[columns.prospect]
+    waiting = (columns.order[chosen], columns.at[chosen]) if columns.prospect.size else (NONE, NONE)
+    covered = taken[columns.cover]
+    called, going = taken[columns.call], taken[columns.fetch]
+    return Assignment(
+        slot=slot,
+        line_station=_spread(data.lines, columns.line[covered], columns.at[columns.place[covered]]),
+        pod_station=_spread(data.pods, columns.pod[called], columns.station[called]),
+        pod_robot=_spread(data.pods, columns.fetched[going], columns.robot[going]),
+        prospect=_spread(data.orders, *waiting),
+    )
+
+
+def encode(data: PileOn, columns: Columns, values: Assignment, size: int) -> Floats:
+    """Make column values of a decision.
+
+    Parameters
+    ----------
+    data
+        The input.
+    columns
+        The columns of the program.
+    values
+        A feasible decision that uses candidate pairs only.
+    size
+        Number of columns of the program.
+    """
+    x = np.zeros(size)
+    x[columns.call] = values.pod_station[columns.pod] == columns.station
+    x[columns.slot] = values.slot[columns.order, columns.at]
+    if columns.prospect.size:
+        x[columns.prospect] = values.prospect[columns.order] == columns.at
+    if data.variant is not Variant.WHOLE:
+        x[columns.cover] = values.line_station[columns.line] == columns.at[columns.place]
+    if columns.complete.size:
+        x[columns.complete] = complete(data, values)
+    if columns.started.size:
+        x[columns.started] = values.slot.any(axis=1)
+    x[columns.short] = uncovered(data, values)[columns.short_station, columns.short_sku]
+    x[columns.fetch] = values.pod_robot[columns.fetched] == columns.robot
+    return x
+
+
+def coverable_lines(data: PileOn, candidates: Candidates) -> Flags:
+    """Whether the pods that may come could cover a line at a station, shape (L, S).
+
+    Parameters
+    ----------
+    data
+        The input.
+    candidates
+        The pairs to use.
+    """
+    # Sums of units are exact in float64, and float products are much faster than integer ones.
+    calls = candidates.calls.astype(np.float64)
+    reach = data.surplus + calls.T @ data.stock.astype(np.float64)
+    coverable: Flags = (reach[:, data.line_sku] >= data.line_units).T
+    return coverable
+
+
+def every(lines: Flags, data: PileOn) -> Flags:
+    """Whether something holds for every line of an order: (L, ...) flags to (O, ...).
+
+    Parameters
+    ----------
+    lines
+        Flags with lines as first axis.
+    data
+        The input.
+    """
+    if not data.orders:
+        return np.zeros((0, *lines.shape[1:]), dtype=np.bool_)
+    return np.logical_and.reduceat(lines, data.first_line[:-1], axis=0)
+
+
+def _slot_cost(data: PileOn) -> Floats:
+    """Cost of a column y per order: the filled slot, and what goes with it in this variant."""
+    weights, variant = data.weights, data.variant
+    lines = np.diff(data.first_line)
+    cost = np.full(data.orders, -weights.empty_slot)
+    if variant.many_stations:
+        return cost + weights.part
+    cost -= data.order_worth
+    if variant is Variant.WHOLE:
+        cost -= weights.complete + weights.line * lines
+    if variant is Variant.LATER:
+        cost += weights.open_line * lines
+    return cost
+
+
+def _start_cost(data: PileOn) -> Floats:
+    """Cost of a column w: the first part is free of the part's weight, and the worth counts."""
+    cost = -data.order_worth - data.weights.part
+    if data.variant is Variant.SPLIT_STATIONS:
+        cost = cost - data.weights.complete
+    return cost
+
+
+def _lines_of(data: PileOn, order: Integers) -> tuple[Integers, Integers]:
+    """The lines of each listed order, with the position of the order in the list."""
+    count = data.first_line[order + 1] - data.first_line[order]
+    place = np.repeat(np.arange(order.size), count)
+    first = np.repeat(data.first_line[order] - np.cumsum(count) + count, count)
+    return first + np.arange(place.size), place
+
+
+def _spread(size: int, index: Integers, value: Integers) -> Integers:
+    """An array of -1 with the values in their places."""
+    spread = np.full(size, -1)
+    spread[index] = value
+    return spread

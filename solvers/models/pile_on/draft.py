@@ -1,0 +1,336 @@
+"""A decision in the making: what heuristics read and change, step by step.
+
+A draft only ever holds orders that are covered as a whole, which every variant allows. It answers
+two questions for a station with array operations over its candidate pods: how much would calling
+one pod gain, and which pods would complete one order together at the least cost.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from solvers.models.pile_on.candidates import Candidates
+from solvers.models.pile_on.columns import every
+from solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
+from solvers.models.pile_on.values import Assignment
+
+
+@dataclass(frozen=True)
+class Call:
+    """Pods to call to a station together, and what that gains over not doing it."""
+
+    gain: float
+    station: int
+    pods: tuple[int, ...]
+
+
+class Draft:
+    """Orders placed and pods called so far.
+
+    Parameters
+    ----------
+    data
+        The input.
+    candidates
+        The pairs to use.
+
+    Attributes
+    ----------
+    scored
+        Candidates scored so far: the deterministic work of a rule.
+    """
+
+    def __init__(self, data: PileOn, candidates: Candidates) -> None:
+        self.data = data
+        self.candidates = candidates
+        self.scored = 0
+        self.slots = data.slots.copy()
+        self.stock_left = data.surplus.copy()
+        self.shortage = data.shortage.copy()
+        self.order_station = np.full(data.orders, -1)
+        self.prospect = np.full(data.orders, -1)
+        self.pod_station = np.full(data.pods, -1)
+        self.robots = data.free_robots
+        units = np.bincount(data.line_order, data.line_units, minlength=data.orders)
+        self._rank = np.lexsort((units, -data.order_worth))
+        self._stock_of = np.ascontiguousarray(data.stock.T)
+        self._pods_of = [np.flatnonzero(calls) for calls in candidates.calls.T]
+        self._fetch = self._fetch_costs()
+
+    @property
+    def open_orders(self) -> Flags:
+        """Orders without a slot that are nobody's prospect, shape (O,)."""
+        return (self.order_station < 0) & (self.prospect < 0)
+
+    def coverable(self, station: int) -> Flags:
+        """Open orders that the stock left at a station covers in full, shape (O,)."""
+        left = self.stock_left[station, self.data.line_sku]
+        self.scored += self.data.orders
+        covered = every(left >= self.data.line_units, self.data)
+        return covered & self.open_orders & self.candidates.places[:, station]
+
+    def place(self, order: int, station: int) -> None:
+        """Give an order a slot and take its units from the stock left."""
+        self._take(order, station)
+        self.order_station[order] = station
+        self.slots[station] -= 1
+
+    def fill(self, station: int) -> None:
+        """Place coverable orders while there are slots: most worth, then fewest units, then index.
+
+        Small orders first leave most stock for the others.
+        """
+        while self.slots[station] > 0:
+            ready = self.coverable(station)[self._rank]
+            if not ready.any():
+                return
+            self.place(int(self._rank[ready.argmax()]), station)
+
+    def reserve(self, station: int) -> None:
+        """Make prospects of the orders that the stock left covers, in the order of `fill`."""
+        if not self.data.weights.prospects or not self.data.slots[station]:
+            return
+        while (ready := self.coverable(station)[self._rank]).any():
+            order = int(self._rank[ready.argmax()])
+            self._take(order, station)
+            self.prospect[order] = station
+
+    def _take(self, order: int, station: int, sign: int = 1) -> None:
+        """Take the units of an order from the stock left at a station, or give them back."""
+        data = self.data
+        lines = slice(data.first_line[order], data.first_line[order + 1])
+        self.stock_left[station, data.line_sku[lines]] -= sign * data.line_units[lines]
+
+    def call(self, call: Call) -> None:
+        """Call pods to a station; their stock eases shortages first."""
+        for pod in call.pods:
+            self.pod_station[pod] = call.station
+            eased = np.minimum(self.shortage[call.station], self.data.stock[pod])
+            self.shortage[call.station] -= eased
+            self.stock_left[call.station] += self.data.stock[pod] - eased
+            if self.data.needs_robot[pod]:
+                self._send_robot(pod)
+
+    def free_pods(self, station: int) -> Integers:
+        """Candidate pods of a station that are not called and have, or could have, a robot."""
+        pods = self._pods_of[station]
+        return pods[(self.pod_station[pods] < 0) & np.isfinite(self._fetch[pods])]
+
+    def call_costs(self, pods: Integers, station: int) -> Floats:
+        """Cost of calling each of the pods to a station, nearest free robot included."""
+        cost: Floats = self.data.call_cost[pods, station] + self._fetch[pods]
+        return cost
+
+    def completions(self, pods: Integers, station: int) -> Floats:
+        """How many open orders each pod would complete, alone with the stock left, shape (N,)."""
+        need, lines, starts = self._needs(station)
+        if not lines.size or not pods.size:
+            return np.zeros(pods.size)
+        done = np.logical_and.reduceat(self._enough(pods, lines, need[lines]), starts, axis=0)
+        count: Floats = done.sum(axis=0, dtype=np.float64)
+        return count
+
+    def best_call(self, station: int) -> Call | None:
+        """The call with the greatest gain at a station: one pod, or the set for one order.
+
+        One pod gains the slots it fills, the prospects it brings and the shortage it eases, minus
+        its cost. Where single pods complete nothing, the cheapest set that completes one order is
+        looked for.
+        """
+        pods = self.free_pods(station)
+        if not pods.size or (not self.slots[station] and not self.shortage[station].any()):
+            return None
+        weights, cost = self.data.weights, self.call_costs(pods, station)
+        done = self.completions(pods, station) if self.slots[station] else np.zeros(pods.size)
+        filled = np.minimum(done, self.slots[station])
+        eased = np.minimum(self.data.stock[pods], self.shortage[station]).sum(axis=1)
+        rewarded = done if weights.prospects else filled
+        gain = weights.empty_slot * filled + weights.complete * rewarded
+        gain = gain + weights.open_unit * eased - cost
+        gain[(filled == 0) & (eased == 0)] = -np.inf
+        best = int(gain.argmax())
+        single = Call(float(gain[best]), station, (int(pods[best]),))
+        if filled[best] > 0 or not self.slots[station]:
+            return single if single.gain > 0 else None
+        together = self._best_set(pods, cost, station)
+        options = [call for call in (single, together) if call is not None and call.gain > 0]
+        return max(options, key=lambda call: call.gain, default=None)
+
+    def best_prospect_call(self, station: int) -> Call | None:
+        """The pod whose prospects at a station are worth more than its call.
+
+        It must serve an order placed there, as (5) of the program demands: one that is there, or
+        one of its prospects in exchange for a placed order that no other pod depends on.
+        """
+        pods = self.free_pods(station)
+        if self._spare_order(station) < 0:
+            pods = pods[self._serves(pods, station).any(axis=1)]
+        if not pods.size or not self.data.weights.prospects:
+            return None
+        gain = self.data.weights.complete * self.completions(pods, station)
+        gain = gain - self.call_costs(pods, station)
+        best = int(gain.argmax())
+        return Call(float(gain[best]), station, (int(pods[best]),)) if gain[best] > 0 else None
+
+    def settle_prospects(self, call: Call) -> None:
+        """Make prospects of what a call brought; exchange one if its pod serves no placed order."""
+        station, pods = call.station, np.array(call.pods)
+        new = np.flatnonzero(self.prospect < 0)
+        self.reserve(station)
+        if self._serves(pods, station).any(axis=1).all():
+            return
+        spare = self._spare_order(station)
+        new = new[self.prospect[new] == station]
+        ready = new[self._holds(pods, new).any(axis=0)]
+        if spare < 0 or not ready.size:
+            self._take_back(call, new)
+            return
+        promoted = ready[self.data.order_worth[ready].argmax()]
+        self.order_station[promoted], self.prospect[promoted] = station, -1
+        self.order_station[spare], self.prospect[spare] = -1, station
+
+    def _take_back(self, call: Call, new: Integers) -> None:
+        """Undo a call that brought prospects only; its robot stays taken."""
+        for order in new.tolist():
+            self._take(order, call.station, -1)
+            self.prospect[order] = -1
+        pods = np.array(call.pods)
+        self.stock_left[call.station] -= self.data.stock[pods].sum(axis=0)
+        self.pod_station[pods] = -1
+
+    def _serves(self, pods: Integers, station: int) -> Flags:
+        """Whether each pod holds a SKU of each order placed at a station, shape (pods, placed)."""
+        return self._holds(pods, np.flatnonzero(self.order_station == station))
+
+    def _holds(self, pods: Integers, orders: Integers) -> Flags:
+        """Whether each pod holds a SKU of each order."""
+        data = self.data
+        asked = np.zeros((orders.size, data.skus), dtype=np.float32)
+        line = np.flatnonzero(np.isin(data.line_order, orders))
+        asked[np.searchsorted(orders, data.line_order[line]), data.line_sku[line]] = 1
+        holds: Flags = (data.stock[pods] > 0).astype(np.float32) @ asked.T > 0
+        return holds
+
+    def _spare_order(self, station: int) -> int:
+        """The placed order of least worth that no called pod depends on; -1 if there is none."""
+        orders = np.flatnonzero(self.order_station == station)
+        called = np.flatnonzero(self.pod_station == station)
+        serves = self._holds(called, orders)
+        needed = (serves & (serves.sum(axis=1) == 1)[:, None]).any(axis=0)
+        spare = orders[~needed]
+        return int(spare[self.data.order_worth[spare].argmin()]) if spare.size else -1
+
+    def _best_set(self, pods: Integers, cost: Floats, station: int) -> Call | None:
+        """The open order whose missing lines are cheapest to bring, one pod per line."""
+        need, lines, starts = self._needs(station)
+        if not lines.size:
+            return None
+        price = np.where(self._enough(pods, lines, need[lines]), cost, np.inf)
+        total = np.add.reduceat(price.min(axis=1), starts)
+        best = int(total.argmin())
+        if not np.isfinite(total[best]):
+            return None
+        end = starts[best + 1] if best + 1 < starts.size else lines.size
+        chosen = np.unique(pods[price[starts[best] : end].argmin(axis=1)])
+        if np.count_nonzero(self.data.needs_robot[chosen]) > self.robots.size and (
+            self.data.fetch is not None
+        ):
+            return None
+        weights = self.data.weights
+        order = int(self.data.line_order[lines[starts[best]]])
+        gain = weights.empty_slot + weights.complete + self.data.order_worth[order] - total[best]
+        return Call(float(gain), station, tuple(int(pod) for pod in chosen))
+
+    def _enough(self, pods: Integers, lines: Integers, need: Integers) -> Flags:
+        """Whether each pod alone holds what each line needs, shape (lines, pods)."""
+        self.scored += lines.size * pods.size
+        # Lines first: their flags are then combined order by order over contiguous rows.
+        enough: Flags = self._stock_of[np.ix_(self.data.line_sku[lines], pods)] >= need[:, None]
+        return enough
+
+    def _needs(self, station: int) -> tuple[Integers, Integers, Integers]:
+        """Units each line lacks at a station; the lacking lines of open orders; their starts.
+
+        Lines that the stock left covers are dropped, so that only what is missing is compared.
+        """
+        data = self.data
+        need = data.line_units - self.stock_left[station, data.line_sku]
+        waiting = self.open_orders & self.candidates.places[:, station]
+        lines = np.flatnonzero((need > 0) & waiting[data.line_order])
+        starts = np.flatnonzero(np.diff(data.line_order[lines], prepend=-1))
+        return need, lines, starts
+
+    def _send_robot(self, pod: int) -> None:
+        """Take the nearest free robot out of the draft's fleet."""
+        assert self.data.fetch is not None
+        nearest = self.data.fetch[self.robots, pod].argmin()
+        self.robots = np.delete(self.robots, nearest)
+        self._fetch = self._fetch_costs()
+
+    def _fetch_costs(self) -> Floats:
+        """Cost of the nearest free robot per pod: 0 if none is needed, inf if none is left."""
+        if self.data.fetch is None:
+            return np.zeros(self.data.pods)
+        nearest = self.data.fetch[self.robots].min(axis=0, initial=np.inf)
+        return np.where(self.data.needs_robot, self.data.weights.travel * nearest, 0.0)
+
+
+def decision(draft: Draft) -> Assignment:
+    """Make a decision of a draft, with the robots assigned at the least total cost.
+
+    Parameters
+    ----------
+    draft
+        The draft.
+    """
+    data = draft.data
+    slot = np.zeros((data.orders, data.stations), dtype=np.bool_)
+    placed = np.flatnonzero(draft.order_station >= 0)
+    slot[placed, draft.order_station[placed]] = True
+    return Assignment(
+        slot=slot,
+        line_station=draft.order_station[data.line_order],
+        pod_station=draft.pod_station,
+        pod_robot=assign_robots(data, draft.pod_station),
+        prospect=draft.prospect,
+    )
+
+
+def assign_robots(data: PileOn, pod_station: Integers) -> Integers:
+    """Send the free robots to the called pods at the least total cost, shape (P,).
+
+    Parameters
+    ----------
+    data
+        The input.
+    pod_station
+        Station of each called pod, or -1, shape (P,). There must be robots enough.
+    """
+    pod_robot = np.full(data.pods, -1)
+    pods = np.flatnonzero((pod_station >= 0) & data.needs_robot)
+    if data.fetch is not None and pods.size:
+        row, column = linear_sum_assignment(data.fetch[np.ix_(data.free_robots, pods)])
+        pod_robot[pods[column]] = data.free_robots[row]
+    return pod_robot
+
+
+def drop_idle(draft: Draft) -> None:
+    """Take back called pods that nobody needs any more, dearest first.
+
+    Parameters
+    ----------
+    draft
+        The draft; it is changed. Robots stay taken.
+    """
+    data = draft.data
+    called = np.flatnonzero(draft.pod_station >= 0)
+    cost = data.call_cost[called, draft.pod_station[called]]
+    for pod in called[np.lexsort((called, -cost))].tolist():
+        station = draft.pod_station[pod]
+        # What is left without the pod must still cover all that was placed or eased.
+        if np.all(data.stock[pod] <= draft.stock_left[station]):
+            draft.stock_left[station] -= data.stock[pod]
+            draft.pod_station[pod] = -1

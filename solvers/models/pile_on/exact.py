@@ -1,0 +1,90 @@
+"""What all back ends of the pile-on models share: candidates, start, fall-back, solution."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import replace
+from typing import Protocol
+
+from solvers.models.backends.outcome import Outcome
+from solvers.models.checks import require
+from solvers.models.pile_on.candidates import Candidates, everything
+from solvers.models.pile_on.data import Floats, PileOn
+from solvers.models.pile_on.program import formulate
+from solvers.models.pile_on.values import Assignment, nothing, objective, violations
+from solvers.models.program import LinearProgram
+from solvers.models.solution import Limits, Solution, Status
+
+
+class Backend(Protocol):
+    """The signature of `solvers.models.backends.*.solve`."""
+
+    def __call__(
+        self, program: LinearProgram, limits: Limits, *, seed: int, start: Floats | None
+    ) -> Outcome:
+        """Solve a program."""
+
+
+def solve_with(
+    backend: Backend,
+    data: PileOn,
+    limits: Limits,
+    *,
+    seed: int,
+    start: Assignment | None,
+    candidates: Candidates | None,
+    strengthen: bool,
+) -> Solution[Assignment]:
+    """Formulate and solve; the start is the answer if the solver finds nothing better.
+
+    Parameters
+    ----------
+    backend
+        The adapter to call.
+    data
+        The input.
+    limits
+        When to stop.
+    seed
+        Seed of the solver.
+    start
+        A feasible decision, or None for "decide nothing".
+    candidates
+        The pairs to use, None for all. With a proper subset there is no bound (-inf).
+    strengthen
+        Whether to add the strengthening rows.
+
+    Returns
+    -------
+    The solution; always with values.
+
+    Raises
+    ------
+    ModelError
+        If the start is not feasible.
+    """
+    began = time.perf_counter()
+    fallback = nothing(data) if start is None else start
+    broken = violations(data, fallback)
+    require(not broken, "start", "; ".join(broken))
+    pairs = everything(data) if candidates is None else candidates.including(fallback)
+    formulation = formulate(data, pairs, strengthen=strengthen)
+    point = None if start is None else formulation.encode(start)
+    outcome = backend(formulation.program, limits, seed=seed, start=point)
+    solution = outcome.solution(
+        formulation.decode,
+        lambda values: objective(data, values),
+        build_s=time.perf_counter() - began - outcome.wall_s,
+    )
+    if candidates is not None:
+        solution = replace(solution, bound=-math.inf)
+    worth = objective(data, fallback)
+    if not solution.found or solution.objective > worth:
+        solution = replace(
+            solution,
+            values=fallback,
+            objective=worth,
+            status=Status.OPTIMAL if solution.status is Status.OPTIMAL else Status.FEASIBLE,
+        )
+    return solution

@@ -1,0 +1,170 @@
+"""HADGS: alternate between orders and pods, station by station (Jiao et al. 2025, section 3).
+
+Per station, in turn: (OA) place every order that the station's pods already cover; (PS and TA) call
+the pod p, with its nearest robot r, of least
+
+    K(p) = -complete * (orders p would complete) + travel * (d_rp + d_ps)     (eq. 23)
+
+and start again, until the slots are full. Where no single pod completes an order, sets of pods are
+sampled (`SETS` of them, each covering a random order) and the best is improved by local searches
+(`SEARCHES` exchanges of one pod), the paper's l1 = 10 and l2 = 3. Details the paper leaves open are
+ours: stations in the order of their inbound travel, orders by worth, then units. Shortages of
+orders already placed are not in the paper: easing them lowers K by `open_unit` a unit.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from solvers.models.pile_on.candidates import Candidates, everything
+from solvers.models.pile_on.columns import every
+from solvers.models.pile_on.data import Floats, Integers, PileOn
+from solvers.models.pile_on.draft import Call, Draft, decision, drop_idle
+from solvers.models.pile_on.partial import cover_rest
+from solvers.models.pile_on.values import Assignment, objective
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+
+NAME = "hadgs"
+SETS = 10
+"""Pod sets sampled where no single pod completes an order (l1)."""
+
+SEARCHES = 3
+"""Local searches on the best of them (l2)."""
+
+
+def solve(
+    data: PileOn,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: Assignment | None = None,
+    candidates: Candidates | None = None,
+) -> Solution[Assignment]:
+    """Decide by HADGS.
+
+    Parameters
+    ----------
+    data
+        The input.
+    limits
+        ``iterations`` limits the calls of pods. Default: none.
+    seed
+        Seed of the sampled pod sets. Default 0.
+    start
+        Not used: the rule builds from nothing.
+    candidates
+        The pairs to use. Default: all.
+
+    Returns
+    -------
+    A feasible decision without a bound.
+    """
+    began = time.perf_counter()
+    draft = Draft(data, candidates or everything(data))
+    rng = np.random.default_rng(seed)
+    calls = 0
+    for station in _stations(data):
+        draft.fill(station)
+        while limits.iterations is None or calls < limits.iterations:
+            call = _next_call(draft, station, rng)
+            if call is None:
+                break
+            draft.call(call)
+            draft.fill(station)
+            calls += 1
+    drop_idle(draft)
+    for station in range(data.stations):
+        draft.reserve(station)
+    values = cover_rest(data, decision(draft))
+    ended = time.perf_counter()
+    return Solution(
+        values=values,
+        objective=objective(data, values),
+        bound=float("-inf"),
+        status=Status.FEASIBLE,
+        backend=NAME,
+        wall_s=ended - began,
+        work=float(draft.scored),
+    )
+
+
+def _stations(data: PileOn) -> list[int]:
+    """Stations in the order of the total travel of their inbound pods, then index."""
+    pods = np.flatnonzero(data.inbound >= 0)
+    coming = data.travel[pods, data.inbound[pods]]
+    total = np.bincount(data.inbound[pods], coming, minlength=data.stations)
+    order: list[int] = np.argsort(total, kind="stable").tolist()
+    return order
+
+
+def _next_call(draft: Draft, station: int, rng: np.random.Generator) -> Call | None:
+    """The pod of least K that completes an order or eases a shortage; else a sampled set."""
+    data, weights = draft.data, draft.data.weights
+    pods = draft.free_pods(station)
+    if not pods.size:
+        return None
+    eased = np.minimum(data.stock[pods], draft.shortage[station]).sum(axis=1)
+    done = draft.completions(pods, station) if draft.slots[station] else np.zeros(pods.size)
+    k = draft.call_costs(pods, station) - weights.complete * done - weights.open_unit * eased
+    k[(done == 0) & (eased == 0)] = np.inf
+    best = int(k.argmin())
+    if np.isfinite(k[best]):
+        return Call(float(-k[best]), station, (int(pods[best]),))
+    return _sampled_set(draft, station, pods, rng) if draft.slots[station] else None
+
+
+def _sampled_set(
+    draft: Draft, station: int, pods: Integers, rng: np.random.Generator
+) -> Call | None:
+    """Sample pod sets that each cover a random open order, and improve the best by exchanges."""
+    data = draft.data
+    need = data.line_units - draft.stock_left[station, data.line_sku]
+    enough = data.stock[np.ix_(pods, data.line_sku)] >= need
+    can = every(enough.any(axis=0) | (need <= 0), data) & draft.open_orders
+    orders = np.flatnonzero(can & draft.candidates.places[:, station])
+    if not orders.size:
+        return None
+    cost = draft.call_costs(pods, station)
+    best: tuple[float, Integers, Integers] | None = None
+    for _ in range(SETS):
+        order = int(orders[rng.integers(orders.size)])
+        own = np.arange(data.first_line[order], data.first_line[order + 1])
+        missing = own[need[own] > 0]
+        chosen = np.array([_draw(np.flatnonzero(enough[:, line]), rng) for line in missing])
+        best = _better(best, (_k(draft, station, pods, cost, chosen), chosen, missing))
+    for _ in range(SEARCHES if best is not None else 0):
+        assert best is not None
+        _, chosen, missing = best
+        swapped = chosen.copy()
+        at = int(rng.integers(missing.size))
+        swapped[at] = _draw(np.flatnonzero(enough[:, missing[at]]), rng)
+        best = _better(best, (_k(draft, station, pods, cost, swapped), swapped, missing))
+    if best is None or not np.isfinite(best[0]):
+        return None
+    return Call(-best[0], station, tuple(pods[np.unique(best[1])].tolist()))
+
+
+def _k(draft: Draft, station: int, pods: Integers, cost: Floats, chosen: Integers) -> float:
+    """K of a set of pods; inf if there are not robots enough for it."""
+    data = draft.data
+    members = np.unique(chosen)
+    if data.fetch is not None and data.needs_robot[pods[members]].sum() > draft.robots.size:
+        return float("inf")
+    left = draft.stock_left[station] + data.stock[pods[members]].sum(axis=0)
+    done = every(left[data.line_sku] >= data.line_units, data) & draft.open_orders
+    draft.scored += data.orders
+    return float(cost[members].sum() - data.weights.complete * done.sum())
+
+
+def _better(
+    one: tuple[float, Integers, Integers] | None, other: tuple[float, Integers, Integers]
+) -> tuple[float, Integers, Integers]:
+    """The set of smaller K; the earlier one if equal."""
+    return other if one is None or other[0] < one[0] else one
+
+
+def _draw(items: Integers, rng: np.random.Generator) -> int:
+    """One of the items, all equally likely."""
+    return int(items[rng.integers(items.size)])

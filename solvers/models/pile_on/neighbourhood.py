@@ -1,0 +1,136 @@
+"""Large inputs: decide a few stations anew at a time, exactly, while the others stand still.
+
+Starting from a decision, the stations are taken in pairs, neighbours by travel, again and again;
+each pair is solved with CP-SAT over its own orders, the waiting orders, and the pods and robots
+that the other stations leave. The result is never worse than the start, and the deterministic work
+of all parts together obeys the limit.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from solvers.models.pile_on import cp_sat
+from solvers.models.pile_on.candidates import Candidates, everything
+from solvers.models.pile_on.data import Integers, PileOn
+from solvers.models.pile_on.draft import assign_robots
+from solvers.models.pile_on.restrict import compact, part
+from solvers.models.pile_on.values import Assignment, nothing, objective
+from solvers.models.solution import Limits, Solution, Status
+
+NAME = "neighbourhood"
+WIDTH = 2
+"""Stations decided at a time."""
+
+DEFAULT_WORK = 1.0
+"""Deterministic seconds if the limits name none: a search over parts has no end of its own."""
+
+
+def solve(
+    data: PileOn,
+    limits: Limits | None = None,
+    *,
+    seed: int = 0,
+    start: Assignment | None = None,
+    candidates: Candidates | None = None,
+) -> Solution[Assignment]:
+    """Improve a decision part by part.
+
+    Parameters
+    ----------
+    data
+        The input.
+    limits
+        ``deterministic_s`` limits all parts together, ``iterations`` the number of parts, and
+        ``gap`` each part. Default: one deterministic second.
+    seed
+        Seed of CP-SAT. Default 0.
+    start
+        A feasible decision to start from. Default: decide nothing.
+    candidates
+        The pairs to use. Default: all.
+
+    Returns
+    -------
+    The decision; no bound, except where one part is all there is.
+    """
+    bounds = Limits(deterministic_s=DEFAULT_WORK) if limits is None else limits
+    values = nothing(data) if start is None else start
+    pairs = everything(data) if candidates is None else candidates
+    groups = station_groups(data)
+    if len(groups) <= 1 or data.variant.many_stations:
+        return cp_sat.solve(data, bounds, seed=seed, start=start, candidates=candidates)
+    began = time.perf_counter()
+    small = compact(data, pairs.including(values))
+    current = small.shrink(values)
+    build_s, work, idle, turn = 0.0, 0.0, 0, 0
+    most = bounds.iterations if bounds.iterations is not None else len(groups) * 1000
+    left = bounds.deterministic_s if bounds.deterministic_s is not None else DEFAULT_WORK
+    # Once every part has been tried since the last change, nothing more is to be found.
+    while turn < most and left - work > 0 and idle < len(groups):
+        stage = part(small.data, small.candidates, current, groups[turn % len(groups)])
+        turn += 1
+        idle += 1
+        if stage is None:
+            continue
+        before = stage.start()
+        found = cp_sat.solve(
+            stage.data,
+            replace(bounds, deterministic_s=left - work, iterations=None),
+            seed=seed,
+            start=before,
+            candidates=stage.candidates,
+        )
+        work += found.work
+        build_s += found.build_s
+        if found.objective < objective(stage.data, before):
+            current, idle = stage.merge(found.required), 0
+    current = replace(current, pod_robot=assign_robots(small.data, current.pod_station))
+    result = small.expand(current)
+    return Solution(
+        values=result,
+        objective=objective(data, result),
+        bound=float("-inf"),
+        status=Status.FEASIBLE,
+        backend=NAME,
+        wall_s=time.perf_counter() - began,
+        build_s=build_s,
+        work=work,
+    )
+
+
+def station_groups(data: PileOn) -> list[Integers]:
+    """Pairs of stations to decide together: in a ring of neighbours, each with the next.
+
+    Parameters
+    ----------
+    data
+        The input.
+
+    Returns
+    -------
+    Pairs in an order in which a round of them touches every station before any twice.
+    """
+    stations = np.flatnonzero((data.slots > 0) | (data.shortage > 0).any(axis=1))
+    if stations.size <= WIDTH:
+        return [stations] if stations.size else []
+    # Stations that the same pods are near to share orders and pods.
+    order = stations[np.argsort(_position(data, stations), kind="stable")]
+    starts = [*range(0, order.size, 2), *range(1, order.size, 2)]
+    return [np.sort(np.take(order, [i, i + 1], mode="wrap")) for i in starts]
+
+
+def _position(data: PileOn, stations: Integers) -> Integers:
+    """Place of each station in a nearest-neighbour tour by the travel of pods to them."""
+    travel = data.travel[:, stations]
+    tour = [0]
+    while len(tour) < stations.size:
+        apart = np.abs(travel - travel[:, tour[-1:]]).sum(axis=0)
+        apart[tour] = np.inf
+        tour.append(int(apart.argmin()))
+    place = np.empty(stations.size, dtype=np.int64)
+    place[tour] = np.arange(stations.size)
+    return place

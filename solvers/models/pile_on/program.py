@@ -1,0 +1,287 @@
+r"""The pile-on models as an integer linear program, for every back end.
+
+Columns (binary but for v): x_ps pod called, y_os slot taken, z_ls line covered, g_os prospect
+(could be filled, gets no slot), e_o order complete, w_o order started, b_rp robot fetches, v_sk
+open units left. In `Variant.WHOLE` an order is covered as a whole: z_ls = y_os and e_o = sum_s
+y_os, so that only x, y, g, b, v remain. That is M1G with h = y + g substituted (y <= h holds by
+itself), with the empty slots u_s = C_s - sum_o y_os, and without its link columns d: "2 d_ops <=
+y_os + x_ps, x_ps <= sum_o d_ops" says just that a called pod shares a SKU with an order placed
+there, which is (5).
+
+.. math::
+
+    (1)\quad & \textstyle\sum_o y_{os} \le C_s \\
+    (2)\quad & \textstyle\sum_l q_l (z_{ls} + g_{o(l)s}) \le surplus_{sk} - shortage_{sk}
+               + v_{sk} + \sum_p a_{pk} x_{ps} \quad (l \text{ with SKU } k) \\
+    (3)\quad & \textstyle\sum_s x_{ps} \le 1, \qquad
+               \sum_r b_{rp} = \sum_s x_{ps}, \qquad \sum_p b_{rp} \le 1 \\
+    (4)\quad & \textstyle\sum_s (y_{os} + g_{os}) \le 1 \\
+    (5)\quad & x_{ps} \le \textstyle\sum_{l: a_{p k(l)} > 0} z_{ls} + [p \text{ eases shortage}] \\
+    (6)\quad & z_{ls} \le y_{os}, \qquad y_{os} \le \textstyle\sum_{l \in o} z_{ls}
+               \;(\text{split}), \qquad e_o \le \textstyle\sum_s z_{ls} \\
+    (7)\quad & y_{os} \le w_o \le \textstyle\sum_s y_{os}, \qquad
+               w_o + \sum_s g_{os} \le 1, \qquad \sum_s z_{ls} \le 1 \text{ or} = w_o
+               \quad (\text{split over stations, instead of (4)}) \\
+    (8)\quad & q_l (z_{ls} + g_{os}) \le \min(q_l, surplus_{sk})
+               + \textstyle\sum_p \min(q_l, a_{pk}) x_{ps}
+
+(8) is ours: implied for whole numbers, it cuts off the fractions of a well-stocked pod that (2)
+leaves to the relaxation, and is what makes the bound good.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solvers.models.pile_on.candidates import Candidates
+from solvers.models.pile_on.columns import Columns, add_columns, decode, encode
+from solvers.models.pile_on.data import Floats, Integers, PileOn
+from solvers.models.pile_on.values import Assignment
+from solvers.models.pile_on.variant import Variant
+from solvers.models.program import LinearProgram, ProgramBuilder
+
+
+@dataclass(frozen=True)
+class Formulation:
+    """The program of one input, and the way from its columns to a decision and back."""
+
+    data: PileOn
+    columns: Columns
+    program: LinearProgram
+
+    def decode(self, x: Floats) -> Assignment:
+        """Make a decision of column values."""
+        return decode(self.data, self.columns, x)
+
+    def encode(self, values: Assignment) -> Floats:
+        """Make column values of a feasible decision that uses candidate pairs only."""
+        return encode(self.data, self.columns, values, self.program.columns)
+
+
+def formulate(data: PileOn, candidates: Candidates, *, strengthen: bool = True) -> Formulation:
+    """State the program of an input.
+
+    Parameters
+    ----------
+    data
+        The input.
+    candidates
+        The pairs to use.
+    strengthen
+        Whether to add (8). Default: yes.
+    """
+    builder = ProgramBuilder()
+    columns = add_columns(builder, data, candidates)
+    held = _held(data, columns)
+    _slot_rows(builder, data, columns)
+    _supply_rows(builder, data, columns, held, strengthen)
+    _call_rows(builder, columns)
+    _serving_rows(builder, data, columns, held)
+    _robot_rows(builder, data, columns)
+    _order_rows(builder, data, columns)
+    _cover_rows(builder, data, columns)
+    if strengthen:
+        _strong_line_rows(builder, data, columns, held)
+        _strong_shortage_rows(builder, data, columns, held)
+    offset = data.weights.empty_slot * float(data.slots.sum())
+    return Formulation(data, columns, builder.build(offset))
+
+
+@dataclass(frozen=True)
+class _Places:
+    """Entries sorted by (station, SKU): those of place i are ``start[i]:start[i + 1]``."""
+
+    entry: Integers
+    start: Integers
+
+    @classmethod
+    def group(cls, data: PileOn, station: Integers, sku: Integers) -> _Places:
+        """Group entries by their place, number station * K + SKU."""
+        place = station * data.skus + sku
+        entry = np.argsort(place, kind="stable")
+        bounds = np.arange(data.stations * data.skus + 1)
+        return cls(entry, np.searchsorted(place[entry], bounds))
+
+    def of(self, place: Integers) -> tuple[Integers, Integers]:
+        """For each listed place its entries: positions in the list, and entries, side by side."""
+        count = self.start[place + 1] - self.start[place]
+        position = np.repeat(np.arange(place.size), count)
+        first = np.repeat(self.start[place] - np.cumsum(count) + count, count)
+        return position, self.entry[first + np.arange(position.size)]
+
+
+@dataclass(frozen=True)
+class _Held:
+    """What the pods of the calls bring of the wanted SKUs: call, SKU and units per entry."""
+
+    call: Integers
+    sku: Integers
+    units: Integers
+    places: _Places
+
+
+def _held(data: PileOn, columns: Columns) -> _Held:
+    """Collect the wanted stock behind each call."""
+    call, column = np.nonzero(data.stock[np.ix_(columns.pod, data.wanted)])
+    sku = data.wanted[column]
+    units = data.stock[columns.pod[call], sku]
+    return _Held(call, sku, units, _Places.group(data, columns.station[call], sku))
+
+
+def _slot_rows(builder: ProgramBuilder, data: PileOn, columns: Columns) -> None:
+    """(1): no station takes more orders than it has slots."""
+    builder.rows(data.stations, (columns.at, columns.slot, 1), upper=data.slots)
+
+
+def _supply_rows(
+    builder: ProgramBuilder, data: PileOn, columns: Columns, held: _Held, strengthen: bool
+) -> None:
+    """(2): per station and SKU, covered lines and prospects fit the stock that is or will be."""
+    line_place = columns.at[columns.place] * data.skus + data.line_sku[columns.line]
+    asking = np.bincount(line_place, minlength=data.stations * data.skus)
+    # Where one line alone asks for a SKU, (8) says the same and more.
+    needed = (asking > (1 if strengthen else 0)) | (data.shortage.ravel() > 0)
+    place = np.flatnonzero(needed)
+    row_of = _numbering(place, needed.size)
+    row, entry = held.places.of(place)
+    lines = np.flatnonzero(row_of[line_place] >= 0)
+    units, at = data.line_units[columns.line[lines]], row_of[line_place[lines]]
+    demand = [(at, columns.cover[lines], units)]
+    if columns.prospect.size:
+        demand.append((at, columns.prospect[columns.place[lines]], units))
+    short = row_of[columns.short_station * data.skus + columns.short_sku]
+    builder.rows(
+        place.size,
+        *demand,
+        (row, columns.call[held.call[entry]], -held.units[entry]),
+        (short, columns.short, -1),
+        upper=(data.surplus - data.shortage).ravel()[place],
+    )
+
+
+def _call_rows(builder: ProgramBuilder, columns: Columns) -> None:
+    """(3): a pod is called to one station at most."""
+    pods, row = np.unique(columns.pod, return_inverse=True)
+    builder.rows(pods.size, (row, columns.call, 1), upper=1)
+
+
+def _serving_rows(builder: ProgramBuilder, data: PileOn, columns: Columns, held: _Held) -> None:
+    """(5): a called pod serves a placed order, unless it eases a shortage."""
+    eases = np.zeros(columns.call.size, dtype=np.bool_)
+    eases[held.call[data.shortage[columns.station[held.call], held.sku] > 0]] = True
+    calls = np.flatnonzero(~eases)
+    row_of = _numbering(calls, columns.call.size)
+    lines = _Places.group(data, columns.at[columns.place], data.line_sku[columns.line])
+    serving = np.flatnonzero(~eases[held.call])
+    place = columns.station[held.call[serving]] * data.skus + held.sku[serving]
+    position, line = lines.of(place)
+    row = row_of[held.call[serving[position]]]
+    # Two lines of one order share a column in `Variant.WHOLE`; it counts once.
+    row, cover = np.unique(np.stack([row, columns.cover[line]]), axis=1)
+    builder.rows(
+        calls.size,
+        (np.arange(calls.size), columns.call[calls], 1),
+        (row, cover, -1),
+        upper=0,
+    )
+
+
+def _robot_rows(builder: ProgramBuilder, data: PileOn, columns: Columns) -> None:
+    """(3): a called pod that needs a robot has one, and a robot fetches one pod at most."""
+    if data.fetch is None:
+        return
+    pods = np.unique(columns.pod[data.needs_robot[columns.pod]])
+    row_of = _numbering(pods, data.pods)
+    calls = np.flatnonzero(row_of[columns.pod] >= 0)
+    builder.rows(
+        pods.size,
+        (row_of[columns.fetched], columns.fetch, 1),
+        (row_of[columns.pod[calls]], columns.call[calls], -1),
+        lower=0,
+        upper=0,
+    )
+    robots, row = np.unique(columns.robot, return_inverse=True)
+    builder.rows(robots.size, (row, columns.fetch, 1), upper=1)
+
+
+def _order_rows(builder: ProgramBuilder, data: PileOn, columns: Columns) -> None:
+    """(4) and (7): how many stations an order may go to, and when it counts as started."""
+    order, index = np.arange(data.orders), np.arange(columns.order.size)
+    waiting = [(columns.order, columns.prospect, 1)] if columns.prospect.size else []
+    if not data.variant.many_stations:
+        builder.rows(data.orders, (columns.order, columns.slot, 1), *waiting, upper=1)
+        return
+    builder.rows(data.orders, (order, columns.started, 1), *waiting, upper=1)
+    builder.rows(
+        data.orders, (order, columns.started, 1), (columns.order, columns.slot, -1), upper=0
+    )
+    started = columns.started[columns.order]
+    builder.rows(index.size, (index, columns.slot, 1), (index, started, -1), upper=0)
+
+
+def _cover_rows(builder: ProgramBuilder, data: PileOn, columns: Columns) -> None:
+    """(6) and (7): how the lines of an order go with its slots."""
+    variant = data.variant
+    if variant is Variant.WHOLE:
+        return
+    index = np.arange(columns.line.size)
+    slot = columns.slot[columns.place]
+    builder.rows(index.size, (index, columns.cover, 1), (index, slot, -1), upper=0)
+    if variant is not Variant.LATER:
+        places = np.arange(columns.order.size)
+        builder.rows(
+            places.size, (places, columns.slot, 1), (columns.place, columns.cover, -1), upper=0
+        )
+    line = np.arange(data.lines)
+    if variant is Variant.SPLIT_STATIONS:
+        started = columns.started[data.line_order]
+        builder.rows(
+            data.lines, (columns.line, columns.cover, 1), (line, started, -1), lower=0, upper=0
+        )
+        return
+    if variant is Variant.SPLIT_BOTH:
+        builder.rows(data.lines, (columns.line, columns.cover, 1), upper=1)
+    finished = columns.complete[data.line_order]
+    builder.rows(data.lines, (line, finished, 1), (columns.line, columns.cover, -1), upper=0)
+
+
+def _strong_line_rows(builder: ProgramBuilder, data: PileOn, columns: Columns, held: _Held) -> None:
+    """(8): a covered line needs pods that hold its SKU, counted no higher than the line asks."""
+    place = columns.at[columns.place] * data.skus + data.line_sku[columns.line]
+    surplus, units = data.surplus.ravel()[place], data.line_units[columns.line]
+    lines = np.flatnonzero(surplus < units)
+    row, entry = held.places.of(place[lines])
+    index, units = np.arange(lines.size), units[lines]
+    waiting = []
+    if columns.prospect.size:
+        waiting = [(index, columns.prospect[columns.place[lines]], units)]
+    builder.rows(
+        lines.size,
+        (index, columns.cover[lines], units),
+        *waiting,
+        (row, columns.call[held.call[entry]], -np.minimum(held.units[entry], units[row])),
+        upper=surplus[lines],
+    )
+
+
+def _strong_shortage_rows(
+    builder: ProgramBuilder, data: PileOn, columns: Columns, held: _Held
+) -> None:
+    """(8) for open demand: what is not left open needs pods, each counted up to the need."""
+    units = data.shortage[columns.short_station, columns.short_sku]
+    row, entry = held.places.of(columns.short_station * data.skus + columns.short_sku)
+    builder.rows(
+        units.size,
+        (np.arange(units.size), columns.short, 1),
+        (row, columns.call[held.call[entry]], np.minimum(held.units[entry], units[row])),
+        lower=units,
+    )
+
+
+def _numbering(members: Integers, size: int) -> Integers:
+    """Position of each member, -1 for all others."""
+    position = np.full(size, -1)
+    position[members] = np.arange(members.size)
+    return position

@@ -1,0 +1,65 @@
+"""Lower bounds on the pile-on models from the linear relaxation (cvxpy, Clarabel).
+
+The relaxation is that of the strengthened program over all pairs; its bound is made of the duals by
+`safe_bound` and rounded to the safe side. It suits small and middling sites. At a large site the
+interior-point factors fill in, and the bound that CP-SAT proves on the full program (`cp_sat.solve`
+without candidates) is as good and much faster; the benchmark compares them.
+"""
+
+from __future__ import annotations
+
+from solvers.models.backends.clarabel import LinearRelaxation, Relaxation
+from solvers.models.pile_on.candidates import everything
+from solvers.models.pile_on.data import PileOn
+from solvers.models.pile_on.program import formulate
+from solvers.models.solution import NO_LIMITS, Limits
+
+
+class PileOnRelaxation:
+    """Bounds for a stream of inputs, compiled anew only when their pattern changes.
+
+    Inputs share a pattern as long as the same pods hold SKUs of the same lines; costs, weights,
+    quantities and slots may change.
+
+    Attributes
+    ----------
+    compilations
+        How often a relaxation was compiled.
+    """
+
+    def __init__(self) -> None:
+        self.compilations = 0
+        self._compiled: LinearRelaxation | None = None
+
+    def solve(self, data: PileOn, limits: Limits = NO_LIMITS) -> Relaxation:
+        """Relax and solve an input.
+
+        Parameters
+        ----------
+        data
+            The input.
+        limits
+            ``iterations`` limits the interior-point method.
+
+        Returns
+        -------
+        The relaxed columns and the bound, valid however the solver ended.
+        """
+        program = formulate(data, everything(data)).program
+        if self._compiled is None or not self._compiled.fits(program):
+            self._compiled = LinearRelaxation(program)
+            self.compilations += 1
+        return self._compiled.solve(program, limits)
+
+
+def bound(data: PileOn, limits: Limits = NO_LIMITS) -> float:
+    """Lower bound on the objective of every decision.
+
+    Parameters
+    ----------
+    data
+        The input.
+    limits
+        ``iterations`` limits the interior-point method.
+    """
+    return PileOnRelaxation().solve(data, limits).bound

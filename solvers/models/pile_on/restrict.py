@@ -1,0 +1,210 @@
+"""Smaller inputs of the same kind: without what cannot matter, or for a few stations only.
+
+Each restriction knows the way back from its decision to one of the full input.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from solvers.models.pile_on.candidates import Candidates
+from solvers.models.pile_on.data import Integers, PileOn
+from solvers.models.pile_on.values import Assignment
+
+
+@dataclass(frozen=True)
+class Compact:
+    """An input without the pods and SKUs that cannot matter.
+
+    Parameters
+    ----------
+    full
+        The full input.
+    data, candidates
+        The small one, and its pairs.
+    pods
+        Its pods in the numbering of the full input.
+    """
+
+    full: PileOn
+    data: PileOn
+    candidates: Candidates
+    pods: Integers
+
+    def expand(self, values: Assignment) -> Assignment:
+        """Make a decision of the full input."""
+        pod_station = np.full(self.full.pods, -1)
+        pod_robot = np.full(self.full.pods, -1)
+        pod_station[self.pods], pod_robot[self.pods] = values.pod_station, values.pod_robot
+        return replace(values, pod_station=pod_station, pod_robot=pod_robot)
+
+    def shrink(self, values: Assignment) -> Assignment:
+        """Make a decision of the small input of one that uses candidate pairs only."""
+        return replace(
+            values,
+            pod_station=values.pod_station[self.pods],
+            pod_robot=values.pod_robot[self.pods],
+        )
+
+
+def compact(data: PileOn, candidates: Candidates) -> Compact:
+    """Keep pods that may be called, are inbound or bound to a robot, and SKUs that are wanted.
+
+    Parameters
+    ----------
+    data
+        The input.
+    candidates
+        The pairs to use.
+    """
+    kept = candidates.calls.any(axis=1) | (data.inbound >= 0)
+    bound = np.zeros(0, dtype=np.int64) if data.robot_pod is None else data.robot_pod
+    kept[bound[bound >= 0]] = True
+    pods = np.flatnonzero(kept)
+    new_pod = np.full(data.pods + 1, -1)
+    new_pod[pods] = np.arange(pods.size)
+    new_sku = np.full(data.skus, -1)
+    new_sku[data.wanted] = np.arange(data.wanted.size)
+    small = replace(
+        data,
+        line_sku=new_sku[data.line_sku],
+        stock=data.stock[np.ix_(pods, data.wanted)],
+        travel=data.travel[pods],
+        available=data.available[pods],
+        inbound=data.inbound[pods],
+        open_units=data.open_units[:, data.wanted],
+        fetch=None if data.fetch is None else data.fetch[:, pods],
+        robot_pod=None if data.robot_pod is None else new_pod[data.robot_pod],
+    )
+    pairs = Candidates(candidates.calls[pods], candidates.places, candidates.fetches[:, pods])
+    return Compact(data, small, pairs, pods)
+
+
+@dataclass(frozen=True)
+class Part:
+    """The decisions of a few stations, all others fixed as they are.
+
+    Parameters
+    ----------
+    full
+        The full input.
+    values
+        The decision that fixes the rest.
+    data, candidates
+        The input of the part, and its pairs.
+    stations, orders, robots
+        What belongs to the part, in the numbering of the full input.
+    """
+
+    full: PileOn
+    values: Assignment
+    data: PileOn
+    candidates: Candidates
+    stations: Integers
+    orders: Integers
+    robots: Integers
+
+    @property
+    def lines(self) -> Integers:
+        """The lines of its orders, in the numbering of the full input."""
+        return np.flatnonzero(np.isin(self.full.line_order, self.orders))
+
+    def start(self) -> Assignment:
+        """What the fixed decision does in the part."""
+        values = self.values
+        robot_of = self._numbering(self.robots, self.full.robots)
+        station_of = self._numbering(self.stations, self.full.stations)
+        inside = station_of[values.pod_station] >= 0
+        return Assignment(
+            slot=values.slot[np.ix_(self.orders, self.stations)],
+            line_station=station_of[values.line_station[self.lines]],
+            pod_station=station_of[values.pod_station],
+            pod_robot=np.where(inside, robot_of[values.pod_robot], -1),
+            prospect=station_of[values.prospect[self.orders]],
+        )
+
+    def merge(self, values: Assignment) -> Assignment:
+        """Put a decision of the part into the fixed rest."""
+        slot, pod_robot = self.values.slot.copy(), self.values.pod_robot.copy()
+        slot[np.ix_(self.orders, self.stations)] = values.slot
+        line_station, prospect = self.values.line_station.copy(), self.values.prospect.copy()
+        line_station[self.lines] = self._station(values.line_station)
+        prospect[self.orders] = self._station(values.prospect)
+        pod_station = self.values.pod_station.copy()
+        own = np.isin(pod_station, self.stations) | (values.pod_station >= 0)
+        pod_station[own] = self._station(values.pod_station[own])
+        robots = np.append(self.robots, -1)
+        pod_robot[own] = robots[values.pod_robot[own]]
+        return Assignment(slot, line_station, pod_station, pod_robot, prospect)
+
+    def _station(self, own: Integers) -> Integers:
+        """Stations of the part in the numbering of the full input; -1 stays."""
+        full: Integers = np.append(self.stations, -1)[own]
+        return full
+
+    @staticmethod
+    def _numbering(members: Integers, size: int) -> Integers:
+        """Position of each member, -1 for all others and for -1 itself."""
+        position = np.full(size + 1, -1)
+        position[members] = np.arange(members.size)
+        return position
+
+
+def part(
+    data: PileOn, candidates: Candidates, values: Assignment, stations: Integers
+) -> Part | None:
+    """Free the decisions of a few stations.
+
+    Parameters
+    ----------
+    data
+        The input; orders go to one station each.
+    candidates
+        The pairs to use.
+    values
+        A feasible decision that uses candidate pairs only.
+    stations
+        The stations to decide anew.
+
+    Returns
+    -------
+    The part: its orders are those at these stations and those that wait, its pods and robots those
+    that no other station has. None if there is no order to decide on.
+    """
+    elsewhere = np.ones(data.stations, dtype=np.bool_)
+    elsewhere[stations] = False
+    outside = np.append(elsewhere, False)
+    taken = values.slot[:, elsewhere].any(axis=1) | outside[values.prospect]
+    orders = np.flatnonzero(~taken & candidates.places[:, stations].any(axis=1))
+    if not orders.size:
+        return None
+    called = outside[values.pod_station]
+    busy = np.zeros(data.robots, dtype=np.bool_)
+    away = values.pod_robot[called]
+    busy[away[away >= 0]] = True
+    robots = np.flatnonzero(~busy)
+    lines = np.flatnonzero(np.isin(data.line_order, orders))
+    own = Candidates(
+        candidates.calls[:, stations] & ~called[:, None],
+        candidates.places[np.ix_(orders, stations)],
+        candidates.fetches[robots],
+    )
+    station_of = np.full(data.stations + 1, -1)
+    station_of[stations] = np.arange(stations.size)
+    small = replace(
+        data,
+        slots=data.slots[stations],
+        line_order=np.searchsorted(orders, data.line_order[lines]),
+        line_sku=data.line_sku[lines],
+        line_units=data.line_units[lines],
+        travel=data.travel[:, stations],
+        available=data.available & ~called,
+        inbound=station_of[data.inbound],
+        open_units=data.open_units[stations],
+        fetch=None if data.fetch is None else data.fetch[robots],
+        robot_pod=None if data.robot_pod is None else data.robot_pod[robots],
+        worth=None if data.worth is None else data.worth[orders],
+    )
+    return Part(data, values, small, own, stations, orders, robots)

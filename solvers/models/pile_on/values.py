@@ -1,0 +1,242 @@
+r"""A decision, what it costs, and whether it is allowed.
+
+The objective, with x: pod called to station, b: robot fetches pod, n_s: slots taken, v: open units
+left uncovered, c_o: order covered in full (or, a prospect, coverable), z_l: line covered, and
+m_o: slots the order takes:
+
+.. math::
+
+    \min\ & \sum_{p,s} (visit + travel \cdot t_{ps})\, x_{ps} + travel \sum_{r,p} f_{rp}\, b_{rp}
+        + empty \sum_s (C_s - n_s) + open\_unit \sum_{s,k} v_{sk} \\
+    & - complete \sum_o c_o - line \sum_l z_l - \sum_o worth_o [m_o > 0]
+        + open\_line \sum_{l: m_{o(l)} > 0} (1 - z_l) + part \sum_o (m_o - 1)^+
+
+where the `open_line` term belongs to `Variant.LATER` alone. With the default weights, `WHOLE` and
+robots this is M1G (Jiao et al. 2025, eq. 14): its "order could be filled" h_o is c_o here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solvers.models.pile_on.data import Flags, Integers, PileOn
+from solvers.models.pile_on.variant import Variant
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """One joint decision.
+
+    Parameters
+    ----------
+    slot
+        Whether an order (or a part of it) takes a slot at a station, shape (O, S).
+    line_station
+        Station whose pods cover a line now, or -1, shape (L,).
+    pod_station
+        Station a pod is newly called to, or -1, shape (P,).
+    pod_robot
+        Robot that fetches a called pod, or -1, shape (P,).
+    prospect
+        Station with free slots whose pods could fill the order as well, though it gets none, or
+        -1, shape (O,).
+    """
+
+    slot: Flags
+    line_station: Integers
+    pod_station: Integers
+    pod_robot: Integers
+    prospect: Integers
+
+
+def nothing(data: PileOn) -> Assignment:
+    """Decide nothing; feasible for every input and variant.
+
+    Parameters
+    ----------
+    data
+        The input.
+    """
+    return Assignment(
+        slot=np.zeros((data.orders, data.stations), dtype=np.bool_),
+        line_station=np.full(data.lines, -1),
+        pod_station=np.full(data.pods, -1),
+        pod_robot=np.full(data.pods, -1),
+        prospect=np.full(data.orders, -1),
+    )
+
+
+def demand(data: PileOn, values: Assignment) -> Integers:
+    """Units that covered lines and prospects take from each station's pods, shape (S, K).
+
+    Parameters
+    ----------
+    data
+        The input.
+    values
+        The decision.
+    """
+    wanted = np.zeros((data.stations, data.skus), dtype=np.int64)
+    for station in (values.line_station, values.prospect[data.line_order]):
+        at = np.flatnonzero(station >= 0)
+        np.add.at(wanted, (station[at], data.line_sku[at]), data.line_units[at])
+    return wanted
+
+
+def called_supply(data: PileOn, values: Assignment) -> Integers:
+    """Units that newly called pods bring to each station, shape (S, K).
+
+    Parameters
+    ----------
+    data
+        The input.
+    values
+        The decision.
+    """
+    supply = np.zeros((data.stations, data.skus), dtype=np.int64)
+    called = np.flatnonzero(values.pod_station >= 0)
+    np.add.at(supply, values.pod_station[called], data.stock[called])
+    return supply
+
+
+def uncovered(data: PileOn, values: Assignment) -> Integers:
+    """Units of open demand that a decision leaves without stock, shape (S, K).
+
+    Parameters
+    ----------
+    data
+        The input.
+    values
+        The decision. If it takes more than there is, the numbers exceed the shortage.
+    """
+    have = data.surplus + called_supply(data, values)
+    return np.maximum(data.shortage + demand(data, values) - have, 0)
+
+
+def complete(data: PileOn, values: Assignment) -> Flags:
+    """Whether all lines of an order are covered now, shape (O,).
+
+    Parameters
+    ----------
+    data
+        The input.
+    values
+        The decision.
+    """
+    covered = values.line_station >= 0
+    if not data.orders:
+        return np.zeros(0, dtype=np.bool_)
+    return np.logical_and.reduceat(covered, data.first_line[:-1])
+
+
+def objective(data: PileOn, values: Assignment) -> float:
+    """Cost of a decision (see the module): smaller is better.
+
+    Parameters
+    ----------
+    data
+        The input.
+    values
+        The decision.
+    """
+    weights = data.weights
+    called = np.flatnonzero(values.pod_station >= 0)
+    cost = float(data.call_cost[called, values.pod_station[called]].sum())
+    if data.fetch is not None:
+        fetched = np.flatnonzero(values.pod_robot >= 0)
+        cost += weights.travel * float(data.fetch[values.pod_robot[fetched], fetched].sum())
+    cost += weights.empty_slot * int(data.slots.sum() - values.slot.sum())
+    cost += weights.open_unit * int(uncovered(data, values).sum())
+    parts = values.slot.sum(axis=1)
+    covered = values.line_station >= 0
+    cost -= weights.complete * int(complete(data, values).sum() + (values.prospect >= 0).sum())
+    cost -= weights.line * int(covered.sum())
+    cost -= float(data.order_worth[parts > 0].sum())
+    if data.variant is Variant.LATER:
+        cost += weights.open_line * int((~covered & (parts[data.line_order] > 0)).sum())
+    return cost + weights.part * int(np.maximum(parts - 1, 0).sum())
+
+
+def violations(data: PileOn, values: Assignment) -> list[str]:
+    """Say which constraints a decision breaks.
+
+    Parameters
+    ----------
+    data
+        The input.
+    values
+        The decision.
+
+    Returns
+    -------
+    One line per kind of violation, naming the first place; empty if the decision is allowed.
+    """
+    parts = values.slot.sum(axis=1)
+    called = np.flatnonzero(values.pod_station >= 0)
+    missing = uncovered(data, values) - data.shortage
+    checks = {
+        "station takes more orders than it has slots": values.slot.sum(axis=0) > data.slots,
+        "stock of station does not cover what it serves": (missing > 0).any(axis=1),
+        "pod is called but not available": (values.pod_station >= 0) & ~data.available,
+        "prospect is not rewarded, or has a slot": (values.prospect >= 0)
+        & ((parts > 0) | (not data.weights.prospects)),
+        "prospect waits for a station without slots": np.append(data.slots == 0, False)[
+            values.prospect
+        ],
+        "called pod serves nobody": _idle(data, values, called),
+    }
+    checks |= _order_checks(data, values, parts)
+    checks |= _robot_checks(data, values)
+    return [
+        f"{text}: {np.flatnonzero(broken)[0]}" for text, broken in checks.items() if broken.any()
+    ]
+
+
+def _order_checks(data: PileOn, values: Assignment, parts: Integers) -> dict[str, Flags]:
+    """Check the rules of the variant on the lines and slots of orders."""
+    covered = values.line_station >= 0
+    placed = parts[data.line_order] > 0
+    stray = covered.copy()
+    at = np.flatnonzero(covered)
+    stray[at] = ~values.slot[data.line_order[at], values.line_station[at]]
+    checks = {"line is covered where its order has no slot": stray}
+    if not data.variant.many_stations:
+        checks["order has slots at several stations"] = parts > 1
+    if data.variant in (Variant.WHOLE, Variant.SPLIT_STATIONS):
+        checks["placed order has an open line"] = placed & ~covered
+    if data.variant.many_stations or data.variant.leaves_backlog:
+        served = np.zeros_like(values.slot)
+        served[data.line_order[at], values.line_station[at]] = True
+        idle: Flags = np.any(values.slot & ~served, axis=1)
+        checks["slot of order covers no line"] = idle
+    return checks
+
+
+def _idle(data: PileOn, values: Assignment, called: Integers) -> Flags:
+    """Which of the pods are called without stock for a served line or a shortage there."""
+    asked = data.shortage > 0
+    at = np.flatnonzero(values.line_station >= 0)
+    asked[values.line_station[at], data.line_sku[at]] = True
+    useful = ((data.stock[called] > 0) & asked[values.pod_station[called]]).any(axis=1)
+    idle = np.zeros(data.pods, dtype=np.bool_)
+    idle[called] = ~useful
+    return idle
+
+
+def _robot_checks(data: PileOn, values: Assignment) -> dict[str, Flags]:
+    """Check that pods that need a robot have one, and robots fetch one pod at most."""
+    fetched = values.pod_robot >= 0
+    needs = data.needs_robot & (values.pod_station >= 0)
+    checks = {
+        "called pod has no robot": needs & ~fetched,
+        "pod has a robot it does not need": fetched & ~needs,
+    }
+    if data.robot_pod is not None:
+        robot = values.pod_robot[fetched]
+        trips = np.bincount(robot, minlength=data.robots)
+        checks["robot is bound or fetches two pods"] = (trips > 1) | (
+            (trips > 0) & (data.robot_pod >= 0)
+        )
+    return checks

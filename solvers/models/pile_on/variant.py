@@ -1,0 +1,88 @@
+"""How an order may be covered, and what each part of the objective weighs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from enum import Enum
+
+from solvers.models.checks import number
+
+
+class Variant(Enum):
+    """How the lines of an order may be covered (Xie, Thieme, Krenzler, Li 2021)."""
+
+    WHOLE = "whole"
+    """An order gets a slot only if the pods assigned to that station cover all its lines."""
+
+    LATER = "later"
+    """An order may take a slot with lines still open; pods called later cover them."""
+
+    SPLIT_STATIONS = "split-stations"
+    """The lines of an order may be spread over stations; all of them are covered now."""
+
+    SPLIT_TIME = "split-time"
+    """One station covers some lines of an order; the rest stays in the backlog."""
+
+    SPLIT_BOTH = "split-both"
+    """Any lines at any stations; the rest stays in the backlog."""
+
+    @property
+    def many_stations(self) -> bool:
+        """Whether an order may take slots at several stations."""
+        return self in (Variant.SPLIT_STATIONS, Variant.SPLIT_BOTH)
+
+    @property
+    def leaves_backlog(self) -> bool:
+        """Whether lines may stay behind in the backlog."""
+        return self in (Variant.SPLIT_TIME, Variant.SPLIT_BOTH)
+
+
+@dataclass(frozen=True)
+class Weights:
+    """The weights of the objective; the unit is that of the travel cost.
+
+    The defaults are those of M1G (Jiao et al. 2025, with travel in metres), plus values for what
+    M1G does not have.
+
+    Parameters
+    ----------
+    travel
+        Per unit of travel of a called pod to its station and of a robot to the pod. Default 1.
+    visit
+        Per called pod, beyond its travel: the hand-over at the station. Default 0.
+    empty_slot
+        Per slot that stays empty. Default 1000.
+    complete
+        Reward per order that the pods assigned to its station cover in full. Default 40.
+    prospects
+        Whether `complete` also rewards orders that get no slot but could be filled from what the
+        pods bring (M1G does): good pods for the next decision. Default yes.
+    open_unit
+        Per unit of the demand of orders already at a station that no pod covers. Default 1000.
+    open_line
+        Per line of a newly placed order that is not covered now (`Variant.LATER`). Default 100.
+    line
+        Reward per line covered, whatever its order. Default 0.
+    part
+        Per slot an order takes beyond its first (split over stations): the consolidation of its
+        parts. Default 100.
+
+    Raises
+    ------
+    ModelError
+        If a weight is negative or not finite.
+    """
+
+    travel: float = 1.0
+    visit: float = 0.0
+    empty_slot: float = 1000.0
+    complete: float = 40.0
+    prospects: bool = True
+    open_unit: float = 1000.0
+    open_line: float = 100.0
+    line: float = 0.0
+    part: float = 100.0
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            number(f"weights.{field.name}", getattr(self, field.name), low=0)

@@ -1,0 +1,13 @@
+"""Rack sequencing at one station (Boysen, Briskorn, Emde 2017): fewest pod visits.
+
+- `dynamic.solve`: exact, for about ten orders; `cp_sat.solve`: exact, limited by counted work;
+- `beam.solve`: beam search with local search, for any size.
+
+All take a `Sequencing` and give a `Solution[Plan]`.
+"""
+
+from solvers.models.sequencing.data import Plan as Plan
+from solvers.models.sequencing.data import Sequencing as Sequencing
+from solvers.models.sequencing.data import finish as finish
+from solvers.models.sequencing.data import objective as objective
+from solvers.models.sequencing.data import violations as violations

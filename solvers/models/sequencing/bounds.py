@@ -1,0 +1,47 @@
+"""Lower bounds on the number of visits.
+
+Every needed SKU must be seen: the visits include a set of pods that covers all needed SKUs. The
+duals of the relaxed covering problem give a bound (`safe_bound`), rounded up to a whole number.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from solvers.models.backends import highs
+from solvers.models.program import LinearProgram, ProgramBuilder
+from solvers.models.sequencing.data import Sequencing
+
+
+def covering(data: Sequencing) -> LinearProgram:
+    """Fewest pods that hold all needed SKUs together.
+
+    Parameters
+    ----------
+    data
+        The input; feasible.
+    """
+    builder = ProgramBuilder()
+    pods = builder.columns(data.pods, cost=1.0)
+    skus = np.flatnonzero(data.needs.any(axis=0))
+    row, pod = np.nonzero(data.holds[:, skus].T)
+    builder.rows(skus.size, (row, pods[pod], 1), lower=1)
+    return builder.build()
+
+
+def visits_bound(data: Sequencing) -> float:
+    """A number of visits that no plan goes below.
+
+    Parameters
+    ----------
+    data
+        The input; +inf if it is infeasible.
+    """
+    if not data.feasible:
+        return math.inf
+    if not data.orders:
+        return 0.0
+    bound = highs.relax(covering(data)).bound
+    return max(1.0, math.ceil(bound - 1e-6))

@@ -1,0 +1,170 @@
+"""Rack sequencing at one pick station: the problem, a plan, and its rules.
+
+Orders are processed with at most C of them open at a time, pods visit the station one after the
+other, and an open order takes from a visiting pod every SKU it still misses. The fewer visits the
+better (Boysen, Briskorn, Emde 2017, mobile robot order picking; consecutive use of a pod counts
+once; stock of a pod is ample for all orders at the station).
+
+What may happen during one visit, in this order: open orders are served, and those complete leave
+(B); orders that this pod completes alone come and go one after the other, each needing a slot for a
+moment (Z); new orders come and stay (N). With A the orders open before and after the visit:
+
+    |A| + |B| <= C,    |A| + |N| <= C,    |A| + 1 <= C if Z is not empty
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.checks import flags, integers, require
+
+Flags = NDArray[np.bool_]
+Integers = NDArray[np.int64]
+NEVER = np.iinfo(np.int64).max
+
+
+@dataclass(frozen=True)
+class Sequencing:
+    """Orders, pods and slots of one station.
+
+    Parameters
+    ----------
+    needs
+        Whether an order needs a SKU (still), shape (O, K); every order needs one at least.
+    holds
+        Whether a pod holds a SKU, shape (P, K).
+    capacity
+        Most orders open at a time, C.
+    opened
+        Whether an order is open already before the first visit, shape (O,). Default: none is.
+
+    Raises
+    ------
+    ModelError
+        If a shape or value is wrong, or more orders are open than there are slots.
+    """
+
+    needs: Flags
+    holds: Flags
+    capacity: int
+    opened: Flags | None = None
+
+    def __post_init__(self) -> None:
+        needs = flags("needs", self.needs, (None, None))
+        orders, skus = needs.shape
+        opened = np.zeros(orders) if self.opened is None else self.opened
+        object.__setattr__(self, "needs", needs)
+        object.__setattr__(self, "holds", flags("holds", self.holds, (None, skus)))
+        object.__setattr__(self, "capacity", int(integers("capacity", self.capacity, (), low=1)))
+        object.__setattr__(self, "opened", flags("opened", opened, (orders,)))
+        require(bool(needs.any(axis=1).all()), "needs", "every order needs a SKU")
+        require(int(self.open.sum()) <= self.capacity, "opened", "more orders than slots")
+
+    @property
+    def open(self) -> Flags:
+        """`opened`, never None."""
+        assert self.opened is not None
+        return self.opened
+
+    @property
+    def orders(self) -> int:
+        """Number of orders O."""
+        return int(self.needs.shape[0])
+
+    @property
+    def pods(self) -> int:
+        """Number of pods P."""
+        return int(self.holds.shape[0])
+
+    @property
+    def feasible(self) -> bool:
+        """Whether every SKU that is needed is on some pod; then there is a plan."""
+        return bool((self.holds.any(axis=0) | ~self.needs.any(axis=0)).all())
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Visits, and when each order comes.
+
+    Parameters
+    ----------
+    pods
+        The visiting pods in turn, shape (T,).
+    start
+        Visit during which an order is opened, shape (O,); -1 for those open before.
+    """
+
+    pods: Integers
+    start: Integers
+
+
+def objective(data: Sequencing, plan: Plan) -> float:
+    """Number of visits; the same pod twice in a row is one visit.
+
+    Parameters
+    ----------
+    data
+        The input.
+    plan
+        The plan.
+    """
+    return float(1 + np.count_nonzero(np.diff(plan.pods))) if plan.pods.size else 0.0
+
+
+def finish(data: Sequencing, plan: Plan) -> Integers:
+    """Visit during which each order is complete, shape (O,); `NEVER` if it is not.
+
+    Parameters
+    ----------
+    data
+        The input.
+    plan
+        The plan.
+    """
+    visits = plan.pods.size
+    present = data.holds[plan.pods]
+    seen = np.arange(visits)[:, None] >= plan.start[None, :]
+    end = np.full(data.orders, NEVER)
+    for order in range(data.orders):
+        had = np.logical_or.accumulate(present & seen[:, order, None], axis=0)
+        done = np.flatnonzero((had | ~data.needs[order]).all(axis=1))
+        if done.size:
+            end[order] = done[0]
+    return end
+
+
+def violations(data: Sequencing, plan: Plan) -> list[str]:
+    """Say which rules a plan breaks.
+
+    Parameters
+    ----------
+    data
+        The input.
+    plan
+        The plan.
+
+    Returns
+    -------
+    One line per kind of violation; empty if the plan is allowed.
+    """
+    visits, end = plan.pods.size, finish(data, plan)
+    problems = []
+    if bool(((plan.start < 0) != data.open).any()):
+        problems.append("exactly the orders open before start before the first visit")
+    if bool((plan.start >= visits).any()) and data.orders:
+        problems.append("order is never opened")
+    if bool((end == NEVER).any()):
+        problems.append(f"order is never complete: {np.flatnonzero(end == NEVER)[0]}")
+    for visit in range(visits):
+        staying = (plan.start < visit) & (end > visit)
+        leaving = (plan.start < visit) & (end == visit)
+        coming = (plan.start == visit) & (end > visit)
+        passing = (plan.start == visit) & (end == visit)
+        here = max(leaving.sum(), coming.sum(), int(passing.any()))
+        if staying.sum() + here > data.capacity:
+            problems.append(f"more open orders than slots at visit {visit}")
+            break
+    return problems

@@ -1,0 +1,167 @@
+"""Exact dynamic programme for small inputs: A* over what every order still misses.
+
+A state is the set of missing SKUs of every order (none: complete; part of them: open; all: not
+started, unless open before). One transition is one visit: the pod serves the open orders, passes
+orders it completes alone if there is a slot, and some of the orders it serves in part may start
+(states after Justkowiak, Kovalyov, Pesch 2024: completed orders, open orders, missing SKUs). Each
+visit costs 1; the estimate of what is left is the largest number of visits any one order needs,
+which never overestimates. So the first complete state is optimal, and the smallest estimate in the
+queue is a bound at any time.
+"""
+
+from __future__ import annotations
+
+import heapq
+import math
+import time
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from solvers.models.sequencing.data import Plan, Sequencing, objective
+from solvers.models.sequencing.sets import Sets, reduce
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+
+NAME = "dynamic"
+State = tuple[tuple[int, ...], int]
+"""Missing SKUs per order, and the bit set of orders that have been started."""
+
+
+def solve(
+    data: Sequencing,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: Plan | None = None,
+) -> Solution[Plan]:
+    """Find a plan of fewest visits.
+
+    Parameters
+    ----------
+    data
+        The input. About ten orders are small enough.
+    limits
+        ``iterations`` limits the states expanded. Default: none.
+    seed
+        Not used: nothing is drawn.
+    start
+        A plan to return if the limit comes first. Default: none.
+
+    Returns
+    -------
+    The plan; LIMIT without values if the limit came first and there is no start.
+    """
+    began = time.perf_counter()
+    if not data.feasible:
+        return _solution(data, None, math.inf, Status.INFEASIBLE, 0, began)
+    sets = reduce(data)
+    root: State = (sets.needs, sum(1 << o for o in np.flatnonzero(data.open).tolist()))
+    cheapest = {root: 0}
+    came_from: dict[State, tuple[State, int]] = {}
+    serial, expanded = 0, 0
+    queue = [(_estimate(root[0], sets), 0, serial, root)]
+    while queue:
+        least, _, _, state = heapq.heappop(queue)
+        visits = cheapest[state]
+        if visits + _estimate(state[0], sets) < least:
+            continue  # reached again on a shorter way since
+        if not any(state[0]):
+            plan = _trace(data, sets, state, came_from)
+            return _solution(data, plan, float(visits), Status.OPTIMAL, expanded, began)
+        if limits.iterations is not None and expanded >= limits.iterations:
+            status = Status.LIMIT if start is None else Status.FEASIBLE
+            return _solution(data, start, float(least), status, expanded, began)
+        expanded += 1
+        for pod, held in enumerate(sets.holds):
+            for after in _visit(state, held, sets, data.capacity):
+                if cheapest.get(after, visits + 2) > visits + 1:
+                    cheapest[after] = visits + 1
+                    came_from[after] = (state, pod)
+                    serial += 1
+                    total = visits + 1 + _estimate(after[0], sets)
+                    # Later states first among equals: deeper ones come to an end sooner.
+                    heapq.heappush(queue, (total, -visits, -serial, after))
+    raise AssertionError("a feasible input always leads to a complete state")
+
+
+def _visit(state: State, held: int, sets: Sets, capacity: int) -> Iterator[State]:
+    """All states after a visit of a pod that holds the given SKUs; none if it helps nobody."""
+    missing, started = state
+    served = list(missing)
+    staying = 0
+    waiting = []
+    passing = []
+    for order, lacks in enumerate(missing):
+        if not lacks or (not lacks & held and not started >> order & 1):
+            continue
+        if started >> order & 1:
+            served[order] = lacks & ~held
+            staying += bool(served[order])
+        elif lacks & ~held:
+            waiting.append(order)
+        else:
+            passing.append(order)
+    begun = started
+    if passing and staying < capacity:
+        for order in passing:
+            served[order] = 0
+            begun |= 1 << order
+    for count in range(min(len(waiting), capacity - staying) + 1):
+        for chosen in combinations(waiting, count):
+            after, now = served.copy(), begun
+            for order in chosen:
+                after[order] &= ~held
+                now |= 1 << order
+            if tuple(after) != missing:
+                yield tuple(after), now
+
+
+def _estimate(missing: tuple[int, ...], sets: Sets) -> int:
+    """Visits that the order in most need takes at least: SKUs missing by most SKUs a pod brings."""
+    most = 0
+    for lacks in set(missing):
+        if lacks:
+            best = max((lacks & held).bit_count() for held in sets.holds)
+            most = max(most, -(-lacks.bit_count() // best))
+    return most
+
+
+def _trace(
+    data: Sequencing, sets: Sets, state: State, came_from: dict[State, tuple[State, int]]
+) -> Plan:
+    """Follow the transitions back to the root."""
+    pods: list[int] = []
+    start = np.full(data.orders, -1)
+    steps = []
+    while state in came_from:
+        before, pod = came_from[state]
+        steps.append((before, state, pod))
+        state = before
+    for visit, (before, after, pod) in enumerate(reversed(steps)):
+        pods.append(int(sets.pod[pod]))
+        fresh = after[1] & ~before[1]
+        for order in range(data.orders):
+            if fresh >> order & 1:
+                start[order] = visit
+    return Plan(np.array(pods, dtype=np.int64), start)
+
+
+def _solution(
+    data: Sequencing,
+    plan: Plan | None,
+    bound: float,
+    status: Status,
+    expanded: int,
+    began: float,
+) -> Solution[Plan]:
+    """Wrap up."""
+    return Solution(
+        values=plan,
+        objective=math.inf if plan is None else objective(data, plan),
+        bound=bound,
+        status=status,
+        backend=NAME,
+        wall_s=time.perf_counter() - began,
+        work=float(expanded),
+    )

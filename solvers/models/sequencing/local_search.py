@@ -1,0 +1,136 @@
+"""Local search on the order of visits: take one visit out, and repair what that leaves open.
+
+For a given order of visits, `open_orders` decides which orders to open when, as in interval
+scheduling: of the orders that lose by waiting, the one that ends first. A visit is taken out; then
+random moves (exchange two visits, move one, replace one) are kept as long as no more SKUs stay
+open. When none is open, the plan is one visit shorter, and the next is taken out.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solvers.models.sequencing.data import NEVER, Integers, Plan, Sequencing, violations
+from solvers.models.sequencing.sets import useful_pods
+
+MOVES = 400
+"""Moves tried in all, unless limited otherwise."""
+
+
+def improve(
+    data: Sequencing, plan: Plan, moves: int | None = None, seed: int = 0
+) -> tuple[Plan, int]:
+    """Shorten a plan.
+
+    Parameters
+    ----------
+    data
+        The input.
+    plan
+        A feasible plan.
+    moves
+        Most moves to try. Default: `MOVES`.
+    seed
+        Seed of the moves. Default 0.
+
+    Returns
+    -------
+    A feasible plan that is no longer, and the number of moves tried.
+    """
+    most = MOVES if moves is None else moves
+    rng = np.random.default_rng(seed)
+    pods = useful_pods(data)
+    best, tried = merged(plan), 0
+    while tried < most and best.pods.size > 1:
+        # The visit whose loss hurts least is taken out.
+        shorter = [np.delete(best.pods, visit) for visit in range(best.pods.size)]
+        lost = [still_open(data, sequence)[1] for sequence in shorter]
+        tried += len(shorter)
+        current, missing = shorter[int(np.argmin(lost))], min(lost)
+        while missing and tried < most:
+            candidate = _moved(current, pods, rng)
+            left = still_open(data, candidate)[1]
+            tried += 1
+            if left <= missing:
+                current, missing = candidate, left
+        if missing:
+            break
+        found = merged(Plan(current, still_open(data, current)[0]))
+        if violations(data, found) or found.pods.size >= best.pods.size:
+            break
+        best = found
+    return best, tried
+
+
+def still_open(data: Sequencing, pods: Integers) -> tuple[Integers, int]:
+    """Open orders along a fixed sequence of visits.
+
+    Parameters
+    ----------
+    data
+        The input.
+    pods
+        The visits.
+
+    Returns
+    -------
+    When each order is opened (`NEVER` if it cannot be), and how many orders stay incomplete.
+    """
+    end = _ends(data, pods)
+    start = np.where(data.open, -1, NEVER)
+    leave = np.where(data.open, end[0], NEVER)
+    begun = data.open.copy()
+    for visit in range(pods.size):
+        staying = np.count_nonzero(begun & (leave > visit))
+        if staying >= data.capacity:
+            continue
+        now, later = end[visit], end[visit + 1]
+        passing = ~begun & (now == visit)
+        # An order that ends no later by waiting for the next visit waits.
+        waiting = np.flatnonzero(~begun & (now > visit) & (now < later))
+        chosen = waiting[np.argsort(now[waiting], kind="stable")][: data.capacity - staying]
+        begun |= passing
+        begun[chosen] = True
+        fresh = np.append(np.flatnonzero(passing), chosen)
+        start[fresh], leave[fresh] = visit, now[fresh]
+    return start, int(np.count_nonzero(leave == NEVER))
+
+
+def merged(plan: Plan) -> Plan:
+    """Make one visit of the same pod twice in a row.
+
+    Parameters
+    ----------
+    plan
+        The plan.
+    """
+    new = np.diff(plan.pods, prepend=-1) != 0
+    position = np.append(np.cumsum(new) - 1, -1)
+    return Plan(plan.pods[new], np.where(plan.start >= 0, position[plan.start], -1))
+
+
+def _ends(data: Sequencing, pods: Integers) -> Integers:
+    """When each order would be complete if opened at each visit, shape (T + 1, O)."""
+    visits = pods.size
+    coming = np.full((visits + 1, data.needs.shape[1]), NEVER)
+    present = data.holds[pods]
+    for visit in range(visits - 1, -1, -1):
+        coming[visit] = np.where(present[visit], visit, coming[visit + 1])
+    end = np.empty((visits + 1, data.orders), dtype=np.int64)
+    for order in range(data.orders):
+        end[:, order] = coming[:, data.needs[order]].max(axis=1)
+    return end
+
+
+def _moved(sequence: Integers, pods: Integers, rng: np.random.Generator) -> Integers:
+    """The sequence after one random move."""
+    moved = sequence.copy()
+    i, j = rng.integers(moved.size, size=2)
+    kind = rng.integers(3)
+    if kind == 0:
+        moved[i], moved[j] = moved[j], moved[i]
+    elif kind == 1:
+        moved = np.insert(np.delete(moved, i), min(j, moved.size - 1), sequence[i])
+    else:
+        moved[i] = pods[rng.integers(pods.size)]
+    return moved

@@ -1,0 +1,71 @@
+"""The problem as bit sets, reduced to what matters: what the search methods work on.
+
+SKUs that nobody needs are dropped, and so are pods whose useful SKUs another pod has as well
+(a pod that can do more never costs more). The lower index stays if two pods are equal.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solvers.models.sequencing.data import Integers, Sequencing
+
+
+@dataclass(frozen=True)
+class Sets:
+    """Bit sets of SKUs.
+
+    Parameters
+    ----------
+    needs
+        SKUs of each order.
+    holds
+        Useful SKUs of each remaining pod.
+    pod
+        The remaining pods in the numbering of the input, shape (len(holds),).
+    """
+
+    needs: tuple[int, ...]
+    holds: tuple[int, ...]
+    pod: Integers
+
+
+def reduce(data: Sequencing) -> Sets:
+    """Make the bit sets of an input.
+
+    Parameters
+    ----------
+    data
+        The input.
+    """
+    skus = np.flatnonzero(data.needs.any(axis=0))
+    pods = useful_pods(data)
+    return Sets(
+        needs=tuple(_bits(row) for row in data.needs[:, skus].tolist()),
+        holds=tuple(_bits(row) for row in data.holds[np.ix_(pods, skus)].tolist()),
+        pod=pods,
+    )
+
+
+def useful_pods(data: Sequencing) -> Integers:
+    """Pods that hold something needed and that no other pod can stand in for, in order.
+
+    Parameters
+    ----------
+    data
+        The input.
+    """
+    holds = data.holds[:, data.needs.any(axis=0)]
+    common = holds.astype(np.float32) @ holds.T.astype(np.float32)
+    size = holds.sum(axis=1)
+    within = common == size[:, None]  # [i, j]: all that i has, j has too
+    larger = size[None, :] > size[:, None]
+    earlier = (size[None, :] == size[:, None]) & np.tri(size.size, k=-1, dtype=np.bool_)
+    return np.flatnonzero((size > 0) & ~(within & (larger | earlier)).any(axis=1))
+
+
+def _bits(row: list[bool]) -> int:
+    """The set of true positions as bits."""
+    return sum(1 << i for i, member in enumerate(row) if member)

@@ -1,0 +1,84 @@
+"""Both back ends against brute force, in every variant; heuristics between them and the worst."""
+
+import numpy as np
+import pytest
+from pile_on_oracle import optimum, small_site, tiny
+
+from solvers.models import Limits, Status
+from solvers.models.pile_on import cp_sat, greedy, hadgs, highs, joint, neighbourhood
+from solvers.models.pile_on.values import nothing, objective, violations
+from solvers.models.pile_on.variant import Variant
+
+CASES = 40
+
+
+@pytest.mark.parametrize("variant", Variant)
+def test_cp_sat_finds_the_optimum_of_brute_force(variant: Variant) -> None:
+    for seed in range(CASES):
+        data = tiny(seed, variant)
+        best = optimum(data)
+        solution = cp_sat.solve(data)
+        assert violations(data, solution.required) == [], seed
+        assert solution.status is Status.OPTIMAL
+        assert solution.objective == pytest.approx(best), seed
+        assert solution.objective == objective(data, solution.required)
+        assert best - 1e-6 <= solution.bound <= best + 1e-9
+
+
+@pytest.mark.parametrize("variant", Variant)
+@pytest.mark.parametrize("strengthen", [True, False])
+def test_highs_finds_the_optimum_of_brute_force(variant: Variant, strengthen: bool) -> None:
+    for seed in range(100, 100 + CASES // 2):
+        data = tiny(seed, variant, fractions=True)
+        best = optimum(data)
+        solution = highs.solve(data, strengthen=strengthen)
+        assert violations(data, solution.required) == [], seed
+        assert solution.objective == pytest.approx(best, abs=1e-6), seed
+        assert solution.bound <= best + 1e-9
+
+
+@pytest.mark.parametrize("variant", Variant)
+@pytest.mark.parametrize("rule", [greedy, hadgs, joint, neighbourhood])
+def test_heuristics_are_feasible_and_never_beat_the_optimum(rule: object, variant: Variant) -> None:
+    for seed in range(CASES):
+        data = tiny(seed, variant)
+        solution = rule.solve(data)
+        assert violations(data, solution.required) == [], seed
+        assert solution.objective == objective(data, solution.required)
+        assert optimum(data) - 1e-6 <= solution.objective
+
+
+def test_heuristics_are_mostly_near_the_optimum() -> None:
+    met = [
+        greedy.solve(data).objective == pytest.approx(optimum(data))
+        for data in (tiny(seed, Variant.WHOLE) for seed in range(60))
+    ]
+    assert np.mean(met) > 0.8
+
+
+@pytest.mark.parametrize("variant", Variant)
+def test_back_ends_agree_on_larger_inputs(variant: Variant) -> None:
+    data = small_site(1, variant)
+    start = greedy.solve(data).values
+    one, other = cp_sat.solve(data, start=start), highs.solve(data, start=start)
+    assert violations(data, one.required) == violations(data, other.required) == []
+    assert one.objective == pytest.approx(other.objective, rel=1e-6)
+
+
+def test_the_joint_decision_is_no_worse_than_its_rules_and_its_start() -> None:
+    for seed in range(3):
+        data = small_site(seed)
+        exact = cp_sat.solve(data, Limits(deterministic_s=0.2))
+        limits = Limits(deterministic_s=0.02)
+        solution = joint.solve(data, limits, start=exact.values)
+        assert violations(data, solution.required) == []
+        assert solution.objective <= exact.objective
+        assert solution.objective <= joint.solve(data, limits).objective
+        assert joint.solve(data, limits).objective <= greedy.solve(data).objective + 40
+
+
+def test_deciding_nothing_is_always_allowed() -> None:
+    for variant in Variant:
+        for seed in range(20):
+            data = tiny(seed, variant)
+            assert violations(data, nothing(data)) == []

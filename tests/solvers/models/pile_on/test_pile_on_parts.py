@@ -1,0 +1,181 @@
+"""Pruning, restriction, attribution, bounds and repetition."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pile_on_oracle import optimum, small_site, tiny
+
+from solvers.models import Limits
+from solvers.models.pile_on import (
+    PileOn,
+    Pruning,
+    Variant,
+    attribute,
+    cp_sat,
+    everything,
+    greedy,
+    hadgs,
+    highs,
+    joint,
+    neighbourhood,
+    objective,
+    prune,
+    violations,
+)
+from solvers.models.pile_on.program import formulate
+from solvers.models.pile_on.relaxation import PileOnRelaxation, bound
+from solvers.models.pile_on.restrict import compact, part
+from solvers.models.pile_on.values import called_supply, demand, uncovered
+
+
+def test_columns_say_the_same_as_the_objective() -> None:
+    for variant in Variant:
+        for seed in range(30):
+            data = tiny(seed, variant)
+            values = cp_sat.solve(data).required
+            formulation = formulate(data, everything(data))
+            x = formulation.encode(values)
+            assert formulation.program.violation(x) < 1e-9
+            assert formulation.program.objective(x) == pytest.approx(objective(data, values))
+            again = formulation.decode(x)
+            for field in vars(values):
+                assert np.array_equal(getattr(again, field), getattr(values, field))
+
+
+def test_candidates_are_nested_and_generous_pruning_loses_nothing() -> None:
+    for seed in range(10):
+        data = small_site(seed)
+        few, many = prune(data, Pruning(1, 1, 1, 1)), prune(data, Pruning(99, 99, 99, 99))
+        all_pairs = everything(data)
+        for table in ("calls", "places", "fetches"):
+            assert not (getattr(few, table) & ~getattr(many, table)).any()
+            assert not (getattr(many, table) & ~getattr(all_pairs, table)).any()
+        assert np.array_equal(many.places, all_pairs.places)
+        assert few.calls.sum() < all_pairs.calls.sum()
+
+
+def test_pruned_solutions_are_feasible_and_claim_no_bound() -> None:
+    data = small_site(3)
+    solution = highs.solve(data, candidates=prune(data, Pruning(2, 4, 2, 2)))
+    assert violations(data, solution.required) == []
+    assert solution.bound == -np.inf
+    assert highs.solve(data).objective <= solution.objective
+
+
+def test_compacting_loses_nothing() -> None:
+    for seed in range(10):
+        data = tiny(seed, Variant.WHOLE)
+        small = compact(data, everything(data))
+        inner = cp_sat.solve(small.data, candidates=small.candidates)
+        values = small.expand(inner.required)
+        assert violations(data, values) == []
+        assert objective(data, values) == pytest.approx(optimum(data))
+        back = small.shrink(values)
+        assert np.array_equal(back.pod_station, inner.required.pod_station)
+
+
+def test_a_part_starts_where_the_whole_stands_and_merges_into_it() -> None:
+    for seed in range(10):
+        data = small_site(seed)
+        values = greedy.solve(data).required
+        stage = part(data, everything(data), values, np.array([0, 2]))
+        assert stage is not None
+        start = stage.start()
+        assert violations(stage.data, start) == []
+        same = stage.merge(start)
+        for field in vars(values):
+            assert np.array_equal(getattr(same, field), getattr(values, field))
+        better = highs.solve(stage.data, candidates=stage.candidates, start=start)
+        merged = stage.merge(better.required)
+        assert violations(data, merged) == []
+        gained = objective(stage.data, start) - better.objective
+        assert objective(data, values) - objective(data, merged) == pytest.approx(gained)
+
+
+@pytest.mark.parametrize("variant", Variant)
+def test_attribution_covers_every_line_from_stock_that_is_there(variant: Variant) -> None:
+    for seed in range(40):
+        data = tiny(seed, variant)
+        values = cp_sat.solve(data).required
+        picks = attribute(data, values)
+        units = np.bincount(picks.line, picks.units, minlength=data.lines)
+        covered = values.line_station >= 0
+        assert np.array_equal(units, np.where(covered, data.line_units, 0))
+        taken = np.zeros_like(data.stock)
+        np.add.at(taken, (picks.pod, data.line_sku[picks.line]), picks.units)
+        assert (taken <= data.stock).all()
+        station = np.maximum(data.inbound, values.pod_station)
+        assert np.array_equal(station[picks.pod], values.line_station[picks.line])
+        # What remains still covers the open demand that the decision says it covers.
+        kept = np.zeros_like(data.open_units)
+        here = np.flatnonzero(station >= 0)
+        np.add.at(kept, station[here], (data.stock - taken)[here])
+        assert (kept >= data.open_units - uncovered(data, values)).all()
+
+
+def test_supply_and_demand_of_a_decision_agree() -> None:
+    for seed in range(20):
+        data = small_site(seed)
+        values = greedy.solve(data).required
+        have = data.surplus + called_supply(data, values) + uncovered(data, values)
+        assert (demand(data, values) + data.shortage <= have).all()
+
+
+def test_the_relaxation_is_a_bound_and_strengthening_improves_it() -> None:
+    for seed in range(15):
+        data = tiny(seed, Variant.WHOLE)
+        assert bound(data) <= optimum(data) + 1e-9
+    data = small_site(1)
+    best = highs.solve(data).objective
+    assert bound(data) <= best
+    plain = highs.solve(data, Limits(nodes=0), strengthen=False).bound
+    assert plain <= best
+
+
+def test_the_relaxation_compiles_once_per_pattern() -> None:
+    relaxation = PileOnRelaxation()
+    data = small_site(1)
+    first = relaxation.solve(data)
+    dearer = relaxation.solve(replace(data, travel=data.travel * 2))
+    assert relaxation.compilations == 1
+    assert dearer.bound >= first.bound
+    relaxation.solve(small_site(2))
+    assert relaxation.compilations == 2
+
+
+@pytest.mark.parametrize("solver", [cp_sat, hadgs, greedy, neighbourhood, joint])
+def test_the_same_input_gives_the_same_output(solver: object) -> None:
+    data = small_site(5)
+    runs = [solver.solve(data, Limits(deterministic_s=0.05), seed=3) for _ in range(2)]
+    for field in vars(runs[0].required):
+        assert np.array_equal(getattr(runs[0].required, field), getattr(runs[1].required, field))
+    assert (runs[0].objective, runs[0].work) == (runs[1].objective, runs[1].work)
+
+
+def test_ties_go_to_the_lower_index() -> None:
+    data = PileOn(
+        slots=[1, 1],
+        line_order=[0, 1],
+        line_sku=[0, 0],
+        line_units=[1, 1],
+        stock=[[1], [1], [1]],
+        travel=np.ones((3, 2)),
+        available=[1, 1, 1],
+        inbound=[-1, -1, -1],
+        open_units=np.zeros((2, 1)),
+    )
+    for rule in (greedy, hadgs):
+        values = rule.solve(data).required
+        assert values.pod_station.tolist() == [0, 1, -1]
+        assert values.slot.tolist() == [[True, False], [False, True]]
+
+
+def test_neighbourhood_search_is_between_its_start_and_the_optimum() -> None:
+    for seed in range(3):
+        data = small_site(seed)
+        start = hadgs.solve(data)
+        solution = neighbourhood.solve(data, Limits(deterministic_s=0.3), start=start.values)
+        assert violations(data, solution.required) == []
+        assert solution.objective <= start.objective
+        assert highs.solve(data).objective <= solution.objective + 1e-6
