@@ -63,14 +63,14 @@ def plan(
 ) -> None:
     """Check a design: number of runs, time, and everything that is wrong with it."""
     from experiments.design.stages import schedule
-    from experiments.results import assigned
+    from experiments.results import assigned, failed_pairs
     from experiments.running import cores
     from experiments.running.pilot import estimate
 
     made = _planned(design)
     store = _store(made, out)
     _refuse(made)
-    runs = schedule(made, assigned(made, store.rows()))
+    runs = schedule(made, assigned(made, store), failed_pairs(made, store))
     finished = store.finished(made.design.keep)
     keys = _keys(made, runs.runs)
     left = sum(key not in finished for key in keys)
@@ -153,7 +153,7 @@ def status(design: Design, out: Out = None) -> None:
     if outdated:
         typer.echo(f"{outdated} stored runs belong to other inputs and do not count")
     if len(rows):
-        mine = assigned(made, store.rows())
+        mine = assigned(made, store)
         short = mine["arm"].value_counts()
         lacking = [arm.name for arm in made.arms if short.get(arm.name, 0) < short.max()]
         if lacking and done.finished < done.wanted:
@@ -397,7 +397,7 @@ def _results(design: str, out: Path | None) -> tuple[Plan, pd.DataFrame]:
     made = _planned(design)
     _refuse(made)
     store = _store(made, out)
-    frame = assigned(made, store.rows())
+    frame = assigned(made, store)
     if frame.empty:
         raise InputError(f"{store.folder}: no finished runs yet; rmfs experiment run {design}")
     return made, frame

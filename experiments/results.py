@@ -44,7 +44,7 @@ def load(folder: str | Path, *, table: str = "footprint") -> pd.DataFrame:
     path = Path(folder)
     plan = plans.load(path)
     store = Store(path)
-    rows = assigned(plan, store.rows())
+    rows = assigned(plan, store)
     if table == "footprint":
         return rows
     if table not in plan.design.keep:
@@ -76,14 +76,18 @@ def failed(plan: Plan, store: Store) -> pd.DataFrame:
     return kept.assign(arm=kept["run"].map(names)).reset_index(drop=True)
 
 
-def assigned(plan: Plan, rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows that belong to a plan, with its arms and factors, in its order.
+def failed_pairs(plan: Plan, store: Store) -> set[tuple[str, int]]:
+    """Return the same as arm and replication."""
+    lost = failed(plan, store)
+    return set(zip(lost["arm"], lost["replication"].astype(int), strict=True))
 
-    Parameters
-    ----------
-    rows
-        Everything stored; rows of outdated inputs and of seeds no longer asked for are left out.
+
+def assigned(plan: Plan, store: Store) -> pd.DataFrame:
+    """Return the finished runs that belong to a plan, with its arms and factors, in its order.
+
+    Rows of outdated inputs and of seeds that are no longer asked for are left out.
     """
+    rows = store.rows()
     by_digest = {arm.digest: arm for arm in plan.arms}
     mine = rows[rows["arm_digest"].isin(list(by_digest))].copy()
     arms = [by_digest[digest] for digest in mine["arm_digest"]]
@@ -91,7 +95,8 @@ def assigned(plan: Plan, rows: pd.DataFrame) -> pd.DataFrame:
     told = zip(arms, mine["replication"], mine["seed"], strict=True)
     right = [plan.seed(arm, int(replication)) == seed for arm, replication, seed in told]
     mine = mine[np.array(right, dtype=bool)]
-    wanted = {(w.arm, w.replication): w for w in schedule(plan, mine).runs}
+    now = schedule(plan, mine, failed_pairs(plan, store))
+    wanted = {(run.arm, run.replication): run for run in now.runs}
     pairs = list(zip(mine["arm"], mine["replication"].astype(int), strict=True))
     mine = mine[np.array([pair in wanted for pair in pairs], dtype=bool)]
     order = {arm.name: number for number, arm in enumerate(plan.arms)}

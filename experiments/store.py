@@ -40,7 +40,8 @@ MANY = 256
 ORIGIN = ("run", "arm_digest", "replication", "arm", "design", "design_hash")
 """Columns of a stored row, before the footprint, that say which run it is."""
 
-PROVENANCE = ("rmfs_version", "git_commit", "code", "host", "elapsed_s", "finished")
+CODE = ("rmfs_version", "git_commit", "code")
+PROVENANCE = (*CODE, "host", "elapsed_s", "finished")
 """Columns of a stored row, after the footprint, that say how it was made; they do not repeat."""
 
 COLUMNS = [*ORIGIN, *names("footprint"), *PROVENANCE]
@@ -219,7 +220,7 @@ def _row(job: Job, outcome: Outcome, code: Mapping[str, Any]) -> pd.DataFrame:
         "design_hash": job.design_hash,
     }
     after = {
-        **code,
+        **{name: str(code.get(name, "")) for name in CODE},
         "host": outcome.host,
         "elapsed_s": outcome.elapsed_s,
         "finished": _now(),

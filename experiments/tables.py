@@ -119,7 +119,8 @@ class Table:
             column: _fixed(self.decimals.get(column, 0)) for column in _columns(self.frame)
         }
         style = self.frame.style.format(forms, na_rep="-").format_index(escape="html", axis=0)
-        return str(style.set_caption(self.caption).to_html()) + "\n"
+        # a name of its own instead of a random one: the same table is the same file
+        return str(style.set_uuid("rmfs").set_caption(self.caption).to_html()) + "\n"
 
     def rich(self) -> object:
         """Return it for the terminal."""
@@ -199,10 +200,10 @@ def means(
     decimals: dict[tuple[str, str], int] = {}
     for column in columns:
         found = per_arm(frame, column, confidence=confidence, method=method, by=by)
-        label = _label(column)
+        label = column
         parts[label, "mean"], parts[label, HALF] = found["mean"], found["half_width"]
-        digits = _digits(found["half_width"], found["mean"])
-        decimals |= {(label, "mean"): digits, (label, HALF): digits}
+        shown = digits(found["half_width"], found["mean"])
+        decimals |= {(label, "mean"): shown, (label, HALF): shown}
         parts["seeds", ""] = found["count"]
     made = pd.DataFrame(parts)
     made = made[[("seeds", ""), *(c for c in made if c != ("seeds", ""))]]
@@ -232,12 +233,12 @@ def differences(
     parts = {}
     decimals: dict[tuple[str, str], int] = {}
     for column, table in found.items():
-        label = _label(column)
+        label = column
         half = (table["high"] - table["low"]) / 2
         parts[label, "difference"], parts[label, HALF] = table["difference"], half
         parts[label, "p"] = corrected[column]
-        digits = _digits(half, table["difference"])
-        decimals |= {(label, "difference"): digits, (label, HALF): digits, (label, "p"): 4}
+        shown = digits(half, table["difference"])
+        decimals |= {(label, "difference"): shown, (label, HALF): shown, (label, "p"): 4}
         parts["pairs", ""] = table["pairs"]
     made = pd.DataFrame(parts)
     made = made[[("pairs", ""), *(c for c in made if c != ("pairs", ""))]]
@@ -253,9 +254,9 @@ def effects(found: pd.DataFrame, column: str) -> Table:
     """Return an analysis of variance (`experiments.statistics.anova`) as a table."""
     chosen = ["sum_sq", "df", "f", "p", "eta_sq", "partial_eta_sq", "omega_sq"]
     made = found[chosen].copy()
-    digits = [_digits(made["sum_sq"] / 1000, made["sum_sq"]), 0, 2, 4, 3, 3, 3]
+    shown = [digits(made["sum_sq"] / 1000, made["sum_sq"]), 0, 2, 4, 3, 3, 3]
     made.columns = pd.MultiIndex.from_tuples([(name, "") for name in chosen])
-    decimals = dict(zip(_columns(made), digits, strict=True))
+    decimals = dict(zip(_columns(made), shown, strict=True))
     return Table(made, decimals, f"Analysis of variance of {column} (type II sums of squares).")
 
 
@@ -264,20 +265,18 @@ def _columns(frame: pd.DataFrame) -> list[tuple[str, str]]:
     return cast("list[tuple[str, str]]", list(frame.columns))
 
 
-def _label(column: str) -> str:
-    return column
-
-
 def _called(method: str) -> str:
     return {"t": "Student's t", "bootstrap": "BCa bootstrap"}.get(method, method)
 
 
-def _digits(halves: pd.Series, values: pd.Series) -> int:
+def digits(halves: pd.Series, values: pd.Series) -> int:
     """Return digits after the point that show the half widths with two figures."""
     known = [h for h in halves.dropna() if h > 0 and isfinite(h)]
     if not known:
+        if (values.dropna() % 1 == 0).all():
+            return 0
         # no spread is known: four figures of the biggest value
-        known = [abs(v) / 100 for v in values.dropna() if v and isfinite(v)][:1] or [1.0]
+        known = [float(values.abs().max()) / 100]
     return int(min(6, max(0, 1 - floor(log10(sorted(known)[len(known) // 2])))))
 
 

@@ -103,6 +103,8 @@ def arms(design: DesignFile, folder: Path) -> tuple[list[Arm], list[str]]:
         for combination in itertools.product(*factors)
         if not any(_matches(rule, combination) for rule in design.exclude)
     ]
+    if design.only_file is not None:
+        combinations = _fraction(combinations, keys, folder / design.only_file, problems)
     made = [_arm(design, combination, keys, folder, problems) for combination in combinations]
     if not made:
         problems.append("no arms are left: the exclusions leave out every combination")
@@ -192,6 +194,38 @@ def _listed(design: DesignFile, folder: Path, problems: list[str]) -> list[Level
     return made
 
 
+def _fraction(
+    combinations: list[tuple[Level, ...]], keys: list[str], path: Path, problems: list[str]
+) -> list[tuple[Level, ...]]:
+    """Return the combinations that a file lists."""
+    try:
+        rows = _read_csv(path)
+    except InputError as error:
+        problems.append(str(error))
+        return combinations
+    short = factor_names(keys)
+    if rows and sorted(rows[0]) != sorted(short.values()):
+        problems.append(f"{path}: the columns must be the factors {', '.join(short.values())}")
+        return combinations
+    known = {_told(combination, short): combination for combination in combinations}
+    wanted = [frozenset(row.items()) for row in rows]
+    problems += [
+        f"{path}: line {number}: no such combination of levels"
+        for number, row in enumerate(wanted, 2)
+        if row not in known
+    ]
+    return [known[row] for row in dict.fromkeys(wanted) if row in known]
+
+
+def _told(combination: tuple[Level, ...], short: Mapping[str, str]) -> frozenset[tuple[str, str]]:
+    """Return factors and levels of a combination as a file would tell them."""
+    levels = {key: value for level in combination for key, value in level.shown.items()}
+    return frozenset(
+        (name, "" if levels.get(key) is None else _compact(levels[key]))
+        for key, name in short.items()
+    )
+
+
 def _read_arms(path: Path) -> list[Table]:
     """Read arms from a file.
 
@@ -208,6 +242,20 @@ def _read_arms(path: Path) -> list[Table]:
         return given
     if path.suffix.lower() != ".csv":
         raise InputError(f"{path}: expected a .csv or .toml file of arms")
+    # an empty cell leaves the parameter as it is in the base
+    return [
+        {key: _cell(value) for key, value in row.items() if value != ""} for row in _read_csv(path)
+    ]
+
+
+def _read_csv(path: Path) -> list[dict[str, str]]:
+    """Read a table of texts.
+
+    Raises
+    ------
+    InputError
+        If it is missing or wrong.
+    """
     try:
         with path.open(encoding="utf-8", newline="") as file:
             reader = csv.DictReader(file, strict=True)
@@ -219,8 +267,7 @@ def _read_arms(path: Path) -> list[Table]:
     for number, row in enumerate(rows, 2):
         if None in row or None in row.values():
             raise InputError(f"{path}: line {number} has not as many cells as the first line")
-    # an empty cell leaves the parameter as it is in the base
-    return [{key: _cell(value) for key, value in row.items() if value != ""} for row in rows]
+    return rows
 
 
 def _cell(text: str) -> Any:

@@ -125,6 +125,11 @@ class DesignFile(Strict):
         None, description=".csv (a column per parameter) or .toml ([[arms]]) with more arms"
     )
     exclude: list[Table] = Field([], description="combinations of levels that are left out")
+    only_file: str | None = Field(
+        None,
+        description=".csv with a column per factor and a row per combination: all others are left "
+        "out (a fraction of the grid, see `experiments.design.fraction`)",
+    )
     stages: list[Stage] = Field([], description="default: one stage with the seeds above")
 
     @pydantic.model_validator(mode="after")

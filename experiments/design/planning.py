@@ -7,7 +7,7 @@ import json
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from rmfs.errors import InputError
 from rmfs.files import write_text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from rmfs.config import Table
 
@@ -152,13 +152,20 @@ class Plan:
         write_text(folder / FILE, json.dumps(told, indent=1, ensure_ascii=False, default=str))
 
 
-def plan(name_or_path: str | Path, told: Callable[[int, int], None] | None = None) -> Plan:
+def plan(
+    name_or_path: str | Path,
+    *,
+    base: Mapping[str, Any] | None = None,
+    told: Callable[[int, int], None] | None = None,
+) -> Plan:
     """Read a design and resolve all of its arms.
 
     Parameters
     ----------
     name_or_path
         A design file, or the name of a shipped one.
+    base
+        Entries that replace or complete those of the table `base`.
     told
         Called with the number of arms resolved so far and in all.
 
@@ -169,6 +176,9 @@ def plan(name_or_path: str | Path, told: Callable[[int, int], None] | None = Non
     """
     path = design_file.locate(name_or_path)
     design, table = design_file.read(path)
+    if base:
+        table = {**table, "base": {**table["base"], **base}}
+        design = config.validate(DesignFile, table, str(path))
     made, problems = arms(design, path.parent)
     if any(problem.startswith("base: ") for problem in problems):
         return Plan(design, table, made, {}, problems, str(path))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import stats
@@ -24,7 +24,7 @@ def progression(
     *,
     bin_s: float = 3600.0,
     confidence: float = 0.95,
-    colours: Mapping[object, str] | None = None,
+    colours: Mapping[Any, str] | None = None,
     label: str = "{arm}",
     style: str = "-",
 ) -> None:

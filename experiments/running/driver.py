@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import deque
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import pandas as pd
 
 from experiments.design.stages import columns, schedule
-from experiments.results import assigned, failed
+from experiments.results import assigned, failed_pairs
 from experiments.running.code import code
 
 if TYPE_CHECKING:
@@ -109,12 +109,15 @@ class _Driver:
         self.attempts: dict[str, int] = {}
         self.finished: set[str] = set()
         self.failed: set[str] = set()
+        self.looked_at = columns(plan)
+        self.known: list[dict[Any, Any]] = []
 
     def run(self) -> Tally:
         with self.store.locked(), self._closing():
             self.plan.save(self.store.folder)
             self.store.merge()
             self.finished = self.store.finished(self.plan.design.keep)
+            self._remember()
             self._tell_of_strangers()
             while True:
                 now = self._schedule()
@@ -131,14 +134,18 @@ class _Driver:
 
     def _schedule(self) -> Schedule:
         """Ask the stages what they want, given the results so far."""
-        needed = columns(self.plan)
+        head = pd.Index(["arm", "replication", *self.looked_at])
+        return schedule(self.plan, pd.DataFrame(self.known, columns=head), self.tally.failed)
+
+    def _remember(self) -> None:
+        """Read what the stages look at of the runs that are finished."""
         if not self.plan.design.stages:
-            return schedule(self.plan, pd.DataFrame({"arm": [], "replication": []}))
-        rows = self.store.rows(["arm_digest", "arm", "replication", "seed", *needed])
+            return
+        rows = self.store.rows(["arm_digest", "replication", *self.looked_at])
         names = {arm.digest: arm.name for arm in self.plan.arms}
         rows = rows[rows["arm_digest"].isin(list(names)) & rows["run"].isin(list(self.finished))]
         rows = rows.assign(arm=rows["arm_digest"].map(names))
-        return schedule(self.plan, rows, set(self.tally.failed))
+        self.known = rows[["arm", "replication", *self.looked_at]].to_dict("records")
 
     def _todo(self, now: Schedule) -> list[Job]:
         jobs = [self.plan.job(self.arms[run.arm], run.replication) for run in now.runs]
@@ -179,6 +186,9 @@ class _Driver:
         else:
             self.finished.add(job.key)
             self.tally.finished += 1
+            if self.plan.design.stages and outcome.footprint is not None:
+                row = outcome.footprint.iloc[0][self.looked_at].to_dict()
+                self.known.append({"arm": job.arm, "replication": job.replication, **row})
         self.watcher.ended(job, outcome)
         if self.tally.ran % MERGE_EVERY == 0:
             self.store.merge()
@@ -214,9 +224,8 @@ class _Driver:
 def progress_of(plan: Plan, store: Store) -> Tally:
     """Return how far an experiment has come."""
     finished = store.finished(plan.design.keep)
-    lost = failed(plan, store)
-    pairs = list(zip(lost["arm"], lost["replication"].astype(int), strict=True))
-    wanted = schedule(plan, assigned(plan, store.rows()), set(pairs)).runs
+    lost = failed_pairs(plan, store)
+    wanted = schedule(plan, assigned(plan, store), lost).runs
     arms = {arm.name: arm for arm in plan.arms}
     keys = [plan.job(arms[run.arm], run.replication).key for run in wanted]
-    return Tally(len(keys), sum(key in finished for key in keys), failed=pairs)
+    return Tally(len(keys), sum(key in finished for key in keys), failed=sorted(lost))

@@ -10,10 +10,11 @@ import multiprocessing
 import os
 import signal
 import sys
+import threading
 from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from multiprocessing import connection, forkserver
-from types import ModuleType
+from types import FrameType, ModuleType
 from typing import TYPE_CHECKING, Any, Protocol
 
 from experiments.running.job import Job, Outcome
@@ -96,15 +97,16 @@ class LocalProcesses:
 
     def submit(self, job: Job) -> None:
         """Begin a job in a new process."""
-        receiver, sender = self._context.Pipe(duplex=False)
-        process = self._context.Process(
-            target=_worker, args=(sender, job, self._work), name=str(job), daemon=True
-        )
-        with _without_main() if self._work is None else nullcontext():
-            process.start()
-        # only the worker holds the other end now: the pipe ends when the worker does
-        sender.close()
-        self._running[receiver.fileno()] = _Running(job, process, receiver)
+        with _uninterrupted():
+            receiver, sender = self._context.Pipe(duplex=False)
+            process = self._context.Process(
+                target=_worker, args=(sender, job, self._work), name=str(job), daemon=True
+            )
+            with _without_main() if self._work is None else nullcontext():
+                process.start()
+            # only the worker holds the other end now: the pipe ends when the worker does
+            sender.close()
+            self._running[receiver.fileno()] = _Running(job, process, receiver)
 
     def wait(self, timeout_s: float) -> list[tuple[Job, Outcome]]:
         """Return the jobs that have ended within a time."""
@@ -166,6 +168,22 @@ def _forget_earlier_memory() -> None:
     """Begin the high-water mark of memory anew, where the kernel can."""
     with suppress(OSError), open("/proc/self/clear_refs", "w", encoding="ascii") as file:  # noqa: PTH123
         file.write("5")
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Put off an interruption: a process that is half started would complain of it."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # nothing is interrupted here
+        return
+    heard: list[tuple[int, FrameType | None]] = []
+    before = signal.signal(signal.SIGINT, lambda *given: heard.append(given))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if heard and callable(before):
+        before(*heard[0])
 
 
 @contextmanager

@@ -62,7 +62,7 @@ def estimate(plan: Plan, store: Store) -> Estimate | None:
     """Estimate how long a run of a design takes; nothing if no pilot run got through."""
     from experiments.results import assigned
 
-    known = assigned(plan, store.rows())
+    known = assigned(plan, store)
     if len(known) >= ENOUGH:
         by_arm = known.groupby("arm")["elapsed_s"].mean()
         return Estimate(

@@ -1,0 +1,166 @@
+"""Figure 5a: the PSA rule exchanged in the middle of a day (Merschformann, Xie, Li 2018).
+
+The paper shows one run of 24 h in which random storage gives way to nearest storage: the robots
+drive less, and at once more orders are picked. Here ten seeds are run on a twin of RAWSim-O's
+layout MaTiMilli, beside arms that stay with either rule. What the exchange did is the difference in
+differences: second half less first half, with the exchange less without it, seed by seed.
+
+With `--reference DIR` (the public instances of RAWSim-O) the layout itself is taken instead of its
+twin: `DIR/mati/MaTiMilli.xinst`.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from experiments.figures import progression
+from experiments.figures.style import COLOURS, axis_label, saving
+from experiments.papers.study import command, done, parser
+from experiments.statistics import paired, rates
+from experiments.tables import HALF, Table, digits
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from experiments.papers.study import Study
+
+STAYS, CHANGES, NEAREST = "random", "random, then nearest", "nearest"
+COLUMNS = ("orders_completed", "units_picked", "distance_m")
+SHOWN = {"orders_completed": "orders", "units_picked": "units", "distance_m": "distance"}
+SETTLED_S = 3600.0
+"""Time after the beginning, and after the exchange, that is left out of the halves."""
+
+
+def halves(series: pd.DataFrame, *, settle_s: float = SETTLED_S) -> pd.DataFrame:
+    """Return the rates per hour of every run before and after the exchange.
+
+    Parameters
+    ----------
+    series
+        The time series of the runs.
+    settle_s
+        Left out at the beginning of both halves. Default an hour.
+
+    Returns
+    -------
+    One row per arm, replication and half (`before`, `after`).
+    """
+    middle_s = float(series["time_s"].max()) / 2.0
+    parts = {
+        "before": rates(series, COLUMNS, start_s=settle_s, end_s=middle_s),
+        "after": rates(series, COLUMNS, start_s=middle_s + settle_s),
+    }
+    return pd.concat([part.assign(half=name) for name, part in parts.items()], ignore_index=True)
+
+
+def differences(rated: pd.DataFrame, confidence: float = 0.95) -> pd.DataFrame:
+    """Return what the exchange did, a row per measure.
+
+    Returns
+    -------
+    Means of the four combinations of arm and half, the difference in differences with its
+    interval, and the same in relation to the arm that stays (`relative`).
+    """
+    rows = {}
+    for column in COLUMNS:
+        wide = rated.pivot_table(index="replication", columns=["arm", "half"], values=column)
+        changed = wide[CHANGES, "after"] - wide[CHANGES, "before"]
+        stayed = wide[STAYS, "after"] - wide[STAYS, "before"]
+        found = paired(changed, stayed, confidence=confidence)
+        rows[SHOWN[column]] = {
+            **{
+                f"{arm}: {half}": float(wide[arm, half].mean())
+                for arm in (STAYS, CHANGES)
+                for half in ("before", "after")
+            },
+            "difference": found["difference"],
+            "low": found["low"],
+            "high": found["high"],
+            "relative": found["difference"] / float(wide[STAYS, "after"].mean()),
+            "p": found["p"],
+            "seeds": found["pairs"],
+        }
+    made = pd.DataFrame.from_dict(rows, orient="index")
+    made.index.name = "per hour"
+    return made
+
+
+def as_table(found: pd.DataFrame) -> Table:
+    """Return the differences as a table to publish."""
+    half = (found["high"] - found["low"]) / 2
+    percent = 100 * found["relative"]
+    parts = {
+        **{(str(c), ""): found[c] for c in found if ": " in str(c)},
+        ("difference in differences", "difference"): found["difference"],
+        ("difference in differences", HALF): half,
+        ("%", ""): percent,
+        ("p", ""): found["p"],
+        ("seeds", ""): found["seeds"].astype(int),
+    }
+    frame = pd.DataFrame(parts)
+    frame.columns = pd.MultiIndex.from_tuples(list(parts))
+    decimals = {column: digits(half, found["difference"]) for column in parts}
+    decimals |= {("%", ""): 1, ("p", ""): 4, ("seeds", ""): 0}
+    caption = (
+        "Storage rule exchanged (random, then nearest) against kept (random): rates per hour in "
+        "the two halves of 24 h, difference in differences seed by seed with 95% confidence "
+        "interval (Student's t)."
+    )
+    return Table(frame, decimals, caption)
+
+
+def picture(study: Study, series: pd.DataFrame) -> Path:
+    """Draw the course of orders and distance per hour."""
+    path = study.published / "figure-5a.png"
+    colours = {STAYS: "0.55", CHANGES: COLOURS[1], NEAREST: COLOURS[0]}
+    series = series.assign(distance_m=series["distance_m"] / 1000.0)
+    labels = {
+        "orders_completed": axis_label("orders_completed", "series", per="hour"),
+        "distance_m": "distance (km per hour)",
+    }
+    middle_h = float(series["time_s"].max()) / 7200.0
+    bin_s = min(3600.0, float(series["time_s"].max()) / 24)
+    with saving(path, 7.0, 5.2) as figure:
+        axes = figure.subplots(2, 1, sharex=True)
+        for ax, (column, label) in zip(axes, labels.items(), strict=True):
+            progression(series, column, ax, bin_s=bin_s, colours=colours)
+            ax.axvline(middle_h, color="black", linewidth=0.8, linestyle=":")
+            ax.set_ylabel(label)
+            ax.label_outer()
+        axes[0].legend(fontsize=8, title="pod storage assignment")
+        seeds = study.frame["replication"].nunique()
+        axes[0].set_title(
+            f"Pod storage rule exchanged after {middle_h:g} h; mean of {seeds} seeds with 95 % "
+            "intervals",
+            fontsize=9,
+        )
+    study.record(path, ["orders_completed", "distance_m"], kind="progression", confidence=0.95)
+    return path
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the study and publish it."""
+    options = parser("psa-exchange", __doc__)
+    options.add_argument(
+        "--reference", type=Path, metavar="DIR", help="the public instances of RAWSim-O"
+    )
+    given = options.parse_args(arguments)
+    base = None
+    if given.reference is not None:
+        layout = given.reference / "mati" / "MaTiMilli.xinst"
+        if not layout.is_file():
+            raise InputError(f"--reference {given.reference}: {layout} is not there")
+        base = {"layout": str(layout.absolute())}
+    study = done(given, base)
+    series = study.table("series")
+    settle_s = min(SETTLED_S, float(series["time_s"].max()) / 24)
+    found = differences(halves(series, settle_s=settle_s))
+    study.publish(as_table(found), "figure-5a", list(COLUMNS), settled_s=settle_s)
+    print(picture(study, series))
+
+
+if __name__ == "__main__":
+    sys.exit(command(main))

@@ -1,0 +1,151 @@
+"""Factors, lists and files become arms; exclusions and names."""
+
+from __future__ import annotations
+
+import pytest
+
+import experiments
+from experiments.design.arms import factor_names
+from rmfs.errors import InputError
+
+
+def names(path) -> list[str]:
+    plan = experiments.plan(path)
+    assert plan.problems == []
+    return [arm.name for arm in plan.arms]
+
+
+def test_a_grid_holds_every_combination_in_the_order_of_the_factors(design):
+    assert names(design()) == [
+        "robots=8,psa=nearest",
+        "robots=8,psa=random",
+        "robots=16,psa=nearest",
+        "robots=16,psa=random",
+    ]
+
+
+def test_excluded_combinations_are_left_out(design):
+    path = design(exclude=[{"layout.robots": [8, 16], "controllers.psa": "random"}])
+    assert names(path) == ["robots=8,psa=nearest", "robots=16,psa=nearest"]
+
+
+def test_levels_may_be_tables_with_and_without_labels(design):
+    levels = [
+        "random",
+        {"name": "pod-match", "fast_lane": False},
+        {"label": "usual", "value": {"name": "pod-match", "fast_lane": True}},
+    ]
+    plan = experiments.plan(design(factors={"controllers.poa": levels}))
+    assert plan.problems == []
+    assert [arm.name for arm in plan.arms] == [
+        "poa=random",
+        "poa=pod-match(fast_lane=false)",
+        "poa=usual",
+    ]
+    assert plan.arms[2].levels == {"controllers.poa": "usual"}
+
+
+def test_a_factor_of_its_own_sets_several_parameters(design):
+    levels = [
+        {"label": "small", "layout.robots": 8, "scenario.demand.orders": 50},
+        {"label": "big", "layout.robots": 16, "scenario.demand.orders": 100},
+    ]
+    plan = experiments.plan(design(factors={"size": levels}))
+    assert plan.problems == []
+    assert [arm.name for arm in plan.arms] == ["size=small", "size=big"]
+    assert (["scenario", "demand", "orders"], 100) in plan.arms[1].overrides
+
+
+def test_arms_of_a_list_are_combined_with_the_grid(design):
+    arms = [{"name": "few", "layout.robots": 8}, {"layout.robots": 16}]
+    path = design(arms=arms, factors={"controllers.psa": ["nearest", "random"]})
+    assert names(path) == ["few,psa=nearest", "few,psa=random", "robots=16,psa=nearest",
+                           "robots=16,psa=random"]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("arms.csv", "name,layout.robots,controllers.psa\nfew,8,\n,16,random\n"),
+        (
+            "arms.toml",
+            '[[arms]]\nname = "few"\n"layout.robots" = 8\n'
+            '[[arms]]\n"layout.robots" = 16\n"controllers.psa" = "random"\n',
+        ),
+    ],
+)
+def test_arms_from_a_file_beside_the_design(design, tmp_path, file, text):
+    (tmp_path / file).write_text(text)
+    path = design(arms_file=file, factors=None)
+    plan = experiments.plan(path)
+    assert plan.problems == []
+    assert [arm.name for arm in plan.arms] == ["few", "robots=16,psa=random"]
+    assert plan.arms[0].levels == {"layout.robots": 8, "controllers.psa": None}
+
+
+def test_a_file_beside_the_design_comes_before_a_shipped_one(design, tmp_path):
+    from rmfs.instances import ROOT
+
+    shipped = (ROOT / "controllers" / "default.toml").read_text()
+    (tmp_path / "mine.toml").write_text(shipped.replace("fast_lane = true", "fast_lane = false"))
+    path = design(factors={"controllers": ["default", "mine.toml"]})
+    plan = experiments.plan(path)
+    assert plan.problems == []
+    assert plan.arms[1].inputs["controllers"] == str(tmp_path / "mine.toml")
+    assert any(name.endswith("mine.toml") for name in plan.files)
+
+
+def test_short_names_tell_factors_apart():
+    keys = ["layout.robots", "controllers.psa.name", "controllers.pps.weight", "a.b.weight"]
+    assert list(factor_names(keys).values()) == ["robots", "psa", "pps.weight", "b.weight"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"exclude": [{"layout.robot": 8}]}, "exclude 1: layout.robot is not a factor; did you"),
+        ({"factors": {"robots": [8]}}, "factor robots: is no parameter"),
+        ({"factors": {"layout.robots": [8, 8]}}, "level 8 is there more than once"),
+        ({"factors": {"seed": [{"label": "a"}]}}, "factor seed: a column of the results"),
+        ({"base": {"layout": "basic", "scenario": "basic"}}, "base: controllers is missing"),
+        ({"seeded": ["seed"]}, "seeded: seed: must begin with"),
+        ({"arms_file": "nothing.csv"}, "nothing.csv: no such file"),
+        ({"exclude": [{"layout.robots": [8, 16]}]}, "no arms are left"),
+    ],
+)
+def test_problems_of_arms_are_told(design, changes, told):
+    problems = experiments.plan(design(**changes)).problems
+    assert any(told in problem for problem in problems), problems
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"seeds": []}, "seeds: must be different"),
+        ({"seeds": [1, 1]}, "seeds: must be different"),
+        ({"replications": 3}, "exclude each other"),
+        ({"seeds": None}, "seeds: missing"),
+        ({"seed": 3}, "unknown key seed; did you mean seeds?"),
+        ({"keep": ["serie"]}, "keep: no table serie"),
+        ({"factors": {"layout.robots": []}}, "factor layout.robots: has no levels"),
+        ({"name": "a/b"}, "name"),
+        ({"format": "rmfs-design/2"}, "format"),
+        (
+            {"stages": [{"name": "a", "until": {"column": "wall_s"}}]},
+            "is measured by the clock",
+        ),
+        ({"stages": [{"name": "a", "arms": {"best": 1, "by": "units_per_h"}}]}, "stage before"),
+        (
+            {"stages": [{"name": "a", "seeds": [1], "until": {"column": "units_per_h"}}]},
+            "needs from 2 to max_seeds seeds",
+        ),
+    ],
+)
+def test_a_wrong_design_file_is_refused(design, changes, told):
+    with pytest.raises(InputError, match=told):
+        experiments.plan(design(**changes))
+
+
+def test_an_unknown_design_lists_the_shipped_ones():
+    with pytest.raises(InputError, match=r"shipped: .*smoke"):
+        experiments.plan("smoek")

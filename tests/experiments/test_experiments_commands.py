@@ -1,0 +1,179 @@
+"""`rmfs experiment` and `rmfs compare`: what is printed, written and returned."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from stand_in import Inline, work_that_fails_for_random
+
+import experiments
+from experiments.results import to_csv
+from experiments.running.driver import drive
+from experiments.store import Store
+from rmfs.cli import main
+
+
+@pytest.fixture
+def made(design, tmp_path, monkeypatch):
+    """A design whose results are in results/tiny below the working directory."""
+    monkeypatch.chdir(tmp_path)
+    path = design(keep=["series"])
+    drive(experiments.plan(path), Store(Path("results/tiny")), Inline())
+    return str(path)
+
+
+def told(capsys) -> str:
+    return capsys.readouterr().out
+
+
+def test_plan_counts_runs_and_estimates_time(design, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    path = str(design())
+    assert main(["experiment", "plan", path, "--arms", "--jobs", "2"]) == 0
+    out = told(capsys)
+    assert "arms     4" in out and "runs     12, 0 finished" in out
+    assert "factor   psa (controllers.psa): nearest, random" in out
+    assert "robots=16,psa=random" in out
+    assert "for 12 runs, 2 at a time" in out and "from 4 short runs" in out
+    assert not (tmp_path / "results").exists()
+
+
+def test_plan_of_a_finished_experiment(made, capsys):
+    assert main(["experiment", "plan", made]) == 0
+    out = told(capsys)
+    assert "runs     12, 12 finished" in out and "time" not in out
+
+
+def test_problems_are_told_one_a_line(design, capsys):
+    path = design(factors={"layout.robts": [1], "controllers.psa": ["nearst"]})
+    for verb in ("plan", "run", "status", "table", "plot"):
+        assert main(["experiment", verb, str(path)]) == 2
+        lines = capsys.readouterr().err.splitlines()
+        assert len(lines) == 2
+        assert all(line.startswith(f"rmfs: {path}: arm robts=1,psa=nearst: ") for line in lines)
+
+
+def test_run_is_told_in_lines(design, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    path = str(design(seeds=[1], base={
+        "layout": "basic", "scenario": "basic", "controllers": "default",
+        "scenario.duration_s": 60,
+    }))  # fmt: skip
+    assert main(["experiment", "run", path, "--jobs", "2"]) == 0
+    out = capsys.readouterr()
+    assert out.out.splitlines() == ["4 of 4 runs finished, 0 failed", "results/tiny"]
+    assert out.err.splitlines() == ["rmfs: 4 runs, 0 of them finished"]
+    assert set(experiments.load("results/tiny")["units_picked"] > 0) == {True}
+    assert main(["experiment", "status", path]) == 0
+    assert "4 of 4 runs finished" in told(capsys)
+
+
+def test_failed_runs_end_in_exit_code_1(design, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    path = design()
+    monkeypatch.setattr(
+        "experiments.running.local.LocalProcesses",
+        lambda processes: Inline(do=work_that_fails_for_random),
+    )
+    assert main(["experiment", "run", str(path)]) == 1
+    out = capsys.readouterr()
+    assert "10 of 12 runs finished, 2 failed" in out.out
+    assert "robots=8,psa=random, seed 2: failed: ValueError: a robot is lost" in out.err
+    assert main(["experiment", "status", str(path)]) == 1
+    out = told(capsys)
+    assert "10 of 12 runs finished" in out
+    assert "failed: robots=16,psa=random, seed 2: ValueError: a robot is lost" in out
+
+
+def test_tables_on_the_terminal_and_in_files(made, tmp_path, capsys):
+    assert main(["experiment", "table", made]) == 0
+    assert "robots=8,psa=nearest" in told(capsys)
+    assert main(["experiment", "table", made, "--anova", "-c", "units_per_h"]) == 0
+    assert "Analysis of variance of units_per_h" in told(capsys)
+    arguments = ["--baseline", "robots=8,psa=nearest", "--file", "table.tex"]
+    assert main(["experiment", "table", made, *arguments]) == 0
+    assert told(capsys) == "table.tex: written, with table.tex.provenance.json\n"
+    provenance = json.loads(Path("table.tex.provenance.json").read_text())
+    assert provenance["rows"]["count"] == 12 and "p values" in provenance["caption"]
+    assert main(["experiment", "table", made, "--rows", "rows.csv"]) == 0
+    rows = pd.read_csv("rows.csv")
+    assert len(rows) == 12 and "wall_s" not in rows and "code" not in rows
+
+
+def test_pictures(made, capsys):
+    assert main(["experiment", "plot", made, "--kind", "pareto", "-f", "p.png"]) == 0
+    assert Path("p.png").exists() and Path("p.png.provenance.json").exists()
+    assert main(["experiment", "plot", made]) == 0
+    assert "results/tiny/intervals-units_per_h.png: written" in told(capsys)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (["experiment", "plot", "DESIGN", "--kind", "pie"], "valid: intervals, effects"),
+        (["experiment", "table", "DESIGN", "-c", "unit_per_h"], "did you mean units_per_h"),
+        (["experiment", "table", "DESIGN", "-c", "layout"], "column layout: holds no numbers"),
+        (["experiment", "table", "DESIGN", "--baseline", "x"], "x: no such arm; arms: robots=8"),
+        (["experiment", "table", "DESIGN", "--out", "empty"], "no finished runs yet"),
+        (["experiment", "run", "nothing.toml"], "no such file, and no shipped design"),
+        (["compare", "nothing", "results/tiny"], "nothing: neither a run folder"),
+        (["compare", "results/tiny#x"], "x: no such arm"),
+        (["compare", "results/tiny#robots=8,psa=random"], "nothing to compare"),
+        (["compare", "results/tiny", "-c", "unit"], "column unit: not in both"),
+    ],
+)
+def test_wrong_usage_is_one_line_and_code_2(made, capsys, arguments, text):
+    arguments = [made if argument == "DESIGN" else argument for argument in arguments]
+    assert main(arguments) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert text in line
+
+
+def test_compare_arms(made, capsys):
+    arms = [f"results/tiny#robots={robots},psa=nearest" for robots in (8, 16)]
+    assert main(["compare", *arms, "-c", "units_per_h", "-c", "robots"]) == 0
+    out = told(capsys)
+    assert "layout.robots" in out and "paired by 3 common seeds" in out
+    assert "+100.0%" in out
+    assert "controllers.psa" not in out
+    # one folder alone: all of its arms with the first
+    assert main(["compare", "results/tiny", "-c", "units_per_h"]) == 0
+    assert told(capsys).count("baseline  results/tiny#robots=8,psa=nearest") == 3
+
+
+def test_compare_tables(made, capsys):
+    to_csv(experiments.load("results/tiny"), Path("a.csv"))
+    frame = pd.read_csv("a.csv")
+    frame.assign(units_per_h=frame["units_per_h"] + 1.0).to_parquet("b.parquet")
+    assert main(["compare", "a.csv", "results/tiny"]) == 0
+    assert told(capsys).count("identical: all reproducible columns are the same") == 4
+    assert main(["compare", "a.csv", "b.parquet", "--all"]) == 0
+    out = told(capsys)
+    assert "identical" not in out
+    assert out.count("units_per_h") == 4 and "orders_per_h" not in out
+    frame[frame["arm"] == "robots=8,psa=random"].assign(seed=range(7, 10)).drop(
+        columns=["arm", "replication"]
+    ).to_csv("c.csv", index=False)
+    assert main(["compare", "results/tiny#robots=8,psa=random", "c.csv"]) == 0
+    assert "no common seed: 3 and 3 runs taken as independent (Welch)" in told(capsys)
+
+
+def test_compare_runs(tmp_path, monkeypatch, capsys):
+    from rmfs.measure import write_run
+    from rmfs.simulation.run import simulate
+
+    monkeypatch.chdir(tmp_path)
+    short = [(["scenario", "duration_s"], 60.0)]
+    for name, more in (("a", []), ("b", [(["layout", "robots"], 8)]), ("c", [])):
+        run = simulate("basic", "basic", "default", seed=1, overrides=[*short, *more])
+        write_run(run, Path(name))
+    assert main(["compare", "a", "b"]) == 0
+    out = told(capsys)
+    assert "layout.parameters.robots" in out and "paired by 1 common seed" in out
+    assert "interval" not in out.split("output")[1]
+    assert main(["compare", "a", "c"]) == 0
+    out = told(capsys)
+    assert "identical" in out and "input: the same" in out

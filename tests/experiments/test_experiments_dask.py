@@ -1,0 +1,124 @@
+"""A Dask cluster in place of this machine: the same table, even if a worker is killed."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+
+import pytest
+
+import experiments
+from experiments.results import reproducible_table
+from experiments.running.cluster import DaskWorkers
+from rmfs.errors import InputError
+
+distributed = pytest.importorskip("distributed")
+
+BASE = {
+    "layout": "basic",
+    "scenario": "basic",
+    "controllers": "default",
+    "scenario.duration_s": 1800,
+}
+
+
+def table(folder) -> str:
+    return reproducible_table(experiments.load(folder)).to_csv(index=False)
+
+
+@pytest.mark.slow
+def test_a_cluster_of_four_workers_gives_the_same_table(design, tmp_path):
+    """Issue 6, "must show" 2; one worker is killed as soon as a third of the runs is there."""
+    plan = experiments.plan(design(base=BASE, seeds=[1, 2, 3, 4, 5, 6]))
+    out = tmp_path / "out"
+    killed = []
+    with distributed.LocalCluster(
+        n_workers=4, threads_per_worker=1, dashboard_address=None
+    ) as cluster:
+
+        def kill() -> None:
+            while len(list((out / "runs").glob("[!.]*.parquet"))) < 8:
+                time.sleep(0.01)
+            nanny = next(iter(cluster.workers.values()))
+            killed.append(nanny.pid)
+            os.kill(nanny.pid, signal.SIGKILL)
+
+        killer = threading.Thread(target=kill, daemon=True)
+        killer.start()
+        done = experiments.run(plan, out, dask=cluster.scheduler_address)
+        killer.join(10)
+    assert killed
+    assert (done.ran, done.finished, done.failed) == (24, 24, [])
+    experiments.run(plan, tmp_path / "local", processes=2)
+    assert table(out) == table(tmp_path / "local")
+
+
+@pytest.mark.slow
+def test_a_profile_starts_a_cluster(design, tmp_path):
+    profile = tmp_path / "cluster.toml"
+    profile.write_text('format = "rmfs-cluster/1"\ncluster = "local"\nworkers = 2\n')
+    plan = experiments.plan(design(base=BASE, factors=None, seeds=[1, 2]))
+    done = experiments.run(plan, tmp_path / "out", dask=str(profile))
+    assert done.finished == 2
+
+
+@pytest.mark.slow
+def test_a_failing_run_does_not_stop_the_cluster(design, tmp_path, monkeypatch):
+    import stand_in
+
+    profile = tmp_path / "cluster.toml"
+    profile.write_text('format = "rmfs-cluster/1"\ncluster = "local"\nworkers = 2\n')
+    plan = experiments.plan(design())
+    engine = DaskWorkers(str(profile), work=stand_in.work_that_fails_for_random)
+    from experiments.running.driver import drive
+    from experiments.store import Store
+
+    done = drive(plan, Store(tmp_path / "out"), engine)
+    assert (done.finished, len(done.failed)) == (10, 2)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ('cluster = "slurn"\nworkers = 2', "cluster"),
+        ('cluster = "local"\nworkers = 0', "workers"),
+        ('cluster = "local"\nworkers = 1\nqueue = "x"', "unknown key queue"),
+    ],
+)
+def test_a_wrong_profile_is_refused(tmp_path, text, told):
+    profile = tmp_path / "cluster.toml"
+    profile.write_text(f'format = "rmfs-cluster/1"\n{text}\n')
+    with pytest.raises(InputError, match=told):
+        DaskWorkers(str(profile))
+
+
+def test_a_batch_system_is_told_to_start_single_threaded_workers(monkeypatch, tmp_path):
+    jobqueue = pytest.importorskip("dask_jobqueue")
+    from experiments.running.cluster import Profile, _started
+
+    made = []
+
+    class Cluster:
+        def __init__(self, **options):
+            made.append(options)
+
+        def scale(self, n):
+            made.append(n)
+
+    monkeypatch.setattr(jobqueue, "SLURMCluster", Cluster)
+    profile = Profile(
+        format="rmfs-cluster/1",
+        cluster="slurm",
+        workers=40,
+        options={"queue": "short", "memory": "4GB", "cores": 8},
+    )
+    _started(profile, "cluster.toml")
+    assert made == [{"queue": "short", "memory": "4GB", "cores": 8, "processes": 8}, 40]
+
+
+def test_a_scheduler_that_does_not_answer_is_told(monkeypatch):
+    monkeypatch.setattr("experiments.running.cluster.CONNECT_S", 0.2)
+    with pytest.raises(InputError, match="no scheduler answers"):
+        DaskWorkers("tcp://127.0.0.1:9")

@@ -1,0 +1,295 @@
+"""The driver: what is run, what is not run again, what happens when things go wrong."""
+
+from __future__ import annotations
+
+import json
+from functools import partial
+
+import numpy as np
+import pandas as pd
+import pytest
+import stand_in
+from stand_in import Inline, work, work_that_fails_for_random
+
+import experiments
+from experiments.design.planning import PlanError
+from experiments.results import reproducible_table
+from experiments.running.driver import Silent, drive, progress_of
+from experiments.running.job import Outcome
+from experiments.running.local import LocalProcesses
+from experiments.store import Store
+from rmfs.errors import InputError
+from rmfs.instances import ROOT
+
+
+class Notes(Silent):
+    """A watcher that remembers what it was told."""
+
+    def __init__(self) -> None:
+        self.remarks: list[str] = []
+        self.plans: list[tuple[int, int]] = []
+
+    def planned(self, total, finished):
+        self.plans.append((total, finished))
+
+    def remark(self, text):
+        self.remarks.append(text)
+
+
+def table(folder) -> str:
+    return reproducible_table(experiments.load(folder)).to_csv(index=False)
+
+
+@pytest.fixture
+def store(tmp_path):
+    return Store(tmp_path / "out")
+
+
+def test_results_are_sorted_and_complete(design, store):
+    plan = experiments.plan(design(keep=["series"]))
+    engine = Inline()
+    done = drive(plan, store, engine)
+    assert (done.wanted, done.finished, done.ran, done.failed) == (12, 12, 12, [])
+    assert engine.closed
+    frame = experiments.load(store.folder)
+    assert list(frame.columns[:6]) == [
+        *("arm", "layout.robots", "controllers.psa", "stage", "replication", "layout")
+    ]
+    assert list(frame["arm"].unique()) == [arm.name for arm in plan.arms]
+    assert list(frame["replication"]) == [1, 2, 3] * 4
+    assert list(frame["layout.robots"]) == [8] * 6 + [16] * 6
+    assert set(frame["layout"]) == {"basic"}
+    assert frame["collisions"].isna().all()
+    series = experiments.load(store.folder, table="series")
+    assert len(series) == 48
+    assert list(series["seed"].iloc[:12]) == [1] * 4 + [2] * 4 + [3] * 4
+    with pytest.raises(InputError, match="table heat is not kept"):
+        experiments.load(store.folder, table="heat")
+
+
+def test_finished_runs_are_never_repeated(design, store):
+    plan = experiments.plan(design())
+    drive(plan, store, Inline())
+    again = Inline()
+    done = drive(plan, store, again)
+    assert (again.done, done.ran, done.finished) == ([], 0, 12)
+    more = Inline()
+    drive(experiments.plan(design(seeds=[2, 3, 4])), store, more)
+    assert sorted({name[-1] for name in more.done}) == ["4"] and len(more.done) == 4
+    # a seed that is no longer asked for is not lost, but does not count
+    assert set(experiments.load(store.folder)["replication"]) == {2, 3, 4}
+    drive(plan, store, Inline(after=0))
+    assert set(experiments.load(store.folder)["replication"]) == {1, 2, 3}
+
+
+def test_an_interruption_loses_nothing_and_changes_nothing(design, store, tmp_path):
+    plan = experiments.plan(design())
+    with pytest.raises(KeyboardInterrupt):
+        drive(plan, store, Inline(after=5))
+    assert len(experiments.load(store.folder)) == 5
+    assert progress_of(plan, store).finished == 5
+    engine = Inline(slots=1)
+    drive(plan, store, engine)
+    assert len(engine.done) == 7
+    drive(plan, Store(tmp_path / "whole"), Inline())
+    assert table(store.folder) == table(tmp_path / "whole")
+
+
+def test_results_can_be_read_while_the_experiment_runs(design, store):
+    plan = experiments.plan(design())
+    seen = []
+
+    def look(job):
+        seen.append(len(experiments.load(store.folder)))
+        return work(job)
+
+    drive(plan, store, Inline(do=look))
+    assert seen == list(range(12))
+
+
+def test_a_changed_input_is_noticed(design, store, tmp_path):
+    scenario = (ROOT / "scenarios" / "basic.toml").read_text()
+    (tmp_path / "own.toml").write_text(scenario)
+    base = {"layout": "basic", "scenario": "own.toml", "controllers": "default"}
+    path = design(base=base)
+    drive(experiments.plan(path), store, Inline())
+    (tmp_path / "own.toml").write_text(scenario.replace("orders = 200", "orders = 201"))
+    notes, engine = Notes(), Inline()
+    changed = experiments.plan(path)
+    drive(changed, store, engine, notes)
+    assert len(engine.done) == 12
+    assert any("12 finished runs of 4 arms were made with other inputs" in r for r in notes.remarks)
+    assert len(experiments.load(store.folder)) == 12
+    # put back, the first results count again
+    (tmp_path / "own.toml").write_text(scenario)
+    back = Inline()
+    drive(experiments.plan(path), store, back)
+    assert back.done == []
+
+
+def test_an_input_that_changes_under_way_fails_the_run(design, tmp_path):
+    from experiments.running.execute import execute
+
+    scenario = (ROOT / "scenarios" / "basic.toml").read_text()
+    (tmp_path / "own.toml").write_text(scenario)
+    base = {"layout": "basic", "scenario": "own.toml", "controllers": "default"}
+    plan = experiments.plan(design(base=base))
+    job = plan.job(plan.arms[0], 1)
+    (tmp_path / "own.toml").write_text(scenario.replace("orders = 200", "orders = 201"))
+    outcome = execute(job)
+    assert outcome.footprint is None
+    assert "own.toml: changed since the plan was made" in outcome.error
+
+
+def test_runs_of_other_code_are_told(design, store, monkeypatch):
+    plan = experiments.plan(design())
+    drive(plan, store, Inline())
+    other = {"rmfs_version": "9", "git_commit": "f" * 40, "code": "other"}
+    monkeypatch.setattr("experiments.running.driver.code", lambda: other)
+    notes = Notes()
+    drive(plan, store, Inline(), notes)
+    assert any("12 finished runs were made with other code" in r for r in notes.remarks)
+
+
+def test_a_failing_run_is_recorded_and_the_rest_goes_on(design, store):
+    plan = experiments.plan(design())
+    done = drive(plan, store, Inline(do=work_that_fails_for_random))
+    assert (done.finished, len(done.failed)) == (10, 2)
+    lost = experiments.failures(store.folder)
+    assert sorted(lost["arm"]) == ["robots=16,psa=random", "robots=8,psa=random"]
+    assert set(lost["error"]) == {"ValueError: a robot is lost"}
+    assert set(lost["traceback"]) == {"Traceback: somewhere"}
+    assert len(experiments.load(store.folder)) == 10
+    assert len(progress_of(plan, store).failed) == 2
+    # the next call tries again, and what was lost is made good
+    engine = Inline()
+    assert drive(plan, store, engine).failed == []
+    assert len(engine.done) == 2
+    assert experiments.failures(store.folder).empty
+    assert len(experiments.load(store.folder)) == 12
+
+
+def test_a_worker_that_is_killed_is_replaced(design, store, tmp_path):
+    marks = tmp_path / "marks"
+    marks.mkdir()
+    plan = experiments.plan(design())
+    notes = Notes()
+    drive(plan, store, local(partial(stand_in.work_that_dies_once, marks)), notes)
+    assert len(experiments.load(store.folder)) == 12
+    assert sum("killed by SIGKILL; begun again" in remark for remark in notes.remarks) == 4
+    drive(plan, Store(tmp_path / "whole"), Inline())
+    assert table(store.folder) == table(tmp_path / "whole")
+
+
+def test_a_run_whose_worker_always_dies_is_given_up(design, store):
+    plan = experiments.plan(design(factors=None))
+    done = drive(plan, store, local(stand_in.work_that_always_dies))
+    assert (done.finished, done.failed) == (2, [("base", 2)])
+    assert "ended with code 3" in experiments.failures(store.folder)["error"][0]
+
+
+def local(do) -> LocalProcesses:
+    return LocalProcesses(2, do)
+
+
+def test_closing_ends_what_runs():
+    from experiments.running.job import Job
+
+    engine = LocalProcesses(1, stand_in.work_without_end)
+    job = Job("d", "h", "a", "0" * 64, 1, 1, {}, [], "instant", False, False, (), {})
+    engine.submit(job)
+    (pid,) = engine.pids
+    assert engine.wait(0.2) == []
+    engine.close()
+    assert not alive(pid)
+
+
+def alive(pid: int) -> bool:
+    import psutil
+
+    return psutil.pid_exists(pid) and psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
+
+
+def test_workers_have_one_thread_each(design, store):
+    engine = LocalProcesses(1, stand_in.work_that_tells_threads)
+    plan = experiments.plan(design(factors=None, seeds=[1]))
+    drive(plan, store, engine)
+    told = json.loads(experiments.failures(store.folder)["error"][0])
+    assert told["OMP_NUM_THREADS"] == told["OPENBLAS_NUM_THREADS"] == "1"
+    assert told["sigint"] == "ignored"
+
+
+def test_two_drivers_do_not_share_a_folder(design, store):
+    plan = experiments.plan(design())
+    with store.locked(), pytest.raises(InputError, match="another process runs this experiment"):
+        drive(plan, Store(store.folder), Inline())
+
+
+def test_a_plan_with_problems_is_not_run(design, store):
+    plan = experiments.plan(design(factors={"layout.robts": [1]}))
+    with pytest.raises(PlanError, match="unknown key robts"):
+        drive(plan, store, Inline())
+    assert not store.folder.exists()
+
+
+def test_small_files_are_merged(design, store):
+    plan = experiments.plan(design())
+    drive(plan, store, Inline())
+    before = table(store.folder)
+    store.merge(at_least=2)
+    assert [path.name[:7] for path in (store.folder / "runs").glob("*.parquet")] == ["merged-"]
+    assert table(store.folder) == before
+    # a double, as an interruption between merging and clearing away would leave it
+    job = plan.job(plan.arms[0], 1)
+    store.add(job, work(job), {"rmfs_version": "", "git_commit": "", "code": ""})
+    assert table(store.folder) == before
+    assert store.finished() == {plan.job(arm, r).key for arm in plan.arms for r in (1, 2, 3)}
+
+
+def test_what_is_half_written_is_never_seen(design, store):
+    plan = experiments.plan(design())
+    drive(plan, store, Inline(do=work))
+    left = store.folder / "runs" / ".abc.parquet.x1y2"
+    left.write_text("half")
+    assert len(experiments.load(store.folder)) == 12
+    drive(plan, store, Inline())
+    assert not left.exists()
+
+
+def test_a_table_that_is_wanted_later_is_made_later(design, store):
+    drive(experiments.plan(design()), store, Inline())
+    engine = Inline()
+    drive(experiments.plan(design(keep=["series"])), store, engine)
+    assert len(engine.done) == 12
+    assert len(experiments.load(store.folder, table="series")) == 48
+
+
+def test_an_arm_with_another_name_keeps_its_results(design, store):
+    arms = [{"name": "few", "layout.robots": 8}, {"name": "many", "layout.robots": 16}]
+    drive(experiments.plan(design(arms=arms, factors=None)), store, Inline())
+    renamed = [{**arms[0], "name": "fewer"}, arms[1]]
+    engine = Inline()
+    drive(experiments.plan(design(arms=renamed, factors=None)), store, engine)
+    assert engine.done == []
+    assert list(experiments.load(store.folder)["arm"].unique()) == ["fewer", "many"]
+
+
+def test_rows_of_another_version_may_have_other_columns(design, store):
+    plan = experiments.plan(design(factors=None))
+    drive(plan, store, Inline())
+    job = plan.job(plan.arms[0], 3)
+    outcome = work(job)
+    assert outcome.footprint is not None
+    store.add(job, Outcome(outcome.footprint.assign(new_column=1.0)), {"code": ""})
+    frame = experiments.load(store.folder)
+    assert np.isnan(frame["new_column"].iloc[0]) and frame["new_column"].iloc[2] == 1.0
+
+
+def test_nothing_is_there_before_the_first_run(design, store):
+    plan = experiments.plan(design())
+    assert store.rows().empty and store.finished() == set()
+    assert progress_of(plan, store).finished == 0
+    plan.save(store.folder)
+    assert isinstance(experiments.load(store.folder), pd.DataFrame)
+    with pytest.raises(InputError, match="holds no experiment"):
+        experiments.load(store.folder / "elsewhere")

@@ -1,0 +1,102 @@
+"""Stages: screening, sequential stopping, selection; the same whatever came in between."""
+
+from __future__ import annotations
+
+import pandas as pd
+import pytest
+from stand_in import Inline, footprint
+
+import experiments
+from experiments.design.stages import schedule
+from experiments.running.driver import drive
+from experiments.running.job import Outcome
+from experiments.store import Store
+
+FACTORS = {"layout.robots": [8, 12, 16], "controllers.psa": ["nearest", "random"]}
+
+
+def made(design, **changes):
+    return experiments.plan(design(factors=FACTORS, **changes))
+
+
+def runs(frame: pd.DataFrame) -> dict[str, list[int]]:
+    return {str(arm): list(one["replication"]) for arm, one in frame.groupby("arm", sort=False)}
+
+
+def test_only_the_best_arms_go_on(design, tmp_path):
+    stages = [
+        {"name": "screening", "seeds": [1, 2]},
+        {"name": "final", "seeds": [1, 2, 3, 4], "arms": {"best": 2, "by": "units_per_h"}},
+    ]
+    plan = made(design, seeds=None, stages=stages)
+    store = Store(tmp_path / "out")
+    done = drive(plan, store, Inline())
+    assert done.ran == 6 * 2 + 2 * 2
+    frame = experiments.load(store.folder)
+    best = {"robots=16,psa=nearest": [1, 2, 3, 4], "robots=12,psa=nearest": [1, 2, 3, 4]}
+    assert {arm: seeds for arm, seeds in runs(frame).items() if len(seeds) > 2} == best
+    assert set(frame.loc[frame["replication"] > 2, "stage"]) == {"final"}
+    assert set(frame.loc[frame["replication"] <= 2, "stage"]) == {"screening"}
+
+
+UNTIL = {"column": "units_per_h", "relative_half_width": 0.03, "max_seeds": 40}
+
+
+@pytest.mark.parametrize("step", [1, 4])
+def test_seeds_are_added_until_the_interval_is_narrow(design, tmp_path, step):
+    stages = [{"name": "all", "seeds": [1, 2, 3], "until": {**UNTIL, "step": step}}]
+    plan = made(design, seeds=None, stages=stages)
+    store = Store(tmp_path / "out")
+    drive(plan, store, Inline())
+    frame = experiments.load(store.folder)
+    found = experiments.statistics.per_arm(frame, "units_per_h")
+    assert (found["relative_half_width"] <= 0.03).all()
+    assert (found["count"] > 3).any() and (found["count"] < 40).all()
+    assert all(seeds == list(range(1, len(seeds) + 1)) for seeds in runs(frame).values())
+    assert schedule(plan, frame).complete
+
+
+def test_an_interrupted_sequential_experiment_wants_the_same_runs(design, tmp_path):
+    stages = [{"name": "all", "seeds": [1, 2, 3], "until": UNTIL}]
+    plan = made(design, seeds=None, stages=stages)
+    store = Store(tmp_path / "out")
+    for after in (7, 5, 11):
+        with pytest.raises(KeyboardInterrupt):
+            drive(plan, store, Inline(after=after))
+    drive(plan, store, Inline(slots=1))
+    drive(plan, Store(tmp_path / "whole"), Inline())
+    first, second = (experiments.load(tmp_path / name) for name in ("out", "whole"))
+    assert runs(first) == runs(second)
+
+
+def test_the_best_arm_is_selected(design, tmp_path):
+    select = {"column": "units_per_h", "indifference": 2.0, "max_seeds": 60}
+    stages = [{"name": "select", "seeds": [1, 2, 3, 4, 5], "select": select}]
+    plan = made(design, seeds=None, stages=stages)
+    store = Store(tmp_path / "out")
+    drive(plan, store, Inline())
+    frame = experiments.load(store.folder)
+    (remark,) = schedule(plan, frame).remarks
+    assert "robots=16,psa=nearest selected after" in remark
+    counts = {arm: len(seeds) for arm, seeds in runs(frame).items()}
+    assert counts["robots=16,psa=nearest"] == max(counts.values()) < 60
+    assert counts["robots=8,psa=random"] < counts["robots=16,psa=nearest"]
+
+
+def test_failed_runs_do_not_hold_up_a_stage(design, tmp_path):
+    def work(job):
+        if job.seed == 4 and "robots=16" in job.arm:
+            return Outcome(error="ValueError: lost")
+        return Outcome(footprint(job))
+
+    select = {"column": "units_per_h", "indifference": 1.0, "max_seeds": 60}
+    for number, rule in enumerate(({"select": select}, {"until": UNTIL})):
+        stages = [
+            {"name": "first", "seeds": [1, 2, 3], **rule},
+            {"name": "then", "seeds": [100], "arms": {"best": 1, "by": "units_per_h"}},
+        ]
+        plan = made(design, seeds=None, stages=stages)
+        store = Store(tmp_path / str(number))
+        done = drive(plan, store, Inline(do=work))
+        assert done.failed
+        assert (experiments.load(store.folder)["replication"] == 100).sum() == 1

@@ -1,0 +1,231 @@
+"""Intervals, paired tests, selection, analysis of variance: against formulas and known cases."""
+
+from __future__ import annotations
+
+import gc
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy import stats
+
+from experiments import coverage
+from experiments.statistics import (
+    against,
+    anova,
+    interval,
+    kim_nelson,
+    narrow_enough,
+    paired,
+    per_arm,
+    rates,
+    unpaired,
+)
+from experiments.statistics.paired import holm
+from rmfs.errors import InputError
+
+
+def test_t_interval_is_that_of_the_textbook():
+    values = [10.1, 9.7, 10.4, 10.0, 9.9]
+    found = interval(values)
+    half = stats.t.ppf(0.975, 4) * np.std(values, ddof=1) / np.sqrt(5)
+    assert found.mean == pytest.approx(np.mean(values))
+    assert found.half_width == pytest.approx(half)
+    assert interval(values, 0.99).half_width > found.half_width
+
+
+def test_bootstrap_repeats_and_is_narrower_than_t_for_few_runs():
+    values = [10.1, 9.7, 10.4, 10.0, 9.9]
+    first, second = (interval(values, method="bootstrap") for _ in range(2))
+    assert first == second
+    assert first.low < 10.02 < first.high
+    assert first.half_width < interval(values).half_width
+
+
+def test_odd_samples():
+    assert interval([]).count == 0
+    one = interval([3.0])
+    assert one.mean == 3.0 and np.isnan(one.low)
+    assert interval([2.0, 2.0, 2.0]).half_width == 0.0
+    assert interval([2.0, 2.0, 2.0], method="bootstrap").half_width == 0.0
+    assert interval([1.0, np.nan, 3.0]).count == 2
+
+
+def frame(seeds: int = 8) -> pd.DataFrame:
+    rng = np.random.default_rng(1)
+    shared = rng.normal(0, 50, seeds)
+    rows = []
+    for arm, effect in (("base", 0.0), ("better", 5.0), ("same", 0.0)):
+        for seed in range(seeds):
+            value = 1000 + effect + shared[seed] + rng.normal(0, 1)
+            rows.append({"arm": arm, "replication": seed, "units": value})
+    return pd.DataFrame(rows)
+
+
+def test_pairs_find_what_arms_alone_do_not():
+    runs = frame()
+    arms = per_arm(runs, "units")
+    assert arms.loc["better", "low"] < arms.loc["base", "mean"]
+    found = against(runs, "units", "base")
+    assert list(found.index) == ["better", "same"]
+    assert found.loc["better", "direction"] == "higher"
+    assert found.loc["same", "direction"] == "unclear"
+    assert found.loc["better", "low"] < 5.0 < found.loc["better", "high"]
+    wide = runs.pivot_table(index="replication", columns="arm", values="units")
+    assert found.loc["better", "p"] == pytest.approx(
+        stats.ttest_rel(wide["better"], wide["base"]).pvalue
+    )
+
+
+def test_only_common_seeds_make_pairs():
+    a = pd.Series([1.0, 2.0, 4.0], index=[1, 2, 3])
+    b = pd.Series([1.0, 1.0, 9.0], index=[2, 3, 4])
+    found = paired(a, b)
+    assert found["pairs"] == 2 and found["difference"] == 2.0
+    assert paired(a, a)["p"] == 1.0 and paired(a + 1, a)["p"] == 0.0
+    assert np.isnan(paired(a.iloc[:1], b)["p"])
+
+
+def test_welch_where_no_seed_is_common():
+    a, b = pd.Series([1.0, 2.0, 4.0]), pd.Series([7.0, 9.0, 8.5, 7.7])
+    found = unpaired(b, a)
+    assert found["p"] == pytest.approx(stats.ttest_ind(b, a, equal_var=False).pvalue)
+    assert found["low"] < found["difference"] < found["high"]
+
+
+def test_holm_by_hand():
+    corrected = holm(pd.Series([0.01, 0.04, 0.03, np.nan], index=list("abcd")))
+    assert corrected[["a", "b", "c"]].tolist() == pytest.approx([0.03, 0.06, 0.06])
+    assert np.isnan(corrected["d"])
+
+
+def test_unknown_arms_and_columns_are_told():
+    with pytest.raises(InputError, match="baseline none: no such arm"):
+        against(frame(), "units", "none")
+    with pytest.raises(InputError, match="did you mean units"):
+        per_arm(frame(), "unit")
+
+
+def test_sequential_rule_is_relative_to_the_mean():
+    assert narrow_enough([100.0, 101.0, 99.0, 100.0], 0.02)
+    assert not narrow_enough([100.0, 110.0, 90.0, 100.0], 0.02)
+    assert not narrow_enough([100.0], 0.02)
+
+
+def test_selection_follows_the_procedure_step_by_step():
+    """k = 2, n0 = 3: eta, h^2 and the continuation region worked out by hand."""
+    a = [10.0, 12.0, 14.0, 12.5, 11.5, 12.0, 12.0, 12.0]
+    b = [9.0, 12.0, 11.0, 11.5, 10.0, 11.0, 11.0, 11.0]
+    eta = 0.5 * ((2 * 0.05 / 1) ** (-2 / 2) - 1)  # = 4.5
+    h_squared = 2 * eta * 2
+    variance = np.var(np.array(a[:3]) - np.array(b[:3]), ddof=1)
+    delta = 2.0
+    most = int(h_squared * variance / delta**2)
+    expected = None
+    for r in range(3, len(a) + 1):
+        gap = abs(np.mean(a[:r]) - np.mean(b[:r]))
+        slack = max(0.0, delta / (2 * r) * (h_squared * variance / delta**2 - r))
+        if gap > slack or r > most:
+            expected = r
+            break
+    assert expected is not None
+    found = kim_nelson({"a": a, "b": b}, first=3, indifference=delta)
+    assert (found.best, found.observations, found.proven) == ("a", expected, True)
+    short = kim_nelson({"a": a[:3], "b": b[:3]}, first=3, indifference=0.5)
+    assert not short.over and short.left == ("a", "b") and short.observations == 3
+    lowest = kim_nelson({"a": a, "b": b}, first=3, indifference=delta, goal="min")
+    assert lowest.best == "b"
+    cut = kim_nelson({"a": a, "b": b}, first=3, indifference=0.01, most=5)
+    assert cut.over and not cut.proven and "cut off" in cut.verdict()
+
+
+def test_anova_finds_the_factors_that_were_put_in():
+    rng = np.random.default_rng(3)
+    rows = [
+        {
+            "poa": poa,
+            "psa": psa,
+            "flag": flag,
+            "replication": seed,
+            "y": 100.0 * (poa == "match") + 10.0 * (psa == "near") + 5.0 * seed + rng.normal(0, 2),
+        }
+        for poa in ("match", "random", "first")
+        for psa in ("near", "far")
+        for flag in (True, None)
+        for seed in range(4)
+    ]
+    found = anova(pd.DataFrame(rows), "y", ["psa", "poa", "flag"])
+    assert list(found.index) == ["poa", "psa", "flag", "seeds", "residual"]
+    assert found.loc["poa", "eta_sq"] > 0.9
+    assert found.loc["psa", "p"] < 1e-6 and found.loc["flag", "p"] > 0.01
+    assert found["eta_sq"].sum() == pytest.approx(1.0)
+    assert found.loc["poa", "df"] == 2 and found.loc["residual", "df"] == 40
+    both = anova(pd.DataFrame(rows), "y", ["psa", "poa"], interactions=True)
+    assert "psa x poa" in both.index
+    without = anova(pd.DataFrame(rows), "y", ["psa", "poa"], block=None)
+    assert "seeds" not in without.index
+    with pytest.raises(InputError, match="no factor has more than one level"):
+        anova(pd.DataFrame(rows).assign(psa="near"), "y", ["psa"])
+
+
+def test_balanced_anova_is_the_textbook_decomposition():
+    data = pd.DataFrame({"f": list("aabbcc"), "y": [1.0, 2.0, 4.0, 5.0, 9.0, 9.0]})
+    found = anova(data, "y", ["f"], block=None)
+    f = stats.f_oneway(*(group["y"] for _, group in data.groupby("f")))
+    assert found.loc["f", "f"] == pytest.approx(f.statistic)
+    assert found.loc["f", "p"] == pytest.approx(f.pvalue)
+
+
+def test_rates_of_a_window_count_whole_intervals_only():
+    series = pd.DataFrame(
+        {
+            "arm": "a",
+            "replication": [1] * 4 + [2] * 4,
+            "time_s": [900.0, 1800.0, 2700.0, 3600.0] * 2,
+            "interval_s": 900.0,
+            "orders": [1, 2, 3, 4, 10, 20, 30, 40],
+        }
+    )
+    found = rates(series, ["orders"], start_s=900, end_s=2700)
+    assert found["orders"].tolist() == [10.0, 100.0]
+    assert rates(series, ["orders"])["orders"].tolist() == [10.0, 100.0]
+    with pytest.raises(InputError, match="no interval"):
+        rates(series, ["orders"], start_s=3000)
+
+
+@pytest.mark.parametrize("seeds", coverage.SEEDS)
+def test_t_intervals_cover_as_promised(seeds):
+    """Issue 6, "must show" 3: between 93 and 97 % over 2,000 experiments."""
+    assert 0.93 <= coverage.fixed(seeds, "t", 2000) <= 0.97
+
+
+def test_the_paired_test_keeps_its_level():
+    rng = np.random.default_rng(11)
+    alarms = 0
+    for _ in range(2000):
+        runs = coverage.Simulator((1000.0, 1000.0)).runs(10, rng)
+        found = paired(pd.Series(runs[:, 0]), pd.Series(runs[:, 1]))
+        alarms += found["p"] < 0.05
+        assert (found["p"] < 0.05) == (not found["low"] <= 0.0 <= found["high"])
+    assert 0.035 <= alarms / 2000 <= 0.065
+
+
+def test_holm_keeps_the_level_over_many_arms():
+    gc.freeze()  # statsmodels collects garbage at every correction
+    try:
+        assert coverage.false_alarms(5, 6, 100) <= 0.10
+    finally:
+        gc.unfreeze()
+
+
+def test_the_best_of_five_is_selected_as_promised():
+    right, taken = coverage.right_selections(experiments=300)
+    assert right >= 0.95
+    assert taken < 5 * 60
+
+
+def test_bootstrap_and_sequential_intervals_are_reported():
+    """What they reach is in the report of `python -m experiments.coverage`; here: in bounds."""
+    assert 0.75 <= coverage.fixed(5, "bootstrap", 100) <= 1.0
+    reached, taken = coverage.sequential(10, experiments=100)
+    assert reached > 0.85 and 20 < taken < 35

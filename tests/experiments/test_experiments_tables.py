@@ -1,0 +1,157 @@
+"""Tables, figures and where they come from."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+from stand_in import Inline
+
+import experiments
+from experiments import provenance, tables
+from experiments.figures import front, pareto, progression
+from experiments.figures.progression import per_bin
+from experiments.figures.style import axis_label, saving
+from experiments.plotting import KINDS, draw
+from experiments.running.driver import drive
+from experiments.statistics import anova
+from experiments.store import Store
+from rmfs.errors import InputError
+
+
+@pytest.fixture
+def results(design, tmp_path):
+    plan = experiments.plan(design(keep=["series"]))
+    store = Store(tmp_path / "out")
+    drive(plan, store, Inline())
+    return plan, experiments.load(store.folder), store.folder
+
+
+def test_means_in_every_format(results, tmp_path):
+    _, frame, _ = results
+    table = tables.means(frame, ["units_per_h", "robots"])
+    latex = table.to("latex")
+    assert r"\toprule" in latex and r"\bottomrule" in latex
+    assert r"\multicolumn{2}{c}{{units\_per\_h}}" in latex
+    assert "S[table-format=" in latex
+    body = latex.split(r"\midrule")[1]
+    assert body.count(r"\\") == 4
+    markdown = table.to("markdown")
+    row = next(line for line in markdown.splitlines() if "robots=8,psa=nearest" in line)
+    assert re.search(r"\| +3 \| +6\d\d(\.\d)? ± \d+(\.\d)? \| +8 ± 0 \|", row), row
+    html = table.to("html")
+    assert html.count("<tr>") == 7 and "robots=8,psa=nearest" in html
+    assert html == table.to("html")
+    csv = table.to("csv").splitlines()
+    assert csv[0] == "arm,seeds,units_per_h mean,units_per_h ±,robots mean,robots ±"
+    assert len(csv) == 5
+    for suffix in tables.SUFFIXES:
+        table.write(tmp_path / f"table{suffix}")
+    with pytest.raises(InputError, match="unknown kind of table"):
+        table.write(tmp_path / "table.docx")
+
+
+def test_differences_are_corrected_over_the_whole_table(results):
+    _, frame, _ = results
+    table = tables.differences(frame, ["units_per_h", "robots"], "robots=8,psa=nearest")
+    found = table.frame
+    assert list(found.index) == [
+        *("robots=8,psa=random", "robots=16,psa=nearest", "robots=16,psa=random")
+    ]
+    assert found["pairs", ""].tolist() == [3, 3, 3]
+    assert found["robots", "difference"].tolist() == [0.0, 8.0, 8.0]
+    assert found["robots", "p"].tolist() == [1.0, 0.0, 0.0]
+    assert "units_per_h p" in table.to("markdown")
+
+
+def test_anova_as_a_table(results):
+    plan, frame, _ = results
+    found = anova(frame, "units_per_h", plan.factors).rename(index=plan.short_names)
+    text = tables.effects(found, "units_per_h").to("markdown")
+    assert "| robots" in text and "omega_sq" in text
+
+
+def test_digits_follow_the_spread():
+    import pandas as pd
+
+    assert tables.digits(pd.Series([0.0123, 0.02]), pd.Series([1.0])) == 3
+    assert tables.digits(pd.Series([343.0]), pd.Series([1000.0])) == 0
+    assert tables.digits(pd.Series([float("nan")]), pd.Series([0.5])) == 4
+    assert tables.digits(pd.Series([0.0, 0.0]), pd.Series([16.0, 32.0])) == 0
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_of_picture_is_drawn(results, tmp_path, kind):
+    plan, frame, folder = results
+    for suffix in (".png", ".svg"):
+        paths = [tmp_path / f"{n}{suffix}" for n in range(2)]
+        for path in paths:
+            draw(kind, plan, frame, folder, list(KINDS[kind]), path)
+        assert paths[0].stat().st_size > 5000
+        assert paths[0].read_bytes() == paths[1].read_bytes()
+    with pytest.raises(InputError, match="unknown kind of picture"):
+        draw(kind, plan, frame, folder, list(KINDS[kind]), tmp_path / "x.bmp")
+
+
+def test_the_front_holds_what_nothing_dominates():
+    import pandas as pd
+
+    robots = pd.Series({"a": 8, "b": 16, "c": 16, "d": 24, "e": 8})
+    units = pd.Series({"a": 600, "b": 900, "c": 800, "d": 900, "e": 600})
+    assert front(robots, units) == ["a", "e", "b"]
+    assert front(robots, units, "max", "max") == ["d"]
+
+
+def test_figures_draw_into_the_axes_they_are_given(results, tmp_path):
+    _, frame, folder = results
+    with saving(tmp_path / "x.png") as figure:
+        left, right = figure.subplots(1, 2)
+        best = pareto(frame, "robots", "units_per_h", left)
+        assert set(best) <= set(frame["arm"])
+        series = experiments.load(folder, table="series")
+        progression(series, "orders_completed", right, bin_s=1800)
+        assert len(right.lines) == 4
+
+
+def test_progress_in_bins():
+    import pandas as pd
+
+    series = pd.DataFrame(
+        {
+            "arm": "a",
+            "replication": 1,
+            "time_s": [900.0, 1800.0, 2700.0, 3600.0, 4000.0],
+            "interval_s": [900.0] * 4 + [400.0],
+            "orders": [1, 2, 3, 4, 5],
+        }
+    )
+    found = per_bin(series, "orders", 1800.0)
+    assert found["rate"].tolist() == [6.0, 14.0]
+    assert found["hour"].tolist() == [0.25, 0.75]
+
+
+def test_labels_say_the_unit():
+    assert axis_label("units_per_h") == "units per hour"
+    assert axis_label("distance_per_unit_m") == "distance per unit (m)"
+    assert axis_label("robots") == "robots"
+    assert axis_label("pick_station_idle_share") == "pick station idle (share)"
+    assert axis_label("distance_m", "series", per="hour") == "distance (m per hour)"
+    assert axis_label("orders_completed", "series", per="hour") == "orders completed per hour"
+
+
+def test_provenance_names_design_code_and_rows(results, tmp_path):
+    plan, frame, _ = results
+    path = tmp_path / "table.tex"
+    beside = provenance.write(
+        path, frame, design=plan.design.name, design_hash=plan.hash, columns=["units_per_h"]
+    )
+    told = json.loads(beside.read_text())
+    assert beside.name == "table.tex.provenance.json"
+    assert told["design_hash"] == plan.hash
+    assert told["rows"]["count"] == 12 and told["rows"]["arms"] == 4
+    assert told["rows"]["seeds"] == [1, 2, 3]
+    assert told["runs_made_by"][0]["code"] == told["written_by"]["code"]
+    other = frame.assign(wall_s=0.0).sample(frac=1.0, random_state=1)
+    assert provenance.rows_hash(other, ["units_per_h"]) == told["rows"]["sha256"]
+    assert provenance.rows_hash(frame.head(11), ["units_per_h"]) != told["rows"]["sha256"]
