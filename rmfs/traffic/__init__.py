@@ -14,11 +14,22 @@ import numpy as np
 from rmfs.traffic._core import Core, Motion
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from rmfs.layout.model import Layout
 
-__all__ = ["EventKind", "Motion", "Piece", "Step", "Traffic", "TrafficEvent", "TripKind"]
+__all__ = [
+    "EventKind",
+    "Motion",
+    "Piece",
+    "PlannedMove",
+    "Step",
+    "Traffic",
+    "TrafficEvent",
+    "TripKind",
+]
 
 COST_TABLE_BYTES = 200_000_000
 EXPANSION_BUDGET = 50_000
@@ -85,6 +96,17 @@ class TrafficEvent(NamedTuple):
     kind: int
     robot: int
     value: int
+
+
+class PlannedMove(NamedTuple):
+    """A piece of a plan: a straight run or an elevator ride from rest to rest."""
+
+    from_waypoint: int
+    to_waypoint: int
+    heading_rad: float
+    start_us: int
+    end_us: int
+    is_ride: bool
 
 
 class Traffic:
@@ -200,6 +222,55 @@ class Traffic:
         if key not in self._from_cache:
             self._from_cache[key] = self._core.travel_times_from(*key)
         return self._from_cache[key]
+
+    def plan(self, robot: int) -> list[PlannedMove]:
+        """Pieces of motion a robot will do, from rest to rest, the present one included."""
+        return [PlannedMove(*move) for move in self._core.plan(robot)]
+
+    def delay(self, robot: int, by_us: int, *, begun: bool = False) -> bool:
+        """Shift what is left of a robot's plan; the order in which waypoints are used stays.
+
+        Whoever is to use a waypoint after this robot enters it later if need be, and so on.
+
+        Parameters
+        ----------
+        robot
+            Whose plan.
+        by_us
+            Microseconds, not negative.
+        begun
+            Whether motion in progress may be shifted too, as it must be when robots outside the
+            simulation are late. Otherwise nothing happens if that would be needed.
+
+        Returns
+        -------
+        Whether the plans were shifted.
+        """
+        return self._core.delay(robot, by_us, begun)
+
+    def clearance(self, robot: int) -> list[int]:
+        """Waypoints of the robot's present or next run that it may drive to at once, in order.
+
+        Those that were to use them before have left them.
+        """
+        return self._core.clearance(robot)
+
+    def regroup(self, rests: Sequence[tuple[int, float, int]]) -> None:
+        """Give up all plans, put the robots where they really are, and plan their programs anew.
+
+        Parameters
+        ----------
+        rests
+            For each robot the waypoint at which it stands or will stop, its heading in radians
+            (that of an edge), and the time it stands there, in microseconds.
+
+        Raises
+        ------
+        ValueError
+            If two robots share a waypoint, or a heading or waypoint does not exist; nothing has
+            changed then.
+        """
+        self._core.regroup(list(rests))
 
     def motion(self) -> dict[str, NDArray[Any]]:
         """Totals per robot since the last reset, up to now, each of shape (R,).

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::costs;
-use crate::fleet::Fleet;
+use crate::fleet::{Fleet, Rest, Shift};
 use crate::heat::Passages;
 use crate::kinematics::{Kind, Profile};
 use crate::network::{Lift, Network, Plan};
@@ -19,6 +19,9 @@ use crate::units::{Us, from_radians, to_radians};
 /// A robot kind as it comes from Python: acceleration, deceleration, top speed, full turn (µs),
 /// pod transfer (µs).
 type KindTuple = (f64, f64, f64, Us, Us);
+
+/// A move as it goes to Python.
+type PlannedMove = (u32, u32, f64, Us, Us, bool);
 
 fn kind_of((acceleration, deceleration, top_speed, full_turn, pod_transfer): KindTuple) -> Kind {
     Kind { acceleration, deceleration, top_speed, full_turn, pod_transfer }
@@ -344,6 +347,42 @@ impl Core {
             ("cost_tables", fleet.costs.computed),
             ("planning_ns", fleet.counters.planning.as_nanos() as u64),
         ])
+    }
+
+    /// The moves of a robot's plan that have not ended: from, to, heading (radians), start, end and
+    /// whether it is an elevator ride.
+    fn plan(&mut self, robot: u32) -> PyResult<Vec<PlannedMove>> {
+        self.robot(robot as usize)?;
+        self.fleet.settle_all();
+        let heading = |h: u8| to_radians(self.fleet.network.headings[h as usize]);
+        let moves = self.fleet.robots[robot as usize].moves.iter();
+        Ok(moves.map(|m| (m.from, m.to, heading(m.heading), m.start, m.end, m.ride)).collect())
+    }
+
+    fn delay(&mut self, robot: u32, by: Us, begun: bool) -> PyResult<bool> {
+        self.robot(robot as usize)?;
+        if by < 0 {
+            return Err(PyValueError::new_err(format!("a delay of {by} us")));
+        }
+        Ok(self.fleet.delay(robot, by, if begun { Shift::Begun } else { Shift::Planned }))
+    }
+
+    fn clearance(&mut self, robot: u32) -> PyResult<Vec<u32>> {
+        self.robot(robot as usize)?;
+        Ok(self.fleet.clearance(robot))
+    }
+
+    /// Puts robots at rest at `(waypoint, heading in radians, time)` and plans anew.
+    fn regroup(&mut self, rests: Vec<(u32, f64, Us)>) -> PyResult<()> {
+        let headings = &self.fleet.network.headings;
+        let rest = |&(waypoint, angle, time): &(u32, f64, Us)| {
+            let heading = headings.binary_search(&from_radians(angle)).map_err(|_| {
+                PyValueError::new_err(format!("no edge has the heading {angle} rad"))
+            })?;
+            Ok(Rest { waypoint, heading: heading as u8, time })
+        };
+        let rests = rests.iter().map(rest).collect::<PyResult<Vec<Rest>>>()?;
+        self.fleet.regroup(&rests).map_err(PyValueError::new_err)
     }
 
     fn reset_statistics(&mut self) {

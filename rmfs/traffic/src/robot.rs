@@ -45,6 +45,8 @@ pub struct Held {
     pub resource: u32,
     pub start: Us,
     pub end: Us,
+    /// Which of the robot's moves enters it; `NONE` where the robot already is.
+    pub entered_by: u32,
 }
 
 /// The state of one robot.
@@ -101,8 +103,8 @@ impl Robot {
     /// Everything the robot occupies: anchor, the way, and the end of the plan without limit.
     pub fn occupation(&self, network: &Network, kind: &Kind) -> Vec<Held> {
         let mut held = Vec::new();
-        let mut since = self.anchored;
-        for step in &self.moves {
+        let (mut since, mut entered_by) = (self.anchored, NONE);
+        for (index, step) in self.moves.iter().enumerate() {
             if step.ride {
                 // the shaft is one resource, so the ride continues the same occupation
                 continue;
@@ -112,20 +114,24 @@ impl Robot {
             let profile = kind.run(length);
             let mut node = step.from;
             let mut passed = 0.0;
-            for &(next, distance) in &line {
+            for (i, &(next, distance)) in line.iter().enumerate() {
                 let reached = profile.time_at(distance);
                 held.push(Held {
                     resource: network.resource[node as usize],
                     start: since,
-                    end: step.start + ceil_us(reached),
+                    end: step.start + step.late + ceil_us(reached),
+                    entered_by,
                 });
-                since = step.start + floor_us(passed);
+                let late = if i < step.begun as usize { 0 } else { step.late };
+                since = step.start + late + floor_us(passed);
+                entered_by = index as u32;
                 passed = reached;
                 node = next;
             }
         }
         let end = self.destination().0;
-        held.push(Held { resource: network.resource[end as usize], start: since, end: FOREVER });
+        let resource = network.resource[end as usize];
+        held.push(Held { resource, start: since, end: FOREVER, entered_by });
         held
     }
 

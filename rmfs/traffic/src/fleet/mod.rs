@@ -5,10 +5,15 @@
 //! nothing can collide.
 
 mod blocked;
+mod late;
 mod planning;
 mod programs;
 mod progress;
 mod queues;
+mod regroup;
+
+pub use late::Shift;
+pub use regroup::Rest;
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};

@@ -36,6 +36,10 @@ pub struct Move {
     pub start: Us,
     pub end: Us,
     pub ride: bool,
+    /// By how much the end is later than the motion says, for robots that follow a plan late.
+    pub late: Us,
+    /// Waypoints of the run already in use when it was last found to be late.
+    pub begun: u32,
 }
 
 /// What a robot wants.
@@ -341,6 +345,8 @@ impl<'a> Search<'a> {
                 start: label.departure,
                 end: label.arrival,
                 ride: label.ride,
+                late: 0,
+                begun: 0,
             });
             label = before;
         }

@@ -1,0 +1,195 @@
+//! Robots that are late: the order in which waypoints are used stays, times move.
+//!
+//! Every plan says when its robot enters and leaves each waypoint; all plans together give each
+//! waypoint its users in order. If a robot leaves one later than planned, the next user enters it
+//! later, and so on. The planned order has no cycle (it comes from times), so this ends, and
+//! whoever keeps the order meets nobody and waits for nobody who waits for him.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, HashMap, VecDeque};
+
+use crate::network::NONE;
+use crate::robot::{Held, Robot};
+use crate::search::Move;
+use crate::units::{FOREVER, Us};
+
+use super::{Due, Fleet};
+
+/// What may be shifted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shift {
+    /// Only moves not begun: what is planned is what is driven.
+    Planned,
+    /// Also moves in progress: robots outside the simulation stop and slow down in their midst.
+    Begun,
+}
+
+/// The plans of all robots while one delay makes others.
+struct Delays<'a> {
+    fleet: &'a Fleet,
+    shift: Shift,
+    /// What each robot occupies by the plan it has.
+    held: Vec<Vec<Held>>,
+    /// The next user of each of these: robot and index into its `held`.
+    next: Vec<Vec<Option<(u32, usize)>>>,
+    /// Plans that have changed.
+    plans: BTreeMap<u32, VecDeque<Move>>,
+}
+
+impl Fleet {
+    /// Lets a robot do what is left of its plan later by `by`, and others behind it.
+    ///
+    /// Nothing changes, and the result is false, if a motion had to be shifted that `shift` leaves
+    /// alone.
+    pub fn delay(&mut self, robot: u32, by: Us, shift: Shift) -> bool {
+        self.settle_all();
+        let state = &self.robots[robot as usize];
+        let kind = &self.kinds[state.kind as usize];
+        let first = match shift {
+            Shift::Planned => state.committed(&self.network, kind, self.now),
+            Shift::Begun => 0,
+        };
+        if first >= state.moves.len() {
+            return true;
+        }
+        let mut delays = Delays::new(self, shift);
+        if !(delays.push(robot, first, by) && delays.spread(robot)) {
+            return false;
+        }
+        let plans = delays.plans;
+        self.follow(plans);
+        true
+    }
+
+    /// Makes shifted plans the robots' own.
+    fn follow(&mut self, plans: BTreeMap<u32, VecDeque<Move>>) {
+        for &robot in plans.keys() {
+            self.forget(robot);
+        }
+        let robots: Vec<u32> = plans.keys().copied().collect();
+        for (robot, moves) in plans {
+            let state = &mut self.robots[robot as usize];
+            state.moves = moves;
+            state.version += 1;
+            let (_, _, end) = state.destination();
+            let due = end.max(self.now).max(state.busy_until);
+            self.agenda.push(Reverse((due, robot, Due::LegEnd, state.version)));
+        }
+        for robot in robots {
+            self.occupy(robot);
+        }
+    }
+
+    /// Takes a robot's reservations out of the table.
+    pub(super) fn forget(&mut self, robot: u32) {
+        for held in &self.robots[robot as usize].held {
+            self.table.remove(held.resource, robot);
+        }
+    }
+
+    /// The waypoints of the robot's present run, or of its next one, that it may drive to at once:
+    /// whoever was to use them before has left them.
+    pub fn clearance(&mut self, robot: u32) -> Vec<u32> {
+        self.settle(robot);
+        let Some(step) = self.robots[robot as usize].moves.front() else { return Vec::new() };
+        let line = self.network.line(step.from, step.to, step.heading);
+        line.map(|(node, _)| node)
+            .take_while(|&node| {
+                let row = self.table.row(self.network.resource[node as usize]);
+                row.iter().find(|use_| use_.end > self.now).is_some_and(|use_| use_.robot == robot)
+            })
+            .collect()
+    }
+}
+
+impl<'a> Delays<'a> {
+    fn new(fleet: &'a Fleet, shift: Shift) -> Self {
+        let occupation =
+            |state: &Robot| state.occupation(&fleet.network, &fleet.kinds[state.kind as usize]);
+        let held: Vec<Vec<Held>> = fleet.robots.iter().map(occupation).collect();
+        let mut rows: HashMap<u32, Vec<(Us, u32, usize)>> = HashMap::new();
+        for (robot, uses) in held.iter().enumerate() {
+            for (index, one) in uses.iter().enumerate().filter(|(_, one)| one.end > fleet.now) {
+                rows.entry(one.resource).or_default().push((one.start, robot as u32, index));
+            }
+        }
+        let mut next: Vec<Vec<_>> = held.iter().map(|uses| vec![None; uses.len()]).collect();
+        for row in rows.values_mut() {
+            row.sort_unstable();
+            for pair in row.windows(2) {
+                let ((_, robot, index), (_, follower, at)) = (pair[0], pair[1]);
+                next[robot as usize][index] = Some((follower, at));
+            }
+        }
+        Self { fleet, shift, held, next, plans: BTreeMap::new() }
+    }
+
+    fn plan(&mut self, robot: u32) -> &mut VecDeque<Move> {
+        let own = || self.fleet.robots[robot as usize].moves.clone();
+        self.plans.entry(robot).or_insert_with(own)
+    }
+
+    /// Shifts one move of a robot, and those after it as far as they have to.
+    fn push(&mut self, robot: u32, index: usize, by: Us) -> bool {
+        let fleet = self.fleet;
+        let state = &fleet.robots[robot as usize];
+        let kind = &fleet.kinds[state.kind as usize];
+        let begun = state.committed(&fleet.network, kind, fleet.now);
+        if index < begun && self.shift == Shift::Planned {
+            return false;
+        }
+        let uses = &self.held[robot as usize];
+        let entered = |held: &&Held| held.entered_by == index as u32 && held.start <= fleet.now;
+        let entered = uses.iter().filter(entered).count() as u32;
+        let moves = self.plan(robot);
+        if index < begun {
+            moves[index].begun = moves[index].begun.max(entered);
+            moves[index].late += by;
+        } else {
+            moves[index].start += by;
+        }
+        moves[index].end += by;
+        for later in index + 1..moves.len() {
+            let step = &moves[later];
+            let turn = kind.turn(
+                fleet.network.headings[step.heading_before as usize],
+                fleet.network.headings[step.heading as usize],
+            );
+            let wait = (moves[later - 1].end + turn - step.start).max(0);
+            moves[later].start += wait;
+            moves[later].end += wait;
+        }
+        true
+    }
+
+    /// Shifts whoever would enter a waypoint before the robot in front of him has left it.
+    fn spread(&mut self, robot: u32) -> bool {
+        let mut changed = vec![robot];
+        while let Some(robot) = changed.pop() {
+            for (index, one) in self.uses(robot).into_iter().enumerate() {
+                let Some((follower, at)) = self.next[robot as usize][index] else { continue };
+                let entry = self.uses(follower)[at];
+                if one.end <= entry.start || one.end == FOREVER {
+                    continue;
+                }
+                let passed = entry.entered_by == NONE;
+                if passed || !self.push(follower, entry.entered_by as usize, one.end - entry.start)
+                {
+                    return false;
+                }
+                changed.push(follower);
+            }
+        }
+        true
+    }
+
+    /// What a robot occupies by the plan it will have.
+    fn uses(&self, robot: u32) -> Vec<Held> {
+        let Some(moves) = self.plans.get(&robot) else {
+            return self.held[robot as usize].clone();
+        };
+        let state = &self.fleet.robots[robot as usize];
+        let shifted = Robot { moves: moves.clone(), ..state.clone() };
+        shifted.occupation(&self.fleet.network, &self.fleet.kinds[state.kind as usize])
+    }
+}
