@@ -6,7 +6,7 @@ layout MaTiMilli, beside arms that stay with either rule. What the exchange did 
 differences: second half less first half, with the exchange less without it, seed by seed.
 
 With `--reference DIR` (the public instances of RAWSim-O) the layout itself is taken instead of its
-twin: `DIR/mati/MaTiMilli.xinst`.
+twin: `DIR/mati/MaTiMilli.xinst`; what is published then ends in `-reference`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import pandas as pd
 
 from experiments.figures import progression
 from experiments.figures.style import COLOURS, axis_label, saving
-from experiments.papers.study import command, done, parser
+from experiments.papers.study import RESULTS, command, done, parser
 from experiments.statistics import paired, rates
 from experiments.tables import HALF, Table, digits
 from rmfs.errors import InputError
@@ -27,7 +27,8 @@ from rmfs.errors import InputError
 if TYPE_CHECKING:
     from experiments.papers.study import Study
 
-STAYS, CHANGES, NEAREST = "random", "random, then nearest", "nearest"
+STAYS, CHANGES = "random throughout", "random, then nearest"
+NEAREST = "nearest throughout"
 COLUMNS = ("orders_completed", "units_picked", "distance_m")
 SHOWN = {"orders_completed": "orders", "units_picked": "units", "distance_m": "distance"}
 SETTLED_S = 3600.0
@@ -112,9 +113,9 @@ def as_table(found: pd.DataFrame) -> Table:
     return Table(frame, decimals, caption)
 
 
-def picture(study: Study, series: pd.DataFrame) -> Path:
+def picture(study: Study, series: pd.DataFrame, name: str) -> Path:
     """Draw the course of orders and distance per hour."""
-    path = study.published / "figure-5a.png"
+    path = study.published / f"{name}.png"
     colours = {STAYS: "0.55", CHANGES: COLOURS[1], NEAREST: COLOURS[0]}
     series = series.assign(distance_m=series["distance_m"] / 1000.0)
     labels = {
@@ -148,18 +149,19 @@ def main(arguments: list[str] | None = None) -> None:
         "--reference", type=Path, metavar="DIR", help="the public instances of RAWSim-O"
     )
     given = options.parse_args(arguments)
-    base = None
+    base, name = None, "figure-5a"
     if given.reference is not None:
         layout = given.reference / "mati" / "MaTiMilli.xinst"
         if not layout.is_file():
             raise InputError(f"--reference {given.reference}: {layout} is not there")
-        base = {"layout": str(layout.absolute())}
+        base, name = {"layout": str(layout.absolute())}, "figure-5a-reference"
+        given.out = given.out or RESULTS / "psa-exchange-reference"
     study = done(given, base)
     series = study.table("series")
     settle_s = min(SETTLED_S, float(series["time_s"].max()) / 24)
     found = differences(halves(series, settle_s=settle_s))
-    study.publish(as_table(found), "figure-5a", list(COLUMNS), settled_s=settle_s)
-    print(picture(study, series))
+    study.publish(as_table(found), name, list(COLUMNS), settled_s=settle_s)
+    print(picture(study, series, name))
 
 
 if __name__ == "__main__":
