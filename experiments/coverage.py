@@ -1,4 +1,4 @@
-"""Do the intervals keep their promise? `python -m experiments.coverage` prints a table.
+"""Do the intervals keep their promise? `python -m experiments.coverage` reports it.
 
 A synthetic simulator, whose true means are known, stands in for the warehouse: an arm's result is
 its mean plus an effect of the seed that all arms share (common random numbers) plus noise of its
@@ -7,15 +7,20 @@ own. Each experiment asks whether the interval covered the truth, or whether the
 
 from __future__ import annotations
 
+import argparse
 import gc
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pandas as pd
 
+from experiments.extras import optional
 from experiments.statistics import against, interval, kim_nelson, narrow_enough
+from rmfs.errors import InputError
+from rmfs.files import write_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -172,15 +177,68 @@ def table(experiments: int = EXPERIMENTS, seeds: Sequence[int] = SEEDS) -> pd.Da
     return pd.DataFrame(rows)
 
 
-def main() -> None:
-    """Print the table as Markdown, and how often the best of five arms is selected."""
+def page(experiments: int = EXPERIMENTS) -> str:
+    """Return the page of the documentation that reports all this."""
+    optional("tabulate", "experiments", "a Markdown table")
     # statsmodels collects garbage at every correction: what is here already need not be looked at
     gc.freeze()
-    print(f"{EXPERIMENTS:,} experiments each; promised: 0.95, false alarms 0.05 at most\n")
-    print(table().to_markdown(index=False, floatfmt=".3f"))
-    right, taken = right_selections()
-    print(f"\nBest of five arms selected: {right:.3f} (promised 0.95), {taken:.0f} runs on average")
+    right, taken = right_selections(experiments=experiments)
+    return PAGE.format(
+        experiments=experiments,
+        table=table(experiments).to_markdown(index=False, floatfmt=FORMATS),
+        right=right,
+        taken=taken,
+    )
+
+
+FORMATS = ("", "", ".3f", ".3f", ".3f", ".1f", ".3f", ".3f")
+"""Of the columns of the table."""
+
+PAGE = """\
+# Do the intervals keep their promise?
+
+<!-- written by python -m experiments.coverage --page docs/coverage.md -->
+
+A synthetic simulator whose true means are known stands in for the warehouse. A run is the mean of
+its arm, plus an effect of the seed that all arms share (common random numbers), plus noise of its
+own; together they have a standard deviation of 5 % of the mean. *normal*: both are normally
+distributed; *skewed*: both are exponential. Each figure comes from {experiments:,} experiments.
+
+- **t**, **bootstrap**: how often a 95 % interval of a fixed number of seeds covers the true mean.
+- **sequential**: the same for an interval that was given seeds, from this number on, until its half
+  width was below 2 % of the mean; beside it how many seeds that took on average.
+- **false alarms**: how often at least one of the arms is called different from the baseline at the
+  level 5 % although all are equal; paired t tests, corrected by Holm for five arms.
+
+{table}
+
+The bootstrap (BCa) is too narrow for few seeds, for normal runs as for skewed ones: use it from 30
+seeds on. A sequential interval stops where the sample happens to vary little, so it covers a little
+less than it says; begin with ten seeds rather than five.
+
+Selection of the best of five arms (procedure KN) in its hardest case, where the best is better by
+just the smallest difference worth detecting: right in {right:.3f} of the experiments (promised:
+0.95), with {taken:.0f} runs of all arms on average.
+"""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Print the page, or write it to a file."""
+    parser = argparse.ArgumentParser(prog="python -m experiments.coverage")
+    parser.add_argument("--experiments", type=int, default=EXPERIMENTS, help="of each kind")
+    parser.add_argument("--page", type=Path, help="the .md file to write (default: print it)")
+    given = parser.parse_args(arguments)
+    try:
+        text = page(given.experiments)
+        if given.page is None:
+            print(text)
+        else:
+            write_text(given.page, text)
+    except InputError as error:
+        print(f"coverage: {error}", file=sys.stderr)
+        return 2
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -37,16 +37,17 @@ def paired(
     (difference / baseline's mean), `p` of the paired t test (two-sided; nan below two pairs).
     """
     both = pd.concat([arm, baseline], axis=1, keys=["arm", "baseline"], join="inner").dropna()
-    differences: NDArray[np.float64] = (both["arm"] - both["baseline"]).to_numpy(dtype=float)
+    values = both.to_numpy(dtype=float)
+    differences = values[:, 0] - values[:, 1]
     found = interval(differences, confidence, method)
-    base = float(both["baseline"].mean()) if len(both) else np.nan
+    base = float(values[:, 1].mean()) if len(values) else np.nan
     return {
         "pairs": found.count,
         "difference": found.mean,
         "low": found.low,
         "high": found.high,
         "relative": found.mean / base if base else np.nan,
-        "p": _p_value(both["arm"], both["baseline"], differences),
+        "p": _p_value(differences),
     }
 
 
@@ -133,10 +134,11 @@ def holm(p_values: pd.Series) -> pd.Series:
     return corrected
 
 
-def _p_value(arm: pd.Series, baseline: pd.Series, differences: NDArray[np.float64]) -> float:
+def _p_value(differences: NDArray[np.float64]) -> float:
+    """Return p of the paired t test: that of one sample of differences."""
     if len(differences) < 2:
         return np.nan
     if (differences == differences[0]).all():
         # no spread at all: the test statistic is 0 / 0 or infinite
         return 1.0 if differences[0] == 0.0 else 0.0
-    return float(stats.ttest_rel(arm, baseline).pvalue)
+    return float(stats.ttest_1samp(differences, 0.0).pvalue)

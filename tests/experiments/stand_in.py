@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import time
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -26,24 +27,25 @@ def footprint(job: Job) -> pd.DataFrame:
     units += EFFECT.get(str(given.get("controllers.psa")), 0.0)
     shared = rng.normal(0.0, 20.0)
     own = np.random.default_rng([job.seed, int(job.arm_digest[:8], 16)]).normal(0.0, 5.0)
-    row = {}
-    for column in FOOTPRINT:
-        if column.dtype == REAL:
-            row[column.name] = 1.5
-        elif column.dtype == "str":
-            row[column.name] = "as run"
-        elif column.dtype == "Int64":
-            row[column.name] = pd.NA
-        else:
-            row[column.name] = 7
-    row |= {
+    row = {
         "seed": job.seed,
         "robots": given.get("layout.robots", 16),
         "units_per_h": units + shared + own,
         "wall_s": time.perf_counter(),
     }
-    types = {column.name: column.dtype for column in FOOTPRINT}
-    return pd.DataFrame([row]).astype(types)
+    return template().assign(**{name: pd.array([v], TYPES[name]) for name, v in row.items()})
+
+
+TYPES = {column.name: column.dtype for column in FOOTPRINT}
+DULL = {REAL: 1.5, "str": "as run", "Int64": pd.NA}
+
+
+@cache
+def template() -> pd.DataFrame:
+    """A footprint with all columns."""
+    return pd.DataFrame(
+        {name: pd.array([DULL.get(dtype, 7)], dtype) for name, dtype in TYPES.items()}
+    )
 
 
 def series(job: Job) -> pd.DataFrame:
