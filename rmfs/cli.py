@@ -35,8 +35,9 @@ SUB_COMMANDS = {
 UNSAFE = 1
 """Exit code where the checker finds a trace unsafe: a defect."""
 
-STALLED = 1
-"""Exit code where nothing can move any more: possible in layouts that are not well-formed."""
+GIVEN_UP = 1
+"""Exit code where a run stops before its end: nothing can move any more (possible in layouts that
+are not well-formed), an optimiser fails in a run that must repeat, or a replay differs."""
 
 WRONG_INPUT = 2
 INTERRUPTED = 130
@@ -151,7 +152,12 @@ def run(
         ),
     ] = None,
     pacing: Annotated[
-        str, typer.Option(metavar="MODE", help="What thinking costs in simulated time.")
+        str,
+        typer.Option(
+            metavar="MODE",
+            help="What the thinking of optimisers costs in simulated time: instant, wall, work, "
+            "fixed=SECONDS or replay=RUN_DIR; parameters by --set pacing.KEY=VALUE.",
+        ),
     ] = "instant",
     trace: Annotated[bool, typer.Option("--trace", help="Write the trace of all motion.")] = False,
     check: Annotated[
@@ -298,15 +304,16 @@ def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
     options
         Further parameters of `rmfs.simulate`.
     """
+    from rmfs.simulation.pacing import OptimiserError, ReplayError
     from rmfs.simulation.run import simulate
     from rmfs.simulation.simulation import StalledError
 
     with progress(f"simulating {', '.join(inputs.values())}, seed {seed}") as advance:
         try:
             return simulate(*inputs.values(), seed=seed, progress=advance, **options)
-        except StalledError as error:
+        except (StalledError, OptimiserError, ReplayError) as error:
             print(f"rmfs: {error}", file=sys.stderr)
-            raise typer.Exit(STALLED) from None
+            raise typer.Exit(GIVEN_UP) from None
 
 
 def default_name(inputs: dict[str, str], seed: int) -> str:

@@ -24,6 +24,7 @@ class Stream(IntEnum):
     SERVICE = 7
     TIE_BREAKS = 8
     CONTROLLERS = 9
+    PACING = 10
 
 
 def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:

@@ -20,7 +20,7 @@ from rmfs import scenario as scenarios
 from rmfs.errors import InputError
 from rmfs.measure.provenance import KINDS
 from rmfs.measure.provenance import digest as digest_of
-from rmfs.simulation.pacing import pacing as pacing_of
+from rmfs.simulation.pacing import pacing_settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -79,7 +79,7 @@ class Resolver:
             if problem:
                 problems.append(problem)
         try:
-            pacing_of(arm.pacing)
+            pacing_settings(arm.pacing)
         except InputError as error:
             problems.append(str(error))
         told = {**found, "pacing": arm.pacing, "check": check, "seeded": sorted(seeded)}

@@ -10,8 +10,11 @@ import pydantic
 from rmfs.config import Model
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     import numpy as np
 
+    from rmfs.control.asks import Call
     from rmfs.control.problems import Problem, Trigger
     from rmfs.control.view import View
 
@@ -54,6 +57,15 @@ class Controller(Generic[P]):
         Further problems whose decisions it takes; a dummy has to stand in for each of them.
     is_dummy
         Whether it decides nothing and leaves the decision to another controller.
+    optimisers
+        Modules with the functions that solve its questions (`rmfs.control.asks`); a controller
+        that asks optimisers names one at least.
+    in_flight
+        How many of its questions wait for an answer.
+    basis
+        The call whose solution the present decision comes from, None for the controller's own rule.
+        It is None when the controller is asked and the call when it is told the answer; whoever
+        decides by a solution it has kept sets it to that call.
     """
 
     problem: ClassVar[Problem]
@@ -64,6 +76,9 @@ class Controller(Generic[P]):
     waits_for: ClassVar[frozenset[Problem]] = frozenset()
     decides: ClassVar[frozenset[Problem]] = frozenset()
     is_dummy: ClassVar[bool] = False
+    optimisers: ClassVar[tuple[str, ...]] = ()
+    in_flight: int = 0
+    basis: Call | None = None
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
         self.parameters = parameters
@@ -76,6 +91,14 @@ class Controller(Generic[P]):
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
         """Take note of an event of `hears`; the subject is as described at the trigger."""
+
+    def answered(self, call: Call) -> Iterator[Any]:
+        """Yield the decisions of a solution that still hold, as `decide` yields its own.
+
+        It is called once for each question, also if there is no solution. Decisions that no longer
+        hold are to be counted in `call.stale`. Here: no decisions.
+        """
+        return iter(())
 
     def draw(self, count: int) -> int:
         """Draw a number from 0 to `count` - 1, all equally likely."""

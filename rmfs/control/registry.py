@@ -1,6 +1,7 @@
 """How the name of a rule becomes a controller.
 
-Rules come from three places: the table below; entry points of other distributions in the group
+Rules come from three places: the tables below (by reference only: nothing of `solvers` is imported
+here); entry points of other distributions in the group
 `rmfs.controllers`, named `PROBLEM.NAME`; and `module:Class` written in a controllers file.
 """
 
@@ -94,15 +95,23 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
     Problem.PP: {"time-windows": "rmfs.control.pp.time_windows:TimeWindows"},
 }
 
+_SOLVER_BACKED: dict[Problem, dict[str, str]] = {}
+"""Controllers of the same distribution that ask optimisers."""
+
 
 def names(problem: Problem) -> list[str]:
     """Names of all rules for a problem, built-in ones first."""
-    return [*_BUILT_IN[problem], *sorted(_installed(problem))]
+    return [*_BUILT_IN[problem], *solver_backed(problem), *sorted(_installed(problem))]
 
 
 def built_in(problem: Problem) -> list[str]:
     """Names of the rules that come with rmfs."""
     return list(_BUILT_IN[problem])
+
+
+def solver_backed(problem: Problem) -> list[str]:
+    """Names of the controllers of `solvers`, which ask optimisers."""
+    return list(_SOLVER_BACKED.get(problem, ()))
 
 
 def find(problem: Problem, name: str) -> type[Controller[Any]]:
@@ -118,7 +127,8 @@ def find(problem: Problem, name: str) -> type[Controller[Any]]:
     InputError
         If there is no such rule, or it does not solve this problem.
     """
-    reference = _BUILT_IN[problem].get(name) or _installed(problem).get(name)
+    shipped = _BUILT_IN[problem] | _SOLVER_BACKED.get(problem, {})
+    reference = shipped.get(name) or _installed(problem).get(name)
     if reference is None and ":" in name:
         reference = name
     if reference is None:

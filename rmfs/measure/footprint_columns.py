@@ -160,13 +160,39 @@ FOOTPRINT = (
         "share",
         "Mean relative gap between value and bound of the optimisers' solutions; empty without",
     ),
-    Column("paced_s", REAL, "s", "Simulated time that decisions took (see pacing)"),
+    Column(
+        "paced_s",
+        REAL,
+        "s",
+        "Simulated time from questions to optimisers to their answers, added up",
+    ),
     Column(
         "wall_s", REAL, "s", "Wall time of the whole simulation, loading excluded", measured=True
     ),
     Column("sim_per_wall", REAL, "s/s", "(warmup_s + duration_s) / wall_s", measured=True),
     Column("peak_rss_mb", REAL, "MB", "Largest memory the process has used", measured=True),
     # from here on: further columns, in no promised order
+    Column(
+        "optimiser_failures", INTEGER, "calls", "Questions whose optimiser died, hung or raised"
+    ),
+    Column("optimiser_wall_s", REAL, "s", "Wall time of all optimisers", measured=True),
+    Column(
+        "optimiser_wall_median_s", REAL, "s", "Wall time of an optimiser, median", measured=True
+    ),
+    *(
+        Column(
+            f"{source}_decision_share",
+            REAL,
+            "share",
+            f"Decisions {what} / all of these four kinds; empty if nobody asks optimisers",
+        )
+        for source, what in {
+            "optimiser": "by solutions of optimisers",
+            "heuristic": "by the own rule of controllers that ask optimisers",
+            "stale": "of solutions that no longer held",
+            "failed": "by the own rule because an optimiser failed or found nothing",
+        }.items()
+    ),
     Column("orders_created", INTEGER, "orders", "Orders that arrived"),
     Column("order_redraws", INTEGER, "draws", "Drawn orders that the stock could not serve"),
     Column("backlog_orders_end", INTEGER, "orders", "Orders that wait for a station at the end"),

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from rmfs.control.asks import Call
     from rmfs.simulation.simulation import Simulation
     from rmfs.world.orders import Bundle, Order
 
@@ -75,6 +76,15 @@ class Observer:
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
         """A controller was asked (POA, PPS, ...) and gave this many decisions in this wall time."""
+
+    def rule_decided(self, problem: str, time_s: float) -> None:
+        """A controller that asks optimisers decided by its own rule."""
+
+    def optimiser_asked(self, call: Call) -> None:
+        """A controller handed a question to an optimiser."""
+
+    def optimiser_answered(self, call: Call) -> None:
+        """The answer came, or the call failed; what is kept of the solution may be used later."""
 
     def controller_exchanged(self, time_s: float, problem: str, name: str) -> None:
         """Another controller was installed for a problem."""

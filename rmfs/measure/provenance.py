@@ -68,6 +68,7 @@ def describe(
         "overrides": {".".join(path): value for path, value in run.overrides},
         "seed": run.seed,
         "pacing": run.pacing,
+        "pacing_parameters": run.pacing_settings.model_dump(mode="json"),
         "warmup_s": run.warmup_s,
         "duration_s": run.duration_s,
         "check": None

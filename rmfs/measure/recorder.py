@@ -11,6 +11,7 @@ from array import array
 from math import nan
 from typing import TYPE_CHECKING
 
+from rmfs.control.solutions import to_text
 from rmfs.measure.observer import Observer
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from rmfs.control.asks import Call
     from rmfs.layout.model import Layout
     from rmfs.simulation.simulation import Simulation
     from rmfs.world.orders import Bundle, Order
@@ -81,6 +83,12 @@ class Recorder(Observer):
         Controllers asked that came to a decision.
     asked
         Per problem, number and wall time of all calls since the warm-up.
+    questions
+        Calls of optimisers, in the order in which they were asked.
+    solutions
+        Their solutions as text, by number.
+    by_rule
+        Per problem whose controller asks optimisers, its decisions without one since the warm-up.
     activations
         Stations switched: time, station, active.
     samples
@@ -104,6 +112,9 @@ class Recorder(Observer):
         self.lifts: list[tuple[float, int, int]] = []
         self.calls = Calls()
         self.asked: dict[str, list[float]] = {}
+        self.questions: list[Call] = []
+        self.solutions: dict[int, str] = {}
+        self.by_rule: dict[str, int] = {}
         self.activations: list[tuple[float, int, bool]] = []
         self.samples: list[tuple[float, dict[str, float]]] = []
         self.stored_space_start = 0.0
@@ -130,6 +141,7 @@ class Recorder(Observer):
         """Begin to measure."""
         self.start_s = time_s
         self.asked.clear()
+        self.by_rule.clear()
         self._redraws_before = self.world.order_redraws
 
     def run_ended(self, time_s: float) -> None:
@@ -217,6 +229,19 @@ class Recorder(Observer):
         asked[1] += wall_s
         if decisions:
             self.calls.add(problem, time_s, wall_s, decisions)
+
+    def rule_decided(self, problem: str, time_s: float) -> None:
+        """Count the decision."""
+        self.by_rule[problem] = self.by_rule.get(problem, 0) + 1
+
+    def optimiser_asked(self, call: Call) -> None:
+        """Follow the call."""
+        self.questions.append(call)
+
+    def optimiser_answered(self, call: Call) -> None:
+        """Write the solution down; what it is used for, the call counts."""
+        if call.solution is not None:
+            self.solutions[call.number] = to_text(call.solution)
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
         """Write the switch down."""

@@ -18,6 +18,7 @@ from rmfs.traffic import Step
 from rmfs.world.tasks import Task, TaskKind
 
 if TYPE_CHECKING:
+    from rmfs.control.asks import Call
     from rmfs.control.ta import Consult
     from rmfs.simulation.simulation import Simulation
     from rmfs.world.robots import Robot
@@ -42,6 +43,7 @@ class Dispatch:
         self._storage = simulation.world.storage
         self._tier: list[int] = simulation.layout.tier.tolist()
         self._held_up: dict[int, Robot] = {}
+        self._basis: dict[Task, Call] = {}
 
     # --- decisions of TA ------------------------------------------------------------------------
 
@@ -137,22 +139,35 @@ class Dispatch:
 
     # --- tasks prepared ahead -------------------------------------------------------------------
 
-    def prepare(self, decision: Prepare) -> None:
-        """Remember what a robot is to do after its present task."""
+    def prepare(self, decision: Prepare, basis: Call | None = None) -> None:
+        """Remember what a robot is to do after its present task, and by whose solution."""
         robot, tasks = decision
-        robot.prepared.clear()
+        self.forget_prepared(robot)
         robot.prepared.extend(_planned(task) for task in tasks)
+        if basis is not None:
+            self._basis.update(dict.fromkeys(robot.prepared, basis))
+
+    def forget_prepared(self, robot: Robot) -> None:
+        """Forget what a robot was to do after its present task."""
+        for task in robot.prepared:
+            self._basis.pop(task, None)
+        robot.prepared.clear()
 
     def start_prepared(self, robot: Robot, consult: Consult) -> None:
         """Start the first prepared task of a robot that is possible; pass over those before it."""
         while robot.prepared:
             task = robot.prepared.popleft()
+            basis = self._basis.pop(task, None)
             if task.kind is TaskKind.PARK and task.place < 0 and robot.pod >= 0:
                 task.place = consult.place_for(robot)
             if self._is_possible(robot, task, consult):
                 self._start(robot, task)
+                if basis is not None:
+                    basis.count()
                 return
             self._world.tasks_dropped += 1
+            if basis is not None:
+                basis.stale += 1
 
     def _is_possible(self, robot: Robot, task: Task, consult: Consult) -> bool:
         storage, place, pod = self._storage, task.place, task.pod

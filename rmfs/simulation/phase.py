@@ -8,28 +8,30 @@ from time import perf_counter_ns
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control import decisions as say
+from rmfs.control.asks import Ask, Outcome
 from rmfs.control.base import Controller
 from rmfs.control.problems import Problem, Trigger
+from rmfs.simulation.consult import PhaseConsult
 from rmfs.simulation.statistics import DecisionStatistics
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Iterable
 
+    from rmfs.control.asks import Call
     from rmfs.control.choices import Choice
-    from rmfs.control.pps import PodSelection
-    from rmfs.control.psa import PodStorageAssignment
-    from rmfs.control.repositioning import Move, Repositioning
     from rmfs.control.settings import ControllerSettings
     from rmfs.simulation.simulation import Simulation
     from rmfs.world.orders import Bundle
-    from rmfs.world.robots import Robot
 
 # the steps of the phase in their order; the earliest one that is due comes next
-_MANAGE = 0
-_SUPPLY = 1
+_ANSWERS = 0
+_MANAGE = 1
+_SUPPLY = 2
 _ASKED = (Problem.SA, Problem.RPS, Problem.ROA, Problem.POA)
 _LATE_BINDING = _SUPPLY + len(_ASKED) + 1
-_TASKS = _LATE_BINDING + 1
+# these may ask optimisers; what they decide, TA asks
+_PLAN = (Problem.PPS, Problem.PSA)
+_TASKS = _LATE_BINDING + len(_PLAN) + 1
 
 _SUPPLY_AFTER = frozenset(
     {
@@ -48,9 +50,10 @@ _LATE_BINDING_AFTER = frozenset(
 class DecisionPhase:
     """Knows what is due, asks the controllers, and applies what they say.
 
-    The order is MM, supply, SA, RPS, ROA, POA, late binding, TA; whatever a step makes due is done
-    before anything later in this order. PPS, PSA and repositioning are asked by TA; it is also
-    asked when repositioning wants to be.
+    The order is answers of optimisers, MM, supply, SA, RPS, ROA, POA, late binding, PPS, PSA, TA;
+    whatever a step makes due is done before anything later in this order. PPS, PSA and
+    repositioning decide when TA asks them; in steps of their own PPS and PSA may only ask
+    optimisers. TA is also asked when repositioning wants to be.
 
     Attributes
     ----------
@@ -73,8 +76,11 @@ class DecisionPhase:
             for problem, choice in settings.choices.items()
             if problem is not Problem.PP
         }
-        self._consult = _Consult(self, simulation)
-        self._step_of = {problem: step for step, problem in enumerate(_ASKED, start=_SUPPLY + 1)}
+        self._consult = PhaseConsult(self, simulation)
+        self._answers: list[Call] = []
+        self._problem_of = dict(enumerate(_ASKED, start=_SUPPLY + 1))
+        self._problem_of |= dict(enumerate(_PLAN, start=_LATE_BINDING + 1))
+        self._step_of = {problem: step for step, problem in self._problem_of.items()}
         self._step_of[Problem.MM] = _MANAGE
         self._step_of[Problem.TA] = self._step_of[Problem.REPOSITIONING] = _TASKS
         self._masks: list[int] = []
@@ -110,7 +116,7 @@ class DecisionPhase:
                 self._world.unqueue_all()
             elif problem is Problem.TA:
                 for robot in self._world.robots:
-                    robot.prepared.clear()
+                    self._simulation.dispatch.forget_prepared(robot)
             elif problem is Problem.RPS and new.is_dummy:
                 for pod in list(self._world.bundles.unreleased):
                     self._release_pod(say.ReleasePod(pod))
@@ -185,8 +191,10 @@ class DecisionPhase:
             self._simulation.late_binding.bind()
         elif step == _TASKS:
             self._give_tasks()
+        elif step == _ANSWERS:
+            self._take_answers()
         else:
-            problem = _ASKED[step - _SUPPLY - 1]
+            problem = self._problem_of[step]
             self._ask(problem, self._panel[problem].decide())
 
     def _give_tasks(self) -> None:
@@ -201,32 +209,80 @@ class DecisionPhase:
         if Problem.REPOSITIONING in self._punctual:
             self._set_alarm(Problem.REPOSITIONING)
 
-    def _ask(self, problem: Problem, given: Iterable[Any]) -> None:
-        """Apply decisions one by one, and measure the time it takes to come to them."""
-        apply = self._apply
-        count = spent_ns = 0
-        self._nested_ns = 0
+    def _ask(self, problem: Problem, given: Iterable[Any], basis: Call | None = None) -> None:
+        """Apply decisions one by one, and measure the time it takes to come to them.
+
+        An answer may come while the controller that asked is still deciding: then this is nested.
+        """
+        apply, controller = self._apply, self._panel[problem]
+        nested_ns, self._nested_ns = self._nested_ns, 0
+        former, controller.basis = controller.basis, basis
+        count = by_rule = spent_ns = 0
         start = perf_counter_ns()
         for decision in given:
             spent_ns += perf_counter_ns() - start
-            apply[type(decision)](decision)
-            count += 1
+            if type(decision) is Ask:
+                self._simulation.thinking.ask(problem, controller, decision)
+            else:
+                apply[type(decision)](decision)
+                count += 1
+                if controller.optimisers and type(decision) is not say.Prepare:
+                    self.decided(problem, controller)
+                by_rule += controller.basis is None
             start = perf_counter_ns()
         spent_ns += perf_counter_ns() - start - self._nested_ns
-        self._record(problem, spent_ns, count)
+        self._nested_ns, controller.basis = nested_ns, former
+        self._record(problem, spent_ns, count, by_rule)
         if self._overdue:
             self._overdue.discard(problem)
         if problem in self._punctual:
             self._set_alarm(problem)
 
-    def consulted(self, problem: Problem, wall_ns: int, decided: bool) -> None:
+    def consulted(
+        self, problem: Problem, controller: Controller[Any], wall_ns: int, decided: bool
+    ) -> None:
         """Take note that TA asked another controller."""
         self._nested_ns += wall_ns
-        self._record(problem, wall_ns, int(decided))
+        self._record(problem, wall_ns, int(decided), int(decided and controller.basis is None))
+        if decided and controller.optimisers:
+            self.decided(problem, controller)
 
-    def _record(self, problem: Problem, wall_ns: int, count: int) -> None:
+    def decided(self, problem: Problem, controller: Controller[Any]) -> None:
+        """Count a decision of a controller that asks optimisers: by a solution or by its rule."""
+        if controller.basis is None:
+            self._simulation.observers.rule_decided(problem.value, self._world.now_s)
+        else:
+            controller.basis.count()
+
+    def _record(self, problem: Problem, wall_ns: int, count: int, by_rule: int) -> None:
+        """Take note of a call; decisions by a solution are told with the question."""
         self.statistics[problem].record(wall_ns, count)
-        self._simulation.observers.decision(problem.value, self._world.now_s, wall_ns / 1e9, count)
+        now_s, wall_s = self._world.now_s, wall_ns / 1e9
+        self._simulation.observers.decision(problem.value, now_s, wall_s, by_rule)
+
+    # --- answers of optimisers ----------------------------------------------------------------
+
+    def answer_came(self, call: Call) -> None:
+        """Take note of an answer: the controller is told in the phase of this instant."""
+        self._answers.append(call)
+        self._due |= 1 << _ANSWERS
+
+    def _take_answers(self) -> None:
+        answers, self._answers = sorted(self._answers, key=lambda call: call.number), []
+        for call in answers:
+            self.tell(call)
+
+    def tell(self, call: Call) -> None:
+        """Tell the controller that asked what came back, and apply what it makes of it."""
+        controller = call.controller
+        controller.in_flight -= 1
+        call.completed_us = self._simulation.now_us
+        if self._panel[call.problem] is not controller:
+            call.outcome = Outcome.ABANDONED
+        else:
+            self._ask(call.problem, controller.answered(call), call)
+        self._simulation.observers.optimiser_answered(call)
+        call.forget()
 
     # --- times at which controllers want to be asked ------------------------------------------
 
@@ -261,7 +317,10 @@ class DecisionPhase:
     def _prepare(self, decision: say.Prepare) -> None:
         """Remember tasks for later, or start the first if the robot has nothing better to do."""
         dispatch, robot = self._simulation.dispatch, decision.robot
-        dispatch.prepare(decision)
+        ta = self._panel[Problem.TA]
+        dispatch.prepare(decision, ta.basis)
+        if ta.optimisers and ta.basis is None:
+            self.decided(Problem.TA, ta)
         if robot.task is None or robot.index in self._world.resting:
             dispatch.start_prepared(robot, self._consult)
 
@@ -311,54 +370,3 @@ class DecisionPhase:
         self._world.queue_order(order, decision.station)
         self._simulation.late_binding.order_queued(order)
         self.signal(Trigger.ORDER_QUEUED, order)
-
-
-class _Consult:
-    """Passes TA's questions on to the controllers installed now, and measures them."""
-
-    def __init__(self, phase: DecisionPhase, simulation: Simulation) -> None:
-        self._phase = phase
-        self._world = simulation.world
-        self._panel = simulation.panel
-
-    def serves(self, pod: int, station: int) -> bool:
-        """Ask PPS whether there is work for a pod."""
-        pps: PodSelection[Any] = self._panel[Problem.PPS]
-        return pps.serves(pod, station)
-
-    def pod_for(self, robot: Robot, station: int) -> int:
-        """Ask PPS for a pod."""
-        start = perf_counter_ns()
-        pps: PodSelection[Any] = self._panel.consulted(Problem.PPS)
-        if self._world.is_pick_station(station):
-            pod = pps.pick_pod(robot, self._world.pick_stations[station])
-        else:
-            pod = pps.replenishment_pod(robot, self._world.replenishment_station(station))
-        self._phase.consulted(Problem.PPS, perf_counter_ns() - start, pod >= 0)
-        return pod
-
-    def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Ask PPS for the next station of a carried pod."""
-        start = perf_counter_ns()
-        pps: PodSelection[Any] = self._panel.consulted(Problem.PPS)
-        station = pps.next_station(robot, stations)
-        self._phase.consulted(Problem.PPS, perf_counter_ns() - start, decided=True)
-        return station
-
-    def place_for(self, robot: Robot) -> int:
-        """Ask PSA for a place."""
-        start = perf_counter_ns()
-        psa: PodStorageAssignment[Any] = self._panel.consulted(Problem.PSA)
-        place = psa.place(robot)
-        self._phase.consulted(Problem.PSA, perf_counter_ns() - start, place >= 0)
-        return place
-
-    def move_for(self, robot: Robot) -> Move | None:
-        """Ask repositioning for a pod to move, unless it would not answer now."""
-        rule: Repositioning[Any] = self._panel.consulted(Problem.REPOSITIONING)
-        if not rule.is_ready(robot):
-            return None
-        start = perf_counter_ns()
-        move = rule.move(robot)
-        self._phase.consulted(Problem.REPOSITIONING, perf_counter_ns() - start, move is not None)
-        return move

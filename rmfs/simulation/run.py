@@ -15,7 +15,7 @@ from rmfs.control.settings import ControllerSettings
 from rmfs.errors import InputError
 from rmfs.layout.model import Layout
 from rmfs.scenario import Scenario
-from rmfs.simulation.pacing import pacing as pacing_of
+from rmfs.simulation.pacing import pacing_settings
 from rmfs.simulation.simulation import Simulation
 from rmfs.traffic import Traffic
 
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from rmfs.measure import Recorder
     from rmfs.measure.observer import Observer
+    from rmfs.simulation.pacing import PacingSettings
     from rmfs.simulation.statistics import DecisionStatistics
     from rmfs.world import World
 
@@ -45,6 +46,8 @@ class Run:
         Layout, scenario and controllers as the user named them.
     overrides
         The overrides given, as pairs of path and value.
+    pacing, pacing_settings
+        The pacing as it was given, and with all its parameters.
     warmup_s, duration_s, end_s
         Simulated first and not measured; measured; both together.
     wall_s
@@ -64,6 +67,7 @@ class Run:
     overrides: Overrides
     seed: int
     pacing: str
+    pacing_settings: PacingSettings
     warmup_s: float
     duration_s: float
     end_s: float
@@ -121,7 +125,8 @@ def simulate(
     observers
         Told of everything that happens, besides the recorder of the usual measures.
     pacing
-        What thinking costs: `instant` for nothing.
+        What the thinking of optimisers costs in simulated time: `instant` for nothing, `wall`,
+        `work`, `fixed=SECONDS` or `replay=RUN_DIR` (docs: optimisers in the loop).
     trace
         Whether every piece of motion is kept.
     progress
@@ -140,7 +145,7 @@ def simulate(
     rules = _loaded(controllers, ControllerSettings, control.load, given["controllers"])
     if seed < 0:
         raise InputError(f"seed {seed}: must be 0 or greater")
-    pace = pacing_of(pacing)
+    pace = pacing_settings(pacing, given["pacing"])
     layouts.refuse(plan, _name(layout), allow_not_well_formed=allow_not_well_formed)
     recorder = measure.Recorder()
     traffic = Traffic(plan, record_trace=trace)
@@ -164,6 +169,7 @@ def simulate(
         overrides=list(overrides),
         seed=seed,
         pacing=pacing,
+        pacing_settings=pace,
         warmup_s=work.warmup_s,
         duration_s=work.duration_s,
         end_s=simulation.end_s,
@@ -177,11 +183,12 @@ def simulate(
 
 def _split(overrides: Sequence[tuple[list[str], Any]]) -> dict[str, Overrides]:
     """Sort overrides by the part they are for."""
-    parts: dict[str, Overrides] = {"layout": [], "scenario": [], "controllers": []}
+    parts: dict[str, Overrides] = {"layout": [], "scenario": [], "controllers": [], "pacing": []}
     for path, value in overrides:
         if path[0] not in parts or len(path) < 2:
             raise InputError(
-                f"--set {'.'.join(path)}: must begin with layout., scenario. or controllers."
+                f"--set {'.'.join(path)}: must begin with layout., scenario., controllers. "
+                "or pacing."
             )
         parts[path[0]].append((path[1:], value))
     return parts

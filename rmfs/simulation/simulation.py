@@ -13,12 +13,13 @@ from rmfs.simulation.agenda import Agenda
 from rmfs.simulation.dispatch import Dispatch
 from rmfs.simulation.late_binding import LateBinding
 from rmfs.simulation.observers import Observers
-from rmfs.simulation.pacing import Instant
+from rmfs.simulation.pacing import InstantPacing, pacing_of
 from rmfs.simulation.panel import Panel
 from rmfs.simulation.past import past_orders
 from rmfs.simulation.phase import DecisionPhase
 from rmfs.simulation.service import PickService, ReplenishmentService
 from rmfs.simulation.supply import Supply
+from rmfs.simulation.thinking import Thinking
 from rmfs.traffic import EventKind, Traffic
 from rmfs.world import World
 
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
     from rmfs.measure.observer import Observer
     from rmfs.scenario import Scenario
-    from rmfs.simulation.pacing import Pacing
+    from rmfs.simulation.pacing import PacingSettings
 
 SAMPLE_S = 60.0
 """Time between two samples."""
@@ -59,7 +60,7 @@ class Simulation:
     observers
         Told of everything that happens.
     pacing
-        What decisions cost in simulated time.
+        What the thinking of optimisers costs in simulated time.
     traffic
         What moves the robots; by default the compiled core without trace.
 
@@ -77,7 +78,7 @@ class Simulation:
         *,
         seed: int = 0,
         observers: Sequence[Observer] = (),
-        pacing: Pacing | None = None,
+        pacing: PacingSettings | None = None,
         traffic: Traffic | None = None,
     ) -> None:
         self.layout = layout
@@ -117,7 +118,7 @@ class Simulation:
                 )
             ),
         ]
-        self._pacing = pacing if pacing is not None else Instant()
+        self.thinking = Thinking(self, pacing_of(pacing or InstantPacing(), seed))
         self._end_us = self.us_at(self.end_s)
         self._moved_us = 0
         self._afterwards: list[Callable[[], None]] = []
@@ -135,12 +136,26 @@ class Simulation:
         ------
         StalledError
             If nothing can move any more (only possible in a layout that is not well-formed).
+        OptimiserError
+            If an optimiser failed and the pacing is one that repeats.
+        ReplayError
+            If the run that is replayed was another one.
         """
-        self._begin(progress)
+        try:
+            self.thinking.begin()
+            self._begin(progress)
+            self._loop()
+        finally:
+            self.thinking.end()
+        self.observers.run_ended(self.end_s)
+
+    def _loop(self) -> None:
         agenda, phase, end_us = self.agenda, self.phase, self._end_us
         advance = self.traffic.advance
         while True:
-            until_us = min(agenda.next_us, end_us, self._pacing.limit_us(self.now_us))
+            # an answer that comes while this waits goes into the agenda
+            limit_us = self.thinking.limit_us(self.now_us)
+            until_us = min(agenda.next_us, end_us, limit_us)
             events = advance(until_us)
             if events:
                 self._set_now(events[0][0])
@@ -158,7 +173,6 @@ class Simulation:
                 phase.settle()
             if self.now_us >= end_us and not events and agenda.next_us > end_us:
                 break
-        self.observers.run_ended(self.end_s)
 
     def after_decisions(self, callback: Callable[[], None]) -> None:
         """Call back at this instant, as soon as the controllers have decided."""

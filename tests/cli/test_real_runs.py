@@ -36,7 +36,8 @@ def test_a_run_is_safe_and_writes_everything(capsys):
     assert run.parameters["scenario"]["parameters"]["duration_s"] == 300
     assert run.parameters["layout"]["parameters"]["robots"] == 16
     for name in TABLES:
-        assert len(run.table(name)), name
+        # nobody asks optimisers here
+        assert bool(len(run.table(name))) == (name != "answers"), name
     assert "orders completed" in capsys.readouterr().out
 
 
@@ -67,7 +68,7 @@ def test_another_seed_gives_another_run():
         ("--set scenario.duration_s=long", "duration_s"),
         ("--set controllers.psa.name=neerest", "neerest"),
         ("--set layout.robots=5000", "robots"),
-        ("--set robots=16", "must begin with layout., scenario. or controllers."),
+        ("--set robots=16", "must begin with layout., scenario., controllers. or pacing."),
         ("--pacing fast", "valid: instant"),
     ],
 )

@@ -14,6 +14,8 @@ import numpy as np
 import pydantic
 from scripted_trace import Script, grid
 
+from rmfs.control.asks import Answer, Ask, Call, Outcome
+from rmfs.control.problems import Problem
 from rmfs.layout.model import PickStation, ReplenishmentStation
 from rmfs.measure.recorder import Recorder
 
@@ -186,6 +188,8 @@ def recorded() -> Recorder:
     zero.completed_s = 60.0
     recorder.order_completed(zero)
     recorder.decision("poa", 10.0, 0.5, 1)
+    recorder.rule_decided("poa", 10.0)
+    _question(recorder, 50.0, 60.0, applied=7)
     one.station, one.assigned_s = 0, 60.0
     recorder.order_assigned(one)
     recorder.station_busy(0, 95.0, 105.0)
@@ -202,6 +206,9 @@ def recorded() -> Recorder:
     two = order(2, 150.0, [(1, 3)], due=1000.0)
     recorder.order_created(two)
     recorder.decision("poa", 150.0, 0.001, 2)
+    recorder.rule_decided("poa", 150.0)
+    recorder.rule_decided("poa", 150.0)
+    _question(recorder, 160.0, 165.0, applied=2, stale=1)
     _sample(recorder, traffic, 160.0)
     recorder.pod_lifted(170.0, 1, 1, 2)
     recorder.task_started(170.0, 1, "pick", 1)
@@ -224,6 +231,8 @@ def recorded() -> Recorder:
     first.stored_s = 250.0
     recorder.bundle_stored(first, 1)
     recorder.station_activated(300.0, 1, False)
+    _question(recorder, 300.0, 302.0, fallback=1)
+    _question(recorder, 490.0)
     for minute in range(280, 500, 60):
         _sample(recorder, traffic, float(minute))
     # the run ends in a visit without any work, and 40 s after the last full minute
@@ -231,6 +240,26 @@ def recorded() -> Recorder:
     traffic.now_s = END_S
     recorder.run_ended(END_S)
     return recorder
+
+
+def _question(recorder, asked_s, answered_s=None, **counts):
+    """Ask an optimiser; without anything applied, it dies."""
+    number = len(recorder.questions)
+    ask = Ask(print, None, {"orders": 8, "pods": 3})
+    call = Call(number, Problem.POA, None, ask, round(asked_s * 1e6), f"state {number}")
+    recorder.optimiser_asked(call)
+    for name, count in counts.items():
+        setattr(call, name, count)
+    if answered_s is None:
+        return
+    call.completed_us = round(answered_s * 1e6)
+    if call.applied:
+        found = {"order": np.array([4, 2]), "share": 0.1}
+        call.answer = Answer(found, 12.0, 9.0, "feasible", "cp_sat", 3.0, 0.5, 0.125)
+        call.outcome = Outcome.SOLUTION
+    else:
+        call.outcome, call.failure = Outcome.FAILED, "its worker died"
+    recorder.optimiser_answered(call)
 
 
 def _sample(recorder, traffic, time_s):
@@ -249,6 +278,7 @@ def run():
         overrides=[(["layout", "robots"], 2)],
         seed=3,
         pacing="instant",
+        pacing_settings=Settings(),
         warmup_s=WARMUP_S,
         duration_s=END_S - WARMUP_S,
         end_s=END_S,

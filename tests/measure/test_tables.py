@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pandas as pd
 import pytest
 from fake_run import run
 
+from rmfs.control.solutions import from_text
 from rmfs.measure import decisions, footprint, series, tables
 from rmfs.measure.dictionary import TABLES, markdown, names, reproducible
 from rmfs.measure.tables.tidy import tidy
@@ -86,10 +88,18 @@ EXPECTED = {
     "replans": 1,
     "expansions": 99,
     "planning_wall_s": 0.25,
-    "decisions": 2,
+    # two by the rule, two by a solution, one by the rule in place of a solution
+    "decisions": 5,
     "decision_wall_s": 0.001,
-    "optimiser_calls": 0,
-    "paced_s": 0.0,
+    "optimiser_calls": 3,
+    "optimiser_gap_mean": 0.25,
+    "paced_s": 5.0 + 2.0,
+    "optimiser_failures": 1,
+    "optimiser_wall_s": 0.5,
+    "optimiser_decision_share": 2 / 6,
+    "heuristic_decision_share": 2 / 6,
+    "stale_decision_share": 1 / 6,
+    "failed_decision_share": 1 / 6,
     "wall_s": 0.5,
     "sim_per_wall": 1000.0,
 }
@@ -105,7 +115,6 @@ def test_footprint(made, column):
 def test_footprint_is_empty_where_nothing_was_measured(made):
     row = made["footprint"].iloc[0]
     assert pd.isna(row["collisions"])
-    assert pd.isna(row["optimiser_gap_mean"])
 
 
 def test_footprint_tells_collisions_when_the_checker_ran(told):
@@ -141,7 +150,9 @@ def test_footprint_begins_with_the_promised_columns():
 
 def test_measured_columns_do_not_repeat():
     told = set(names("footprint")) - set(reproducible("footprint"))
-    assert told == {"wall_s", "sim_per_wall", "peak_rss_mb", "decision_wall_s", "planning_wall_s"}
+    of_optimisers = {"optimiser_wall_s", "optimiser_wall_median_s"}
+    of_others = {"wall_s", "sim_per_wall", "peak_rss_mb", "decision_wall_s", "planning_wall_s"}
+    assert told == of_optimisers | of_others
 
 
 def test_dictionary_says_something_of_every_column():
@@ -222,4 +233,32 @@ def test_pods_and_skus(made):
 def test_trips_heat_and_decisions(told, made):
     assert made["trips"]["kind"].tolist() == ["to_pod", "to_station", "to_storage"]
     assert made["heat"]["visits"].sum() == 66
-    assert decisions(told)["time_s"].tolist() == [150.0]
+    assert decisions(told)["time_s"].tolist() == [150.0, 160.0, 300.0, 490.0]
+
+
+def test_questions_to_optimisers(made):
+    asked = made["decisions"].iloc[1:]
+    assert asked["source"].unique().tolist() == ["optimiser"]
+    assert asked["outcome"].tolist() == ["solution", "failed", "waiting"]
+    assert asked["failure"].tolist() == ["", "its worker died", ""]
+    assert asked["sizes"].tolist() == ["orders=8 pods=3"] * 3
+    assert asked["decisions"].tolist() == [2, 1, 0]
+    assert asked["paced_s"].iloc[:2].tolist() == [5.0, 2.0]
+    assert (asked["build_s"].iloc[0], asked["solve_s"].iloc[0]) == (0.125, 0.375)
+    assert asked[["applied", "stale", "fallback"]].to_numpy().tolist() == [
+        [2, 1, 0],
+        [0, 0, 1],
+        [0, 0, 0],
+    ]
+    assert made["decisions"]["call"].isna().tolist() == [True, False, False, False]
+
+
+def test_answers_are_kept_whole_warm_up_included(made):
+    kept = made["answers"]
+    assert kept["call"].tolist() == [0, 1, 2, 3]
+    assert kept["requested_us"].tolist() == [50_000_000, 160_000_000, 300_000_000, 490_000_000]
+    assert kept["completed_us"].tolist() == [60_000_000, 165_000_000, 302_000_000, -1]
+    solution = from_text(kept["solution"].iloc[0])
+    assert solution["order"].dtype == np.int64
+    assert (solution["order"].tolist(), solution["share"]) == ([4, 2], 0.1)
+    assert kept["solution"].tolist()[2:] == ["", ""]

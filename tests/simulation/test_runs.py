@@ -132,7 +132,7 @@ class TestSimulate:
     @pytest.mark.parametrize(
         ("arguments", "message"),
         [
-            ({"overrides": [(["rules", "psa"], 1)]}, "must begin with layout., scenario. or con"),
+            ({"overrides": [(["rules", "psa"], 1)]}, "must begin with layout., scenario., con"),
             ({"overrides": [(["scenario"], 1)]}, "must begin with"),
             ({"pacing": "slow"}, "pacing slow: no such mode; valid: instant"),
             ({"seed": -1}, "seed -1"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem, Trigger
@@ -11,6 +11,7 @@ from rmfs.control.problems import Problem, Trigger
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rmfs.control.asks import Ask
     from rmfs.control.decisions import AssignOrder, QueueOrder
 
 P = TypeVar("P", bound=Parameters)
@@ -36,5 +37,5 @@ class PickOrderAssignment(Controller[P]):
     )
 
     @abstractmethod
-    def decide(self) -> Iterator[AssignOrder | QueueOrder]:
+    def decide(self) -> Iterator[AssignOrder | QueueOrder | Ask[Any]]:
         """Yield an order and a station, again and again, until nothing is to be assigned now."""

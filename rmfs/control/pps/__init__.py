@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import pydantic
 
@@ -11,8 +11,9 @@ from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
+    from rmfs.control.asks import Ask
     from rmfs.world.orders import Order
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation, ReplenishmentStation
@@ -61,6 +62,10 @@ class PodSelection(Controller[P]):
     """
 
     problem = Problem.PPS
+
+    def decide(self) -> Iterator[Ask[Any]]:
+        """Yield questions for an optimiser; only asked after `subscriptions`, by default never."""
+        return iter(())
 
     @abstractmethod
     def pick_pod(self, robot: Robot, station: PickStation) -> int:

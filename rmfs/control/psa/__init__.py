@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -11,8 +11,11 @@ from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
+    from rmfs.control.asks import Ask
     from rmfs.world.robots import Robot
 
 P = TypeVar("P", bound=Parameters)
@@ -25,6 +28,10 @@ class PodStorageAssignment(Controller[P]):
     """
 
     problem = Problem.PSA
+
+    def decide(self) -> Iterator[Ask[Any]]:
+        """Yield questions for an optimiser; only asked after `subscriptions`, by default never."""
+        return iter(())
 
     @abstractmethod
     def place(self, robot: Robot) -> int:

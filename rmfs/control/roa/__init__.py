@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem, Trigger
@@ -11,6 +11,7 @@ from rmfs.control.problems import Problem, Trigger
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rmfs.control.asks import Ask
     from rmfs.control.decisions import SendBundle
 
 P = TypeVar("P", bound=Parameters)
@@ -29,5 +30,5 @@ class ReplenishmentOrderAssignment(Controller[P]):
     )
 
     @abstractmethod
-    def decide(self) -> Iterator[SendBundle]:
+    def decide(self) -> Iterator[SendBundle | Ask[Any]]:
         """Yield a bundle and a station, again and again, until nothing is to be sent now."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem, Trigger
@@ -11,6 +11,7 @@ from rmfs.control.problems import Problem, Trigger
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rmfs.control.asks import Ask
     from rmfs.control.decisions import PromiseBundle, ReleasePod
 
 P = TypeVar("P", bound=Parameters)
@@ -28,5 +29,5 @@ class ReplenishmentPodSelection(Controller[P]):
     triggers = frozenset({Trigger.START, Trigger.NEW_BUNDLE, Trigger.UNIT_PICKED})
 
     @abstractmethod
-    def decide(self) -> Iterator[PromiseBundle | ReleasePod]:
+    def decide(self) -> Iterator[PromiseBundle | ReleasePod | Ask[Any]]:
         """Yield promises and releases until nothing is to be decided now."""

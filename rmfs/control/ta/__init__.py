@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem, Trigger
@@ -11,6 +11,7 @@ from rmfs.control.problems import Problem, Trigger
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from rmfs.control.asks import Ask
     from rmfs.control.decisions import Prepare, TaskDecision
     from rmfs.control.repositioning import Move
     from rmfs.world.robots import Robot
@@ -61,7 +62,7 @@ class TaskAllocation(Controller[P]):
     subscriptions = WORK
 
     @abstractmethod
-    def decide(self, consult: Consult) -> Iterator[TaskDecision | Prepare]:
+    def decide(self, consult: Consult) -> Iterator[TaskDecision | Prepare | Ask[Any]]:
         """Yield tasks for robots until nothing is to be given out now."""
 
     @abstractmethod

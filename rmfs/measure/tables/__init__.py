@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from rmfs.measure.tables.connections import connections as connections
 from rmfs.measure.tables.connections import edges as edges
+from rmfs.measure.tables.decisions import answers as answers
 from rmfs.measure.tables.decisions import controllers as controllers
 from rmfs.measure.tables.decisions import decisions as decisions
 from rmfs.measure.tables.footprint import Measured as Measured
@@ -43,6 +44,7 @@ MAKERS = {
     "heat": heat,
     "edges": edges,
     "decisions": decisions,
+    "answers": answers,
     "controllers": controllers,
 }
 """How each table but the footprint is made from what happened."""

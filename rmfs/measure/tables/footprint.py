@@ -81,7 +81,7 @@ def footprint(
         **_tasks(tables["robots"]),
         **_levels(logs),
         **_planning(logs, report),
-        **_decisions(logs, tables["decisions"]),
+        **_decisions(logs, tables["decisions"], tables["controllers"]),
         **_machine(run, logs),
     }
     return tidy("footprint", {name: [value] for name, value in columns.items()})
@@ -257,13 +257,21 @@ def _planning(logs: Logs, report: CheckReport | None) -> dict[str, Any]:
     }
 
 
-def _decisions(logs: Logs, decisions: pd.DataFrame) -> dict[str, Any]:
+def _decisions(logs: Logs, decisions: pd.DataFrame, controllers: pd.DataFrame) -> dict[str, Any]:
+    by_optimiser = decisions[decisions["source"] == "optimiser"]
+    sources = ("optimiser", "heuristic", "stale", "failed")
+    counts = {source: int(controllers[f"{source}_decisions"].sum()) for source in sources}
+    total = sum(counts.values())
     return {
         "decisions": int(decisions["decisions"].sum()),
         "decision_wall_s": sum(wall_s for _, wall_s in logs.recorder.asked.values()),
-        "optimiser_calls": 0,
-        "optimiser_gap_mean": NOTHING,
-        "paced_s": 0.0,
+        "optimiser_calls": len(by_optimiser),
+        "optimiser_gap_mean": by_optimiser["gap"].mean(),
+        "paced_s": by_optimiser["paced_s"].sum(),
+        "optimiser_failures": int((by_optimiser["outcome"] == "failed").sum()),
+        "optimiser_wall_s": by_optimiser["wall_s"].sum(),
+        "optimiser_wall_median_s": by_optimiser["wall_s"].median(),
+        **{f"{source}_decision_share": ratio(counts[source], total) for source in sources},
     }
 
 

@@ -1,0 +1,155 @@
+"""Questions for optimisers: what a controller asks, what comes back, and how a call went."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from rmfs.control.base import Controller
+    from rmfs.control.problems import Problem
+
+Q = TypeVar("Q")
+
+Plain = NDArray[Any] | int | float | str | bool | Sequence["Plain"]
+"""What a solution may consist of: it is sent between processes, recorded and replayed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What an optimiser found.
+
+    Attributes
+    ----------
+    solution
+        Arrays and numbers by name; None if there is no solution, or none was found in time.
+    objective, bound
+        Value of the solution and what is proven about the best one; inf or nan where nothing is.
+    status
+        How the solver ended, in its words.
+    backend
+        Who solved it.
+    work
+        Deterministic work in the unit of the back end.
+    wall_s, build_s
+        Wall time in all, and the part in which the solver's model was built.
+    """
+
+    solution: Mapping[str, Plain] | None
+    objective: float
+    bound: float
+    status: str
+    backend: str
+    work: float = 0.0
+    wall_s: float = 0.0
+    build_s: float = 0.0
+
+    @property
+    def gap(self) -> float:
+        """Relative distance of objective and bound; nan without solution or without bound."""
+        if self.solution is None or not np.isfinite(self.objective - self.bound):
+            return float("nan")
+        return abs(self.objective - self.bound) / max(abs(self.objective), 1e-9)
+
+
+@dataclass(frozen=True, eq=False)
+class Ask(Generic[Q]):
+    """A question for an optimiser; `decide` yields it like a decision.
+
+    Attributes
+    ----------
+    solve
+        A function of a module, which another process can import. The same question must always
+        get the same answer.
+    question
+        What the world looks like: a frozen dataclass of arrays and numbers, copied from the view.
+    sizes
+        How large the question is, such as `{"orders": 80}`, for the table of decisions.
+    memo
+        What the controller wants back with the answer, such as the orders behind the indices.
+    """
+
+    solve: Callable[[Q], Answer]
+    question: Q
+    sizes: Mapping[str, int] = field(default_factory=dict)
+    memo: Any = None
+
+
+class Outcome(StrEnum):
+    """How a call ended."""
+
+    WAITING = "waiting"
+    """The answer has not come (also: when the run ended)."""
+    SOLUTION = "solution"
+    NOTHING = "nothing"
+    """The optimiser ended without a solution."""
+    FAILED = "failed"
+    """The optimiser raised an error, died, or took longer than it may."""
+    ABANDONED = "abandoned"
+    """The controller was exchanged before the answer came."""
+
+
+@dataclass(eq=False)
+class Call:
+    """One question in the course of a run.
+
+    Attributes
+    ----------
+    number
+        Of all questions of the run, from 0.
+    controller
+        Who asked.
+    requested_us, completed_us
+        When it was asked and when the answer took effect, in simulated microseconds; -1 for not
+        yet.
+    state
+        Hash of the question and of the state of the world it was asked in.
+    failure
+        Why it failed, in one line.
+    applied, stale
+        Decisions of the solution that were applied, and that no longer held.
+    fallback
+        Decisions that the heuristic took in its place when it had failed or found nothing.
+    """
+
+    number: int
+    problem: Problem
+    controller: Controller[Any]
+    ask: Ask[Any]
+    requested_us: int
+    state: str
+    completed_us: int = -1
+    answer: Answer | None = None
+    outcome: Outcome = Outcome.WAITING
+    failure: str = ""
+    applied: int = 0
+    stale: int = 0
+    fallback: int = 0
+
+    @property
+    def solution(self) -> Mapping[str, Any] | None:
+        """The solution, if there is one."""
+        return None if self.answer is None else self.answer.solution
+
+    @property
+    def paced_s(self) -> float:
+        """Simulated time from question to effect; nan while it waits."""
+        if self.completed_us < 0:
+            return float("nan")
+        return (self.completed_us - self.requested_us) / 1e6
+
+    def count(self) -> None:
+        """Count a decision that was based on it."""
+        if self.solution is None:
+            self.fallback += 1
+        else:
+            self.applied += 1
+
+    def forget(self) -> None:
+        """Let go of the question, which may be large; the sizes stay."""
+        self.ask = replace(self.ask, question=None, memo=None)

@@ -1,0 +1,48 @@
+"""Solutions as text: how answers of optimisers are recorded, exact to the last bit."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rmfs.control.asks import Plain
+
+_ARRAY = "array"
+
+
+def to_text(solution: Mapping[str, Plain]) -> str:
+    """Write a solution as JSON; arrays keep their type and shape.
+
+    Raises
+    ------
+    TypeError
+        If it holds anything but arrays, numbers, texts and sequences of these.
+    """
+    return json.dumps({str(name): value for name, value in solution.items()}, default=_plain)
+
+
+def from_text(text: str) -> dict[str, Any]:
+    """Read a solution."""
+    solution: dict[str, Any] = json.loads(text, object_hook=_array)
+    return solution
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray) and value.dtype.kind in "biufU":
+        told = {"dtype": value.dtype.str, "shape": value.shape, "values": value.ravel().tolist()}
+        return {_ARRAY: told}
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"a solution holds a {type(value).__name__}: only arrays and plain values may")
+
+
+def _array(table: dict[str, Any]) -> Any:
+    if table.keys() != {_ARRAY}:
+        return table
+    told = table[_ARRAY]
+    return np.array(told["values"], dtype=told["dtype"]).reshape(told["shape"])

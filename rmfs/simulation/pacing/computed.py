@@ -1,0 +1,117 @@
+"""Modes that repeat: a question is solved at once, and its answer held back for a computed time."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import TYPE_CHECKING
+
+from rmfs.control.asks import Outcome
+from rmfs.errors import InputError
+from rmfs.random import Stream, generator
+from rmfs.simulation.agenda import NEVER_US
+from rmfs.simulation.pacing.errors import OptimiserError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from rmfs.control.asks import Answer, Call
+    from rmfs.simulation.pacing.settings import FixedPacing, WorkPacing
+
+SECONDS_PER_UNIT = {
+    "cp_sat": 1.0,
+    "highs": 1e-4,
+    "clarabel": 1e-3,
+    "rule": 1e-7,
+    "scipy": 1e-8,
+}
+"""Wall seconds of a unit of work of each back end, measured (docs: optimisers in the loop)."""
+
+
+class Computed:
+    """Solves in this process; nothing runs beside the simulation."""
+
+    def begin(self, modules: Iterable[str], give: Callable[[Call, int], None]) -> None:
+        """Remember whom to give answers to."""
+        self._give = give
+
+    def ask(self, call: Call) -> None:
+        """Solve the question and hold its answer back.
+
+        Raises
+        ------
+        OptimiserError
+            If the optimiser fails: a run that must repeat cannot go on by chance.
+        """
+        ask = call.ask
+        try:
+            answer = ask.solve(ask.question)
+        except Exception as error:
+            raise OptimiserError(
+                f"{call.problem} at {call.requested_us / 1e6:.3f} s: "
+                f"{type(error).__name__}: {error}"
+            ) from error
+        call.answer = answer
+        call.outcome = Outcome.NOTHING if answer.solution is None else Outcome.SOLUTION
+        self._give(call, call.requested_us + ceil(self.seconds(answer) * 1e6))
+
+    def limit_us(self, now_us: int) -> int:
+        """No limit: what is held back is in the agenda."""
+        return NEVER_US
+
+    def end(self) -> None:
+        """Nothing is held."""
+
+    def seconds(self, answer: Answer) -> float:
+        """Simulated time that an answer takes."""
+        raise NotImplementedError
+
+
+class Instant(Computed):
+    """Answers take effect at once."""
+
+    def seconds(self, answer: Answer) -> float:
+        """No time."""
+        return 0.0
+
+
+class Work(Computed):
+    """Answers take a time in proportion to the work they were."""
+
+    def __init__(self, settings: WorkPacing) -> None:
+        self._per_call = settings.seconds_per_call
+        self._per_unit = settings.seconds_per_unit
+
+    def seconds(self, answer: Answer) -> float:
+        """Work times the seconds per unit of the back end.
+
+        Raises
+        ------
+        InputError
+            If nothing says what a unit of this back end takes.
+        """
+        given = self._per_unit
+        if isinstance(given, dict):
+            rates = SECONDS_PER_UNIT | given
+            if answer.backend not in rates:
+                raise InputError(
+                    f"pacing work: seconds_per_unit.{answer.backend} is missing; known: "
+                    f"{', '.join(rates)}"
+                )
+            rate = rates[answer.backend]
+        else:
+            rate = given
+        return self._per_call + answer.work * rate
+
+
+class Fixed(Computed):
+    """Answers take a constant time, or one drawn from a distribution."""
+
+    def __init__(self, settings: FixedPacing, seed: int) -> None:
+        self._seconds = settings.seconds
+        self._rng = generator(seed, Stream.PACING)
+
+    def seconds(self, answer: Answer) -> float:
+        """Return the constant, or draw."""
+        if isinstance(self._seconds, float):
+            return self._seconds
+        return float(self._seconds.quantile(self._rng.random()))

@@ -1,0 +1,91 @@
+"""Replay: the answers of a recorded run, at the times at which they took effect there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.control.asks import Answer, Outcome
+from rmfs.control.solutions import from_text
+from rmfs.measure.folder import load_run
+from rmfs.simulation.agenda import NEVER_US
+from rmfs.simulation.pacing.errors import ReplayError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from rmfs.control.asks import Call
+    from rmfs.simulation.pacing.settings import ReplayPacing
+
+
+class Replay:
+    """Calls no solver.
+
+    Parameters
+    ----------
+    settings
+        The run to be replayed.
+
+    Raises
+    ------
+    InputError
+        If its folder cannot be read.
+    """
+
+    def __init__(self, settings: ReplayPacing) -> None:
+        self._run = settings.run
+        self._rows: list[dict[str, Any]] = (
+            load_run(settings.run).table("answers").to_dict("records")  # type: ignore[assignment]
+        )
+
+    def begin(self, modules: Iterable[str], give: Callable[[Call, int], None]) -> None:
+        """Remember whom to give answers to."""
+        self._give = give
+
+    def ask(self, call: Call) -> None:
+        """Give the recorded answer.
+
+        Raises
+        ------
+        ReplayError
+            If this is not the question that was recorded.
+        """
+        row = self._recorded(call)
+        completed_us = int(row["completed_us"])
+        call.outcome, call.failure = Outcome(row["outcome"]), row["failure"]
+        if completed_us < 0:
+            return
+        if row["status"]:
+            call.answer = Answer(
+                solution=from_text(row["solution"]) if row["solution"] else None,
+                objective=row["objective"],
+                bound=row["bound"],
+                status=row["status"],
+                backend=row["backend"],
+                work=row["work"],
+                wall_s=row["wall_s"],
+                build_s=row["build_s"],
+            )
+        self._give(call, completed_us)
+
+    def limit_us(self, now_us: int) -> int:
+        """No limit: all answers are known."""
+        return NEVER_US
+
+    def end(self) -> None:
+        """Nothing is held."""
+
+    def _recorded(self, call: Call) -> dict[str, Any]:
+        at_s = call.requested_us / 1e6
+        asked = f"question {call.number} ({call.problem} at {at_s:.6f} s)"
+        if call.number >= len(self._rows):
+            raise ReplayError(f"{self._run}: {asked} was never asked there")
+        row = self._rows[call.number]
+        there = f"{row['problem']} at {row['requested_us'] / 1e6:.6f} s"
+        if (row["problem"], int(row["requested_us"])) != (str(call.problem), call.requested_us):
+            raise ReplayError(f"{self._run}: {asked} was {there} there: the run is another one")
+        if row["state"] != call.state:
+            raise ReplayError(
+                f"{self._run}: {asked} was asked in another state there: layout, scenario, "
+                "controllers, seed or version differ"
+            )
+        return row

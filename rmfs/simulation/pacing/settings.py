@@ -1,0 +1,112 @@
+"""Pacing modes and their parameters, from what a user types."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import pydantic
+from pydantic import Field
+
+from rmfs import config
+from rmfs.config import Model, Table
+from rmfs.errors import InputError
+from rmfs.scenario.distributions import Popularity as Distribution
+from rmfs.scenario.quantities import NotNegative, Positive
+
+
+class _Mode(Model):
+    model_config = pydantic.ConfigDict(
+        extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True
+    )
+
+
+class InstantPacing(_Mode):
+    """Optimisers take no simulated time."""
+
+    mode: Literal["instant"] = "instant"
+
+
+class WallPacing(_Mode):
+    """Optimisers take the wall time they need; they run beside the simulation."""
+
+    mode: Literal["wall"] = "wall"
+    speed: Positive = 1.0
+    """Simulated seconds that pass in a second of wall time while an optimiser is running."""
+    workers: Annotated[int, Field(ge=1, le=64)] = 2
+    """Worker processes, of one thread each; further questions wait for one."""
+    patience_s: Positive = 300.0
+    """Wall time after which a worker that has not answered is given up and replaced."""
+
+
+class WorkPacing(_Mode):
+    """Optimisers take a time in proportion to their deterministic work."""
+
+    mode: Literal["work"] = "work"
+    seconds_per_unit: NotNegative | dict[str, NotNegative] = Field(default_factory=dict)
+    """Simulated seconds per unit of work: one number for all back ends, or one for each by name;
+    those not named take what they take on the machine of the published figures."""
+    seconds_per_call: NotNegative = 0.0
+    """Simulated seconds that every call takes besides."""
+
+
+class FixedPacing(_Mode):
+    """Optimisers take a constant or random time."""
+
+    mode: Literal["fixed"] = "fixed"
+    seconds: NotNegative | Distribution = 1.0
+    """Simulated seconds of each call: a number or a distribution, such as
+    `{distribution = "exponential", rate = 0.5}`."""
+
+
+class ReplayPacing(_Mode):
+    """Optimisers are not called: their answers are those of a recorded run."""
+
+    mode: Literal["replay"] = "replay"
+    run: Path
+    """Folder of that run."""
+
+
+PacingSettings = InstantPacing | WallPacing | WorkPacing | FixedPacing | ReplayPacing
+
+MODES: dict[str, type[PacingSettings]] = {
+    "instant": InstantPacing,
+    "wall": WallPacing,
+    "work": WorkPacing,
+    "fixed": FixedPacing,
+    "replay": ReplayPacing,
+}
+
+_ARGUMENTS = {"fixed": "seconds", "replay": "run"}
+"""What stands behind the `=` of a mode."""
+
+
+def pacing_settings(mode: str, overrides: Sequence[tuple[list[str], Any]] = ()) -> PacingSettings:
+    """Read a pacing mode.
+
+    Parameters
+    ----------
+    mode
+        `instant`, `wall`, `work`, `fixed=SECONDS` or `replay=RUN_DIR`.
+    overrides
+        Pairs of path and value for its parameters, such as `(["speed"], 2.0)`.
+
+    Raises
+    ------
+    InputError
+        If there is no such mode, or a parameter is wrong.
+    """
+    name, equals, argument = mode.partition("=")
+    if name not in MODES:
+        near = difflib.get_close_matches(name, MODES, n=1)
+        hint = f"did you mean {near[0]}?" if near else f"valid: {', '.join(MODES)}"
+        raise InputError(f"pacing {mode}: no such mode; {hint}")
+    table: Table = {"mode": name}
+    if equals:
+        if name not in _ARGUMENTS:
+            raise InputError(f"pacing {mode}: {name} takes no value after =")
+        table[_ARGUMENTS[name]] = argument
+    table = config.apply_overrides(table, list(overrides))
+    return config.validate(MODES[name], table, f"pacing {name}")

@@ -1,0 +1,202 @@
+"""Worker processes, seen from the simulation: started, asked, listened to, replaced."""
+
+from __future__ import annotations
+
+import json
+import os
+import pickle
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection, wait
+from typing import TYPE_CHECKING, Any
+
+from rmfs.simulation.pacing.errors import OptimiserError
+from rmfs.simulation.pacing.worker import READY, STAMP
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+_ONE_THREAD = (
+    "OMP_NUM_THREADS",
+    "OPENBLAS_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "VECLIB_MAXIMUM_THREADS",
+    "NUMEXPR_NUM_THREADS",
+    "RAYON_NUM_THREADS",
+)
+
+_START = """
+import json, sys
+sys.path[:] = json.loads(sys.argv[2])
+from rmfs.simulation.pacing.worker import main
+main(int(sys.argv[1]), json.loads(sys.argv[3]))
+"""
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What a worker returned.
+
+    Attributes
+    ----------
+    at_s
+        When, on the monotonic clock.
+    failure
+        Why there is no answer, in one line.
+    """
+
+    at_s: float
+    answer: Any
+    failure: str
+
+
+class DeadWorkerError(Exception):
+    """A worker has ended, or its reply cannot be read."""
+
+
+@dataclass(eq=False)
+class Worker:
+    """One process.
+
+    Attributes
+    ----------
+    connection
+        Where it is asked and replies.
+    number
+        The question it works at, or -1.
+    is_ready
+        Whether its modules are imported.
+    """
+
+    modules: list[str]
+    connection: Connection = field(init=False)
+    number: int = -1
+    is_ready: bool = False
+
+    def __post_init__(self) -> None:
+        self.connection, other = Pipe()
+        handle = other.fileno()
+        arguments = [str(handle), json.dumps(sys.path), json.dumps(self.modules)]
+        self._process = subprocess.Popen(
+            [sys.executable, "-c", _START, *arguments],
+            pass_fds=[handle],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            env=os.environ | dict.fromkeys(_ONE_THREAD, "1"),
+        )
+        other.close()
+
+    def await_ready(self) -> None:
+        """Wait until its modules are imported.
+
+        Raises
+        ------
+        OptimiserError
+            If that fails.
+        """
+        if not self.is_ready:
+            try:
+                _, failure = self._read(READY)[1:]
+            except DeadWorkerError:
+                failure = "it ended"
+            if failure:
+                self.stop()
+                raise OptimiserError(f"a worker cannot start: {failure}")
+            self.is_ready = True
+
+    def ask(self, number: int, load: bytes) -> None:
+        """Send a question; `load` holds the function and what it is to solve."""
+        self.number = number
+        # a worker that has just died is found out when its reply is awaited
+        try:
+            self.connection.send_bytes(pickle.dumps((number, load)))
+        except OSError:
+            return
+
+    def reply(self) -> Reply | None:
+        """Return the reply to its question, if it has come.
+
+        Raises
+        ------
+        DeadWorkerError
+            If the worker has ended.
+        """
+        if not self.connection.poll():
+            return None
+        reply = Reply(*self._read(self.number))
+        self.number = -1
+        return reply
+
+    def stop(self) -> None:
+        """End the process, whatever it is doing."""
+        self.connection.close()
+        self._process.kill()
+        self._process.wait()
+
+    def _read(self, expected: int) -> tuple[float, Any, str]:
+        try:
+            message = self.connection.recv_bytes()
+            at_s = STAMP.unpack_from(message)[0]
+            number, answer, failure = pickle.loads(message[STAMP.size :])
+        except (EOFError, OSError):
+            raise DeadWorkerError from None
+        if number != expected:
+            raise DeadWorkerError
+        return at_s, answer, failure
+
+
+class Workers:
+    """A number of workers; one that is lost is replaced.
+
+    Parameters
+    ----------
+    count
+        How many.
+    modules
+        What each imports before it is ready.
+    """
+
+    def __init__(self, count: int, modules: Iterable[str]) -> None:
+        self._modules = list(modules)
+        self._workers = [Worker(self._modules) for _ in range(count)]
+
+    def await_ready(self) -> None:
+        """Wait until all are ready."""
+        for worker in self._workers:
+            worker.await_ready()
+
+    def __iter__(self) -> Any:
+        return iter(self._workers)
+
+    def idle(self) -> Worker | None:
+        """Return a worker that has nothing to do, ready; None if all are busy.
+
+        One that has just been started is waited for.
+        """
+        idle = [worker for worker in self._workers if worker.number < 0]
+        if not idle:
+            return None
+        chosen = next((worker for worker in idle if worker.is_ready), idle[0])
+        chosen.await_ready()
+        return chosen
+
+    def replace(self, worker: Worker) -> None:
+        """Stop a worker and start another."""
+        worker.stop()
+        self._workers[self._workers.index(worker)] = Worker(self._modules)
+
+    def listen(self, seconds: float) -> None:
+        """Sleep until a busy worker replies, or ends, for this time at most."""
+        busy = [worker.connection for worker in self._workers if worker.number >= 0]
+        if busy:
+            wait(busy, seconds)
+        else:
+            time.sleep(seconds)
+
+    def stop(self) -> None:
+        """End all."""
+        for worker in self._workers:
+            worker.stop()

@@ -1,0 +1,35 @@
+"""Solutions of models as answers to the simulation."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.control.asks import Answer
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rmfs.control.asks import Plain
+    from solvers.models.solution import Solution
+
+
+def answer(solution: Solution[Any], values: Mapping[str, Plain] | None) -> Answer:
+    """Tell what a model found.
+
+    Parameters
+    ----------
+    solution
+        As the model returned it.
+    values
+        Its values as plain arrays and numbers; None if it has none.
+    """
+    return Answer(
+        solution=values if solution.found else None,
+        objective=solution.objective,
+        bound=solution.bound,
+        status=solution.status.value,
+        backend=solution.backend,
+        work=solution.work,
+        wall_s=solution.wall_s,
+        build_s=solution.build_s,
+    )
