@@ -63,6 +63,10 @@ soak: setup ## Run the long tests: whole days, comparisons with other systems
 docs: setup ## Draw the pictures of the documentation
 	$(BIN)/rmfs layout show default --out docs/images/default-layout.png
 
+.PHONY: viewer
+viewer: ## Build the page of `rmfs view` from its sources (needs Node; its users do not)
+	cd rmfs/view/web && npm ci && npm run lint && npm run build
+
 .PHONY: lock
 lock: $(VENV)/.installed ## Pin the newest packages that pyproject.toml allows: requirements.txt
 	$(PIP) install $(UV)

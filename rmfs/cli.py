@@ -257,6 +257,29 @@ def report(
         print(file)
 
 
+@app.command()
+def view(
+    runs: Annotated[
+        list[Path],
+        typer.Argument(metavar="RUN [RUN]", help="Run folder with a trace; two side by side."),
+    ],
+    export: Annotated[
+        Path | None,
+        typer.Option(help="Write one HTML file to send instead.", show_default=False),
+    ] = None,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page; 0: any free.")] = 0,
+    open_: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser.")] = True,
+) -> None:
+    """Look at a run in the browser: a replay of its trace."""
+    from rmfs.view.commands import export_runs, serve_runs
+
+    if export is None:
+        serve_runs(runs, port=port, open_browser=open_)
+    else:
+        export_runs(runs, export)
+        print(export)
+
+
 @app.command(hidden=True)
 def docs(
     folder: Annotated[Path, typer.Argument(help="Folder of the pages.")] = Path("docs"),

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rmfs.measure.events import EventLog as EventLog
 from rmfs.measure.folder import RunFolder as RunFolder
 from rmfs.measure.folder import load_run as load_run
 from rmfs.measure.folder import write_run as write_run

@@ -14,18 +14,19 @@ from typing import TYPE_CHECKING, Any
 from rmfs.errors import InputError
 from rmfs.files import replacing
 from rmfs.measure.dictionary import TABLES, names
+from rmfs.measure.trace import read_events, read_layout, read_motion, write_trace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     import pandas as pd
 
+    from rmfs.layout.model import Layout
     from rmfs.measure.checker import CheckReport
     from rmfs.simulation.run import Run
 
 FORMAT = "rmfs-run/1"
 PARAMETERS = "run.json"
-TRACE = "trace.parquet"
 
 
 def write_run(
@@ -67,8 +68,7 @@ def fill(
     inputs: Mapping[str, str] | None = None,
 ) -> None:
     """Write a run's files into an existing folder; parameters as in `write_run`."""
-    import pandas as pd
-
+    from rmfs.measure.events import as_table
     from rmfs.measure.provenance import describe
     from rmfs.measure.tables import all_tables
 
@@ -78,7 +78,8 @@ def fill(
             _write_table(folder / f"{name}.parquet", frame)
         tables["footprint"].to_csv(folder / "footprint.csv", index=False, lineterminator="\n")
         if trace:
-            _write_table(folder / TRACE, pd.DataFrame(run.trace))
+            assert run.events is not None
+            write_trace(folder, run.layout, run.trace, as_table(run.events))
         parameters = plain({"format": FORMAT, **describe(run, report, inputs)})
         text = json.dumps(parameters, indent=2, ensure_ascii=False, allow_nan=False, default=str)
         (folder / PARAMETERS).write_text(text + "\n", encoding="utf-8")
@@ -218,16 +219,24 @@ class RunFolder:
 
     @property
     def trace(self) -> pd.DataFrame:
-        """The trace.
+        """Every piece of motion.
 
         Raises
         ------
         InputError
-            If the run was made without.
+            If the run was made without, or the file is cut off or of another version.
         """
-        if not (self.path / TRACE).is_file():
-            raise InputError(f"{self.path}: holds no trace; run with --trace to get one")
-        return _read_table(self.path / TRACE)
+        return read_motion(self.path)
+
+    @property
+    def events(self) -> pd.DataFrame:
+        """Everything else that happened; raises as `trace` does."""
+        return read_events(self.path)
+
+    @property
+    def layout(self) -> Layout:
+        """The layout of a run with a trace; raises as `trace` does."""
+        return read_layout(self.path)
 
     def table(self, name: str) -> pd.DataFrame:
         """Read one table.

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-    from rmfs.measure import Recorder
+    from rmfs.measure import EventLog, Recorder
     from rmfs.measure.observer import Observer
     from rmfs.simulation.pacing import PacingSettings
     from rmfs.simulation.statistics import DecisionStatistics
@@ -58,6 +58,8 @@ class Run:
         Per decision problem, how often its controller was asked and how long it took.
     recorder
         What was measured.
+    events
+        What happened; only if the run was asked to record its trace.
     """
 
     layout: Layout
@@ -76,6 +78,7 @@ class Run:
     traffic: Traffic
     statistics: list[DecisionStatistics]
     recorder: Recorder
+    events: EventLog | None = None
 
     @cached_property
     def footprint(self) -> pd.Series[Any]:
@@ -128,7 +131,7 @@ def simulate(
         What the thinking of optimisers costs in simulated time: `instant` for nothing, `wall`,
         `work`, `fixed=SECONDS` or `replay=RUN_DIR` (docs: optimisers in the loop).
     trace
-        Whether every piece of motion is kept.
+        Whether every piece of motion and everything that happens is kept.
     progress
         Called with the simulated time so far and in total, about a hundred times.
     allow_not_well_formed
@@ -148,13 +151,14 @@ def simulate(
     pace = pacing_settings(pacing, given["pacing"])
     layouts.refuse(plan, _name(layout), allow_not_well_formed=allow_not_well_formed)
     recorder = measure.Recorder()
+    events = measure.EventLog() if trace else None
     traffic = Traffic(plan, record_trace=trace)
     simulation = Simulation(
         plan,
         work,
         rules,
         seed=seed,
-        observers=[recorder, *observers],
+        observers=[recorder, *([events] if events is not None else []), *observers],
         pacing=pace,
         traffic=traffic,
     )
@@ -178,6 +182,7 @@ def simulate(
         traffic=traffic,
         statistics=list(simulation.phase.statistics.values()),
         recorder=recorder,
+        events=events,
     )
 
 

@@ -323,7 +323,30 @@ class Traffic:
         ValueError
             If the trace is not recorded.
         """
-        return self._core.trace()
+        return self._core.trace(0)[0]
+
+    def trace_after(self, known: int) -> tuple[dict[str, NDArray[Any]], int]:
+        """The trace without what is known of it already: for who follows a run as it goes.
+
+        The motion each robot is in the middle of is among the rows, and comes again as long as it
+        lasts: a row takes the place of what was known of its robot from `t0_us` on.
+
+        Parameters
+        ----------
+        known
+            The number returned by the call before; 0 at first.
+
+        Returns
+        -------
+        tuple
+            The columns of `trace`, and the number to give next time.
+
+        Raises
+        ------
+        ValueError
+            If the trace is not recorded.
+        """
+        return self._core.trace(known)
 
     def counters(self) -> dict[str, float]:
         """`plans`, `plan_failures`, `replans`, `expansions`, `cost_tables`, `planning_s` (wall)."""

@@ -17,6 +17,7 @@ from scripted_trace import Script, grid
 from rmfs.control.asks import Answer, Ask, Call, Outcome
 from rmfs.control.problems import Problem
 from rmfs.layout.model import PickStation, ReplenishmentStation
+from rmfs.measure.events import EventLog
 from rmfs.measure.recorder import Recorder
 
 WARMUP_S, END_S = 100.0, 500.0
@@ -285,4 +286,5 @@ def run():
         wall_s=0.5,
         recorder=recorder,
         trace=FakeTraffic().trace(),
+        events=EventLog(),
     )

@@ -295,12 +295,19 @@ impl Core {
         Ok(result)
     }
 
-    /// The trace up to now, sorted by robot and time.
-    fn trace<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    /// The trace up to now without the rows already known, sorted by robot and time, and the number
+    /// of rows to be known next time.
+    fn trace<'py>(
+        &mut self,
+        py: Python<'py>,
+        known: usize,
+    ) -> PyResult<(Bound<'py, PyDict>, usize)> {
         let headings: Vec<f64> =
             self.fleet.network.headings.iter().map(|&h| to_radians(h)).collect();
-        let rows =
-            self.fleet.trace().ok_or_else(|| PyValueError::new_err("the trace is not recorded"))?;
+        let (rows, count) = self
+            .fleet
+            .trace(known)
+            .ok_or_else(|| PyValueError::new_err("the trace is not recorded"))?;
         let result = PyDict::new(py);
         result.set_item(
             "robot",
@@ -334,7 +341,7 @@ impl Core {
             rows.iter().map(|r| headings[r.heading as usize]).collect::<Vec<_>>().into_pyarray(py),
         )?;
         result.set_item("pod", rows.iter().map(|r| r.pod).collect::<Vec<_>>().into_pyarray(py))?;
-        Ok(result)
+        Ok((result, count))
     }
 
     fn counters(&self) -> HashMap<&'static str, u64> {

@@ -128,11 +128,14 @@ impl Fleet {
         self.planner.expansions = 0;
     }
 
-    /// The trace up to now, by robot and time; the motion each robot is in the middle of is whole.
-    /// `None` if it is not recorded.
-    pub fn trace(&mut self) -> Option<Vec<Row>> {
+    /// The trace up to now without its first `known` rows in the order of recording, by robot and
+    /// time; the motion each robot is in the middle of is whole, and not recorded yet. With it,
+    /// the number of rows recorded. `None` if the trace is not recorded.
+    pub fn trace(&mut self, known: usize) -> Option<(Vec<Row>, usize)> {
         self.settle_all();
-        let mut rows = self.record.trace.clone()?;
+        let recorded = self.record.trace.as_ref()?;
+        let count = recorded.len();
+        let mut rows = recorded[known.min(count)..].to_vec();
         for (id, state) in self.robots.iter().enumerate() {
             let robot = id as u32;
             let kind = &self.kinds[state.kind as usize];
@@ -162,7 +165,7 @@ impl Fleet {
             }
         }
         rows.sort_by_key(|row| (row.robot, row.start));
-        Some(rows)
+        Some((rows, count))
     }
 }
 

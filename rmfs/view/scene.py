@@ -1,0 +1,167 @@
+"""What a page draws: a run's layout, motion and events as a header and flat arrays.
+
+Nothing is sampled: the page has every piece of motion and computes positions by the same
+kinematics as the traffic core.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rmfs.layout import colours
+from rmfs.layout.model import PickStation
+from rmfs.measure.events import KINDS
+from rmfs.measure.trace import TRACE_COLUMNS
+from rmfs.view.container import pack
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+    from rmfs.measure import RunFolder
+
+Arrays = dict[str, "NDArray[Any]"]
+
+EVENT_NUMBERS = ("robot", "pod", "station", "order", "sku", "units", "detail")
+
+
+def of_run(folder: RunFolder) -> bytes:
+    """Pack the scene of a recorded run.
+
+    Raises
+    ------
+    InputError
+        If the run was made without trace, or a file of it is cut off or of another version.
+    """
+    layout, trace, log = folder.layout, folder.trace, folder.events
+    told = folder.parameters
+    events = {name: log[name].to_numpy() for name in ("time_us", *EVENT_NUMBERS[:-1])}
+    events["kind"] = log["kind"].map({name: number for number, name in enumerate(KINDS)}).to_numpy()
+    detail = log["detail"].astype("category").cat
+    events["detail"] = detail.codes.to_numpy()
+    header = head(
+        layout,
+        names={part: told[part]["name"] for part in ("layout", "scenario", "controllers")},
+        seed=told["seed"],
+        warmup_s=told["warmup_s"],
+        end_s=told["warmup_s"] + told["duration_s"],
+        title=folder.path.resolve().name,
+        details=detail.categories.tolist(),
+    )
+    sku_space = folder.table("skus")["space"].to_numpy()
+    return pack(
+        header,
+        {
+            **describe(layout, sku_space),
+            **motion({name: trace[name].to_numpy() for name in TRACE_COLUMNS}, layout.robots),
+            **happenings(events),
+        },
+    )
+
+
+def head(
+    layout: Layout,
+    *,
+    names: Mapping[str, str],
+    seed: int,
+    warmup_s: float,
+    end_s: float,
+    title: str,
+    details: list[str],
+    live: bool = False,
+) -> dict[str, Any]:
+    """Return the header of a scene: what is told in words and single numbers.
+
+    Parameters
+    ----------
+    details
+        The texts that the column `detail` of the events points at.
+    live
+        Whether more is to come.
+    """
+    return {
+        "title": title,
+        "names": dict(names),
+        "seed": seed,
+        "warmup_s": warmup_s,
+        "end_s": end_s,
+        "live": live,
+        "tiers": [asdict(tier) for tier in layout.tiers],
+        "stations": [
+            {
+                "kind": "pick" if isinstance(station, PickStation) else "replenishment",
+                "waypoint": int(station.waypoint),
+                "queue": [int(place) for place in station.queue],
+                "radius_m": station.radius_m,
+                "order_slots": getattr(station, "order_slots", 0),
+                "transfer_s": station.unit_transfer_s
+                if isinstance(station, PickStation)
+                else station.bundle_transfer_s,
+            }
+            for station in layout.stations
+        ],
+        "elevators": [[int(w) for w in elevator.waypoints] for elevator in layout.elevators],
+        "robot_kinds": [asdict(kind) for kind in layout.robot_kinds],
+        "pod_radius_m": layout.pod_radius_m,
+        "details": details,
+        "colours": {
+            name.lower(): value
+            for name, value in vars(colours).items()
+            if isinstance(value, str) and value.startswith("#")
+        },
+    }
+
+
+def describe(layout: Layout, sku_space: NDArray[np.float64]) -> Arrays:
+    """Return the layout as arrays; `sku_space` has the space units of one unit of each SKU."""
+    return {
+        "x_m": layout.x_m.astype(np.float64),
+        "y_m": layout.y_m.astype(np.float64),
+        "tier": layout.tier.astype(np.uint8),
+        "edge_start": layout.edge_start.astype(np.int32),
+        "edge_target": layout.edge_target.astype(np.int32),
+        "is_storage": layout.is_storage.astype(np.uint8),
+        "is_queue": layout.is_queue.astype(np.uint8),
+        "pod_waypoint": layout.pod_waypoint.astype(np.int32),
+        "pod_capacity": layout.pod_capacity.astype(np.float64),
+        "robot_waypoint": layout.robot_waypoint.astype(np.int32),
+        "robot_heading_rad": layout.robot_heading_rad.astype(np.float64),
+        "robot_kind": layout.robot_kind.astype(np.uint8),
+        "sku_space": np.asarray(sku_space, np.float64),
+    }
+
+
+def motion(trace: Mapping[str, NDArray[Any]], robots: int) -> Arrays:
+    """Return a trace, sorted by robot and time, as arrays: rows of robot r begin at start[r].
+
+    A row ends where the robot's next one begins; `motion.end_us` is the end of the last ones.
+    """
+    start = np.searchsorted(trace["robot"], np.arange(robots + 1)).astype(np.int32)
+    end = np.zeros(robots)
+    moved = start[1:] > start[:-1]
+    end[moved] = trace["t1_us"][start[1:][moved] - 1]
+    return {
+        "motion.robot_start": start,
+        "motion.end_us": end,
+        "motion.t0_us": trace["t0_us"].astype(np.float64),
+        "motion.kind": trace["kind"].astype(np.uint8),
+        "motion.from_wp": trace["from_wp"].astype(np.int32),
+        "motion.to_wp": trace["to_wp"].astype(np.int32),
+        "motion.heading0_rad": trace["heading0_rad"].astype(np.float32),
+        "motion.heading1_rad": trace["heading1_rad"].astype(np.float32),
+        "motion.pod": trace["pod"].astype(np.int32),
+    }
+
+
+def happenings(events: Mapping[str, NDArray[Any]]) -> Arrays:
+    """Return events, sorted by time, as arrays; kinds and details are numbers."""
+    return {
+        "events.time_us": events["time_us"].astype(np.float64),
+        "events.kind": events["kind"].astype(np.uint8),
+        **{f"events.{name}": events[name].astype(np.int32) for name in EVENT_NUMBERS},
+    }

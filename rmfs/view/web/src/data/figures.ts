@@ -1,0 +1,53 @@
+/** Courses for the charts: throughput, backlog, robots by task, in bins of equal length. */
+
+import { type Events, Kind } from "./events";
+import { type Robots, TASKS } from "./robots";
+
+export interface Course {
+  /** Length of a bin in microseconds; bin k ends at (k + 1) times that. */
+  bin_us: number;
+  unitsPerHour: number[];
+  backlog: number[];
+  /** Robots with each of the `TASKS` at the end of each bin. */
+  robots: number[][];
+}
+
+const SHORTEST_US = 60e6;
+const BINS = 240;
+
+/** Works out the courses from the start to `end_us`. */
+export function course(events: Events, robots: Robots, end_us: number): Course {
+  const bin_us = Math.max(SHORTEST_US, Math.ceil(end_us / BINS / SHORTEST_US) * SHORTEST_US);
+  const count = Math.max(Math.ceil(end_us / bin_us), 1);
+  const picked = new Array<number>(count).fill(0);
+  const joined = new Array<number>(count).fill(0);
+  for (const { time_us, kind, units } of events.all) {
+    const bin = Math.min(Math.floor(time_us / bin_us), count - 1);
+    if (kind === Kind.UNIT_PICKED) picked[bin] += units;
+    else if (kind === Kind.ORDER_CREATED) joined[bin]++;
+    else if (kind === Kind.ORDER_ASSIGNED) joined[bin]--;
+  }
+  let waiting = 0;
+  return {
+    bin_us,
+    unitsPerHour: picked.map((units, bin) => {
+      const length = Math.min((bin + 1) * bin_us, end_us) - bin * bin_us;
+      return length > 0 ? (units * 3600e6) / length : 0;
+    }),
+    backlog: joined.map((change) => {
+      waiting += change;
+      return waiting;
+    }),
+    robots: byTask(robots, count, bin_us, end_us),
+  };
+}
+
+function byTask(robots: Robots, count: number, bin_us: number, end_us: number): number[][] {
+  const table = TASKS.map(() => new Array<number>(count).fill(0));
+  for (const steps of robots.tasks) {
+    for (let bin = 0; bin < count; bin++) {
+      table[steps.at(Math.min((bin + 1) * bin_us, end_us)).kind][bin]++;
+    }
+  }
+  return table;
+}

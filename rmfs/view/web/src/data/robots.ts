@@ -1,0 +1,86 @@
+/** What robots are doing and why: task, state, load and delay. */
+
+import { type Events, Kind } from "./events";
+import type { Layout } from "./layout";
+import { type Motion, Piece, type Pose } from "./motion";
+import { Steps } from "./steps";
+
+export const TASKS = ["pick", "replenish", "park", "reposition", "rest"] as const;
+export const STATES = [
+  "driving",
+  "turning",
+  "lifting, setting down",
+  "in an elevator",
+  "queueing",
+  "waiting",
+  "served",
+  "idle",
+] as const;
+
+export interface Task {
+  /** Index into `TASKS`. */
+  kind: number;
+  station: number;
+}
+
+const RESTING: Task = { kind: TASKS.indexOf("rest"), station: -1 };
+const [DRIVING, TURNING, TRANSFER, RIDING, QUEUEING, WAITING, SERVED, IDLE] = STATES.keys();
+
+export class Robots {
+  readonly tasks: Steps<Task>[];
+  /** The station that serves the robot, or -1. */
+  readonly served: Steps<number>[];
+
+  constructor(
+    private readonly layout: Layout,
+    private readonly motion: Motion,
+    events: Events,
+  ) {
+    const robots = Array.from(layout.robotWaypoint);
+    this.tasks = robots.map(() => new Steps<Task>(RESTING));
+    this.served = robots.map(() => new Steps<number>(-1));
+    events.onEach(({ kind, robot, time_us, station, detail }) => {
+      if (kind === Kind.TASK) {
+        const task = TASKS.indexOf(detail as (typeof TASKS)[number]);
+        this.tasks[robot].push(time_us, { kind: task, station });
+      } else if (kind === Kind.VISIT_STARTED) this.served[robot].push(time_us, station);
+      else if (kind === Kind.VISIT_ENDED) this.served[robot].push(time_us, -1);
+    });
+  }
+
+  /** Returns an index into `STATES`. */
+  state(robot: number, time_us: number, pose: Pose): number {
+    if (pose.kind === Piece.RUN) return DRIVING;
+    if (pose.kind === Piece.TURN) return TURNING;
+    if (pose.kind === Piece.RIDE) return RIDING;
+    if (pose.kind !== Piece.HOLD) return TRANSFER;
+    if (this.served[robot].at(time_us) >= 0) return SERVED;
+    if (this.isIdle(robot, time_us)) return IDLE;
+    const track = this.motion.tracks[robot];
+    const queueing = track.count > 0 && this.layout.isQueue[track.from[pose.row]] === 1;
+    return queueing ? QUEUEING : WAITING;
+  }
+
+  /** Returns whether a robot has no task but to rest. */
+  isIdle(robot: number, time_us: number): boolean {
+    return this.tasks[robot].at(time_us).kind === RESTING.kind;
+  }
+
+  /** Returns for how long (s) the robot has stood with a way to go since its task began. */
+  delay_s(robot: number, time_us: number): number {
+    const since = this.tasks[robot].since(time_us);
+    if (since === undefined || this.isIdle(robot, time_us)) return 0;
+    const track = this.motion.tracks[robot];
+    let stood = 0;
+    for (let row = track.rowAt(time_us); row >= 0 && track.endOf(row) > since; row--) {
+      if (track.kind[row] !== Piece.HOLD) continue;
+      const begin = Math.max(track.start[row], since);
+      const end = Math.min(track.endOf(row), time_us);
+      // at a station a robot is served, before that it waits
+      const visit = this.served[robot];
+      const reached = visit.at(end - 1) >= 0 ? (visit.since(end - 1) ?? end) : end;
+      stood += Math.max(Math.min(end, reached) - begin, 0);
+    }
+    return stood / 1e6;
+  }
+}

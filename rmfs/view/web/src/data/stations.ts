@@ -1,0 +1,56 @@
+/** Stations over time: open orders, units handled, visits, whether they are switched on. */
+
+import { type Events, Kind } from "./events";
+import type { Layout } from "./layout";
+import { Steps } from "./steps";
+
+export interface StationFigures {
+  openOrders: number;
+  /** Units picked, or bundles stored, per hour within the last hour. */
+  perHour: number;
+  idleShare: number;
+  active: boolean;
+}
+
+const HOUR_US = 3600e6;
+
+export class Stations {
+  private readonly open: Steps<number>[];
+  private readonly handled: Steps<number>[];
+  private readonly active: Steps<boolean>[];
+
+  constructor(
+    private readonly layout: Layout,
+    events: Events,
+  ) {
+    const stations = layout.header.stations;
+    this.open = stations.map(() => new Steps(0));
+    this.handled = stations.map(() => new Steps(0));
+    this.active = stations.map(() => new Steps(true));
+    events.onEach(({ kind, station, units, time_us }) => {
+      if (kind === Kind.ORDER_ASSIGNED) this.change(this.open[station], time_us, 1);
+      else if (kind === Kind.ORDER_COMPLETED) this.change(this.open[station], time_us, -1);
+      else if (kind === Kind.UNIT_PICKED || kind === Kind.BUNDLE_STORED) {
+        this.change(this.handled[station], time_us, 1);
+      } else if (kind === Kind.STATION_SWITCHED) this.active[station].push(time_us, units > 0);
+    });
+  }
+
+  /** Returns the figures of a station at a time; rates look back an hour, or to the start. */
+  figures(station: number, time_us: number): StationFigures {
+    const handled = this.handled[station];
+    const window_us = Math.max(Math.min(HOUR_US, time_us), 1);
+    const count = handled.at(time_us) - handled.at(time_us - window_us);
+    const busy_us = count * this.layout.header.stations[station].transfer_s * 1e6;
+    return {
+      openOrders: this.open[station].at(time_us),
+      perHour: (count * HOUR_US) / window_us,
+      idleShare: Math.max(1 - busy_us / window_us, 0),
+      active: this.active[station].at(time_us),
+    };
+  }
+
+  private change(steps: Steps<number>, time_us: number, by: number): void {
+    steps.push(time_us, steps.last + by);
+  }
+}

@@ -1,0 +1,158 @@
+/** What never moves: floors, roads, storage places, queue zones, stations and elevators. */
+
+import {
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  CylinderGeometry,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  PlaneGeometry,
+} from "three";
+import type { Layout } from "../data/layout";
+import { Instances } from "./instances";
+import { label } from "./labels";
+import { GROUND, type Theme } from "./palette";
+import type { Placement } from "./placement";
+
+const FLAT = { x: 1, y: 1, z: 1 };
+
+/** Draws the floors; they are made anew when the theme changes. */
+export class Floor {
+  readonly group = new Group();
+  /** The stations' bodies, in the order of the stations. */
+  readonly stations: Mesh[] = [];
+  private readonly tiers: Group[];
+  private readonly zones: Instances[] = [];
+
+  constructor(
+    private readonly layout: Layout,
+    private readonly theme: Theme,
+  ) {
+    this.tiers = layout.header.tiers.map(() => new Group());
+    this.group.add(...this.tiers);
+    this.tiers.forEach((tier, number) => {
+      tier.add(this.ground(number), this.roads(number));
+      const storage = this.cells(number, layout.isStorage, this.colour("storage"), 0.8, 0.25);
+      const zone = this.cells(number, layout.isQueue, this.colour("queue_zone"), 1, 0.25);
+      this.zones.push(zone);
+      tier.add(storage.mesh, zone.mesh);
+    });
+    this.addStations();
+    this.addElevators();
+  }
+
+  /** Puts the tiers where they are to be drawn. */
+  arrange(placement: Placement): void {
+    this.tiers.forEach((tier, number) => {
+      tier.position.set(placement.x[number], 0, placement.z[number]);
+      tier.visible = placement.shown[number];
+    });
+  }
+
+  showZones(shown: boolean): void {
+    for (const zone of this.zones) zone.mesh.visible = shown;
+  }
+
+  private colour(name: string): string {
+    return this.layout.header.colours[name];
+  }
+
+  private ground(tier: number): Mesh {
+    const { length_m, width_m } = this.layout.header.tiers[tier];
+    const material = new MeshBasicMaterial({ color: GROUND[this.theme].floor });
+    if (tier > 0) Object.assign(material, { transparent: true, opacity: 0.6, depthWrite: false });
+    const ground = new Mesh(new PlaneGeometry(length_m + 1, width_m + 1), material);
+    ground.position.set(length_m / 2, width_m / 2, -0.03);
+    return ground;
+  }
+
+  private roads(tier: number): LineSegments {
+    const { x, y, edgeStart, edgeTarget, isStorage } = this.layout;
+    const points: number[] = [];
+    for (let v = 0; v < x.length; v++) {
+      if (this.layout.tier[v] !== tier || isStorage[v]) continue;
+      for (let e = edgeStart[v]; e < edgeStart[v + 1]; e++) {
+        const w = edgeTarget[e];
+        if (!isStorage[w]) points.push(x[v], y[v], 0, x[w], y[w], 0);
+      }
+    }
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(points), 3));
+    return new LineSegments(geometry, new LineBasicMaterial({ color: GROUND[this.theme].line }));
+  }
+
+  private cells(
+    tier: number,
+    wanted: Uint8Array,
+    colour: string,
+    side: number,
+    strength: number,
+  ): Instances {
+    const { x, y, pitch_m } = this.layout;
+    const here: number[] = [];
+    for (let v = 0; v < x.length; v++) {
+      if (wanted[v] && this.layout.tier[v] === tier) here.push(v);
+    }
+    const cells = new Instances(
+      new PlaneGeometry(side * pitch_m, side * pitch_m),
+      new MeshBasicMaterial(),
+      here.length,
+    );
+    const shade = new Color(GROUND[this.theme].floor).lerp(new Color(colour), strength);
+    here.forEach((v, i) => {
+      cells.place(i, { x: x[v], y: y[v], z: -0.01 }, FLAT);
+      cells.paint(i, shade);
+    });
+    return cells;
+  }
+
+  private addStations(): void {
+    const { x, y, tier, header } = this.layout;
+    header.stations.forEach((station, number) => {
+      const { kind, waypoint, radius_m } = station;
+      const colour = this.colour(kind === "pick" ? "pick_station" : "replenishment_station");
+      const body = new Mesh(
+        new CylinderGeometry(radius_m * 1.6, radius_m * 1.6, 0.06, 24).rotateX(Math.PI / 2),
+        new MeshLambertMaterial({ color: colour }),
+      );
+      body.position.set(x[waypoint], y[waypoint], 0.02);
+      this.stations.push(body);
+      const text = label(`${kind === "pick" ? "P" : "R"}${number}`, GROUND[this.theme].text, 1.1);
+      const { length_m, width_m } = header.tiers[tier[waypoint]];
+      // beside the station, on the side that is nearer to the wall
+      const [dx, dy] = outward(x[waypoint], y[waypoint], length_m, width_m);
+      text.position.set(x[waypoint] + 1.3 * dx, y[waypoint] + 1.3 * dy, 0.6);
+      this.tiers[tier[waypoint]].add(body, text);
+    });
+  }
+
+  private addElevators(): void {
+    const { x, y, tier, pitch_m, header } = this.layout;
+    const side = 0.9 * pitch_m;
+    for (const waypoint of header.elevators.flat()) {
+      const body = new Mesh(
+        new BoxGeometry(side, side, 0.05),
+        new MeshLambertMaterial({ color: this.colour("elevator") }),
+      );
+      body.position.set(x[waypoint], y[waypoint], 0);
+      this.tiers[tier[waypoint]].add(body);
+    }
+  }
+}
+
+function outward(x: number, y: number, length_m: number, width_m: number): [number, number] {
+  const walls: [number, [number, number]][] = [
+    [x, [-1, 0]],
+    [length_m - x, [1, 0]],
+    [y, [0, -1]],
+    [width_m - y, [0, 1]],
+  ];
+  walls.sort((a, b) => a[0] - b[0]);
+  return walls[0][1];
+}

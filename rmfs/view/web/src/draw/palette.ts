@@ -1,0 +1,74 @@
+/** Colours: those of the layout pictures, Okabe and Ito's for kinds, magma for amounts. */
+
+import { Color } from "three";
+import { STATES, TASKS } from "../data/robots";
+
+export type Theme = "light" | "dark";
+
+/** Kinds told apart by hue: the shades of Okabe and Ito, for all common kinds of colour vision. */
+export const TASK_COLOURS = ["#D55E00", "#F0E442", "#56B4E9", "#CC79A7", "#999999"];
+export const STATE_COLOURS = [
+  "#009E73",
+  "#56B4E9",
+  "#CC79A7",
+  "#7B3294",
+  "#E69F00",
+  "#D55E00",
+  "#F0E442",
+  "#999999",
+];
+export const LOAD_COLOURS = ["#009E73", "#0072B2"];
+export const LOADS = ["without pod", "with pod"];
+
+export const GROUND: Record<Theme, { back: string; floor: string; line: string; text: string }> = {
+  light: { back: "#F4F5F7", floor: "#FFFFFF", line: "#D0D0D0", text: "#1B1F24" },
+  dark: { back: "#101418", floor: "#1B2128", line: "#3A434D", text: "#E6EAEE" },
+};
+
+const MAGMA = [
+  "#000004",
+  "#180F3D",
+  "#440F76",
+  "#721F81",
+  "#9E2F7F",
+  "#CD4071",
+  "#F1605D",
+  "#FD9668",
+  "#FECA8D",
+  "#FCFDBF",
+].map((hex) => new Color(hex));
+
+/**
+ * Writes the colour of a share, 0 to 1, into `into`: a part of magma that stands out from the floor,
+ * the stronger the more.
+ */
+export function amount(share: number, theme: Theme, into: Color): Color {
+  const clipped = Math.min(Math.max(share, 0), 1);
+  const along = theme === "light" ? 0.92 - 0.82 * clipped : 0.22 + 0.75 * clipped;
+  const place = along * (MAGMA.length - 1);
+  const left = Math.min(Math.floor(place), MAGMA.length - 2);
+  return into.copy(MAGMA[left]).lerp(MAGMA[left + 1], place - left);
+}
+
+/** Returns the place of a value between two others on a logarithmic scale, 0 to 1. */
+export function logShare(value: number, least: number, most: number): number {
+  if (!(value > 0) || !(most > least)) return value > 0 ? 1 : 0;
+  return Math.log(value / least) / Math.log(most / least);
+}
+
+export interface Entry {
+  colour: string;
+  label: string;
+}
+
+/** Returns what the colours of robots mean. */
+export function robotEntries(mode: string): Entry[] {
+  if (mode === "task") return entries(TASKS, TASK_COLOURS);
+  if (mode === "state") return entries(STATES, STATE_COLOURS);
+  if (mode === "load") return entries(LOADS, LOAD_COLOURS);
+  return [];
+}
+
+function entries(labels: readonly string[], colours: string[]): Entry[] {
+  return labels.map((label, i) => ({ label, colour: colours[i] }));
+}

@@ -1,0 +1,71 @@
+/** The ways robots are about to drive: up to their next stop with a purpose. */
+
+import {
+  BufferAttribute,
+  BufferGeometry,
+  DynamicDrawUsage,
+  LineBasicMaterial,
+  LineSegments,
+} from "three";
+import { Piece, type Pose } from "../data/motion";
+import type { Run } from "../data/run";
+import type { Placement } from "./placement";
+
+const MOST_RUNS = 40;
+const MOST_SEGMENTS = 40_000;
+
+export class Paths {
+  readonly lines: LineSegments;
+  private readonly points = new Float32Array(6 * MOST_SEGMENTS);
+  private readonly attribute = new BufferAttribute(this.points, 3);
+  private used = 0;
+
+  constructor(
+    private readonly run: Run,
+    colour: string,
+  ) {
+    this.attribute.setUsage(DynamicDrawUsage);
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", this.attribute);
+    this.lines = new LineSegments(geometry, new LineBasicMaterial({ color: colour }));
+    this.lines.frustumCulled = false;
+  }
+
+  clear(): void {
+    this.used = 0;
+  }
+
+  /** Adds the way of a robot from where it is to its next lift, set-down or station. */
+  add(robot: number, pose: Pose, time_us: number, placement: Placement): void {
+    const track = this.run.motion.tracks[robot];
+    const { x, y, tier } = this.run.layout;
+    const height = placement.mode === "2d" ? 0.9 : 0.1;
+    const served = this.run.robots.served[robot];
+    let here = [pose.x, pose.y];
+    let runs = 0;
+    for (let row = pose.row; row < track.count && runs < MOST_RUNS; row++) {
+      const kind = track.kind[row];
+      const transfer = kind === Piece.LIFT || kind === Piece.SET_DOWN;
+      if (row > pose.row && (transfer || served.at(track.start[row]) >= 0)) break;
+      if (kind !== Piece.RUN) continue;
+      const to = track.to[row];
+      const floor = tier[to];
+      if (placement.shown[floor] && (row > pose.row || time_us < track.endOf(row))) {
+        const z = placement.z[floor] + height;
+        this.segment(here[0] + placement.x[floor], here[1], x[to] + placement.x[floor], y[to], z);
+      }
+      here = [x[to], y[to]];
+      runs++;
+    }
+  }
+
+  finish(): void {
+    this.lines.geometry.setDrawRange(0, 2 * this.used);
+    this.attribute.needsUpdate = true;
+  }
+
+  private segment(x0: number, y0: number, x1: number, y1: number, z: number): void {
+    if (this.used >= MOST_SEGMENTS) return;
+    this.points.set([x0, y0, z, x1, y1, z], 6 * this.used++);
+  }
+}

@@ -1,0 +1,162 @@
+/** The canvas, the cameras and the light: a plan seen from above, or a view in space. */
+
+import {
+  AmbientLight,
+  type Camera,
+  Color,
+  DirectionalLight,
+  MOUSE,
+  OrthographicCamera,
+  PerspectiveCamera,
+  Raycaster,
+  Scene,
+  TOUCH,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { GROUND, type Theme } from "./palette";
+import type { Placement } from "./placement";
+
+const FAR_M = 2000;
+const SHARPEST = 2;
+
+/** Position, target and zoom of a camera, as numbers for a link. */
+export type CameraState = number[];
+
+export class Stage {
+  readonly scene = new Scene();
+  readonly renderer: WebGLRenderer;
+  private readonly plan = new OrthographicCamera(-1, 1, 1, -1, 0.1, FAR_M);
+  private readonly space = new PerspectiveCamera(45, 1, 0.5, FAR_M);
+  private readonly planControls: OrbitControls;
+  private readonly spaceControls: OrbitControls;
+  private placement: Placement | undefined;
+  private width = 1;
+  private height = 1;
+
+  /** `changed` is called when the user moves the camera. */
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    changed: () => void,
+  ) {
+    this.renderer = new WebGLRenderer({
+      canvas,
+      antialias: true,
+      powerPreference: "high-performance",
+    });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, SHARPEST));
+    const sun = new DirectionalLight("#ffffff", 1.6);
+    sun.position.set(-30, -60, 100);
+    this.scene.add(new AmbientLight("#ffffff", 1.9), sun);
+    this.space.up.set(0, 0, 1);
+    this.planControls = new OrbitControls(this.plan, canvas);
+    this.planControls.enableRotate = false;
+    this.planControls.mouseButtons = { LEFT: MOUSE.PAN, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
+    this.planControls.touches = { ONE: TOUCH.PAN, TWO: TOUCH.DOLLY_PAN };
+    this.spaceControls = new OrbitControls(this.space, canvas);
+    this.spaceControls.maxPolarAngle = 0.49 * Math.PI;
+    for (const controls of [this.planControls, this.spaceControls]) {
+      controls.enableDamping = false;
+      controls.zoomToCursor = true;
+      controls.addEventListener("change", changed);
+    }
+  }
+
+  private get flat(): boolean {
+    return this.placement?.mode !== "3d";
+  }
+
+  private get camera(): Camera {
+    return this.flat ? this.plan : this.space;
+  }
+
+  private get controls(): OrbitControls {
+    return this.flat ? this.planControls : this.spaceControls;
+  }
+
+  setTheme(theme: Theme): void {
+    this.scene.background = new Color(GROUND[theme].back);
+  }
+
+  /** Shows the tiers as placed, from a point that overlooks all of them. */
+  overlook(placement: Placement): void {
+    this.placement = placement;
+    this.planControls.enabled = this.flat;
+    this.spaceControls.enabled = !this.flat;
+    const { x, y, z, width, depth } = placement.box;
+    if (this.flat) {
+      this.plan.zoom = 1;
+      this.plan.position.set(x, y, FAR_M / 2);
+      this.planControls.target.set(x, y, 0);
+    } else {
+      const away = 0.8 * Math.max(width / Math.max(this.width / this.height, 1), depth) + 2 * z;
+      this.space.position.set(x, y - away, z + 0.85 * away);
+      this.spaceControls.target.set(x, y, z);
+    }
+    this.resize(this.width, this.height);
+    this.controls.update();
+  }
+
+  resize(width: number, height: number): void {
+    if (width < 2 || height < 2) return;
+    this.width = width;
+    this.height = height;
+    this.renderer.setSize(width, height, false);
+    this.space.aspect = width / height;
+    this.space.updateProjectionMatrix();
+    const box = this.placement?.box ?? { width: 1, depth: 1 };
+    const half = 0.54 * Math.max(box.depth, (box.width * height) / width) + 1;
+    Object.assign(this.plan, {
+      top: half,
+      bottom: -half,
+      left: (-half * width) / height,
+      right: (half * width) / height,
+    });
+    this.plan.updateProjectionMatrix();
+  }
+
+  /** Moves the camera so that it looks at a point as it looked at its target before. */
+  follow(x: number, y: number, z: number): void {
+    const shift = new Vector3(x, y, z).sub(this.controls.target);
+    if (this.flat) shift.z = 0;
+    this.controls.target.add(shift);
+    this.camera.position.add(shift);
+    this.camera.updateMatrixWorld();
+  }
+
+  get cameraState(): CameraState {
+    const { target } = this.controls;
+    const state = [...this.camera.position.toArray(), ...target.toArray()];
+    return this.flat ? [...state, this.plan.zoom] : state;
+  }
+
+  set cameraState(state: CameraState) {
+    const [px, py, pz, tx, ty, tz, zoom] = state;
+    this.camera.position.set(px, py, pz);
+    this.controls.target.set(tx, ty, tz);
+    if (this.flat && zoom > 0) {
+      this.plan.zoom = zoom;
+      this.plan.updateProjectionMatrix();
+    }
+    this.controls.update();
+  }
+
+  /** Returns a ray through a point of the page. */
+  ray(clientX: number, clientY: number): Raycaster {
+    const frame = this.canvas.getBoundingClientRect();
+    const point = new Vector2(
+      (2 * (clientX - frame.left)) / frame.width - 1,
+      1 - (2 * (clientY - frame.top)) / frame.height,
+    );
+    const caster = new Raycaster();
+    this.camera.updateMatrixWorld();
+    caster.setFromCamera(point, this.camera);
+    return caster;
+  }
+
+  render(): void {
+    this.renderer.render(this.scene, this.camera);
+  }
+}

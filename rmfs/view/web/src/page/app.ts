@@ -1,0 +1,196 @@
+/** The page: panes, controls and figures around one state and one clock. */
+
+import type { Run } from "../data/run";
+import { type Range, rangeOf } from "../draw/heat";
+import { charts } from "./charts";
+import { h } from "./dom";
+import { keyList, listen } from "./keys";
+import { legend } from "./legend";
+import { fromFragment, toFragment } from "./link";
+import { Pane } from "./pane";
+import { nextEvent, panel } from "./panel";
+import { Store, type ViewState } from "./state";
+import { timeline, toggle } from "./timeline";
+import { toolbar } from "./toolbar";
+
+/** Figures beside the picture are worked out anew after so much wall time. */
+const FIGURES_MS = 250;
+const HEAT_PARTS: (keyof ViewState)[] = ["heat", "from_s", "to_s", "theme", "mode", "tier"];
+
+export class App {
+  readonly store: Store;
+  readonly panes: Pane[];
+  /** Frames drawn so far. */
+  frames = 0;
+  private range: Range = { least: 1, most: 1 };
+  private dirty = true;
+  private heatStale = true;
+  private figures_ms = Number.NEGATIVE_INFINITY;
+  private last_ms = performance.now();
+  private readonly side: { update(): void }[];
+  private readonly notice = h("div", { className: "notice", role: "status" });
+
+  constructor(readonly runs: Run[]) {
+    const { state, cameras } = fromFragment(location.hash, this.end_s);
+    state.selection = this.existing(state.selection);
+    this.store = new Store(state);
+    const captions = runs.map(({ header }, n) => {
+      const { layout, scenario, controllers } = header.names;
+      const letter = runs.length > 1 ? `${"AB"[n] ?? n}: ` : "";
+      return `${letter}${header.title} · ${layout}, ${scenario}, ${controllers}, seed ${header.seed}`;
+    });
+    const changed = () => {
+      this.dirty = true;
+    };
+    this.panes = runs.map((run, n) => new Pane(run, n, this.store, captions[n], changed));
+    this.side = this.build();
+    document.title = `rmfs · ${runs.map(({ header }) => header.title).join(" | ")}`;
+    document.documentElement.dataset.theme = state.theme;
+    this.panes.forEach((pane, n) => {
+      if (cameras[n] !== undefined) pane.stage.cameraState = cameras[n];
+    });
+    this.store.listen((names) => this.react(names));
+    requestAnimationFrame((now_ms) => this.frame(now_ms));
+  }
+
+  /** How far the runs are known, in seconds. */
+  get end_s(): number {
+    return Math.max(...this.runs.map(({ known_us }) => known_us)) / 1e6;
+  }
+
+  /** Takes note that a run has grown. */
+  grown(): void {
+    this.dirty = true;
+  }
+
+  /** Shows a short message for some seconds. */
+  say(text: string): void {
+    this.notice.textContent = text;
+    this.notice.classList.add("shown");
+    setTimeout(() => this.notice.classList.remove("shown"), 4000);
+  }
+
+  /** Draws at once, whatever is due; returns the pictures of all panes side by side. */
+  picture(): string {
+    this.draw(performance.now());
+    const canvases = this.panes.map(({ stage }) => stage.canvas);
+    const width = canvases.reduce((sum, canvas) => sum + canvas.width, 0);
+    const sheet = h("canvas", { width, height: Math.max(...canvases.map(({ height }) => height)) });
+    const pen = sheet.getContext("2d");
+    let left = 0;
+    this.panes.forEach(({ stage }) => {
+      stage.render();
+      pen?.drawImage(stage.canvas, left, 0);
+      left += stage.canvas.width;
+    });
+    return sheet.toDataURL("image/png");
+  }
+
+  /** Returns a link that restores the view. */
+  link(): string {
+    const cameras = this.panes.map(({ stage }) => stage.cameraState);
+    return location.href.replace(/#.*$/, "") + toFragment(this.store.state, cameras);
+  }
+
+  private existing(selection: ViewState["selection"]): ViewState["selection"] {
+    if (selection === null) return null;
+    const layout = this.runs[selection.run]?.layout;
+    const counts = {
+      robot: layout?.robotWaypoint.length,
+      pod: layout?.podWaypoint.length,
+      station: layout?.header.stations.length,
+    };
+    return selection.index < (counts[selection.what] ?? 0) ? selection : null;
+  }
+
+  private build(): { update(): void }[] {
+    const { store, panes, runs } = this;
+    const tiers = Math.max(...runs.map(({ header }) => header.tiers.length));
+    const end_s = () => this.end_s;
+    const keys = keyList();
+    const commands = {
+      toggle: () => toggle(store, this.end_s),
+      screenshot: () => this.savePicture(),
+      copyLink: () => this.copyLink(),
+      fit: () => this.fit(),
+      next: () => nextEvent(store, panes),
+      help: () => keys.showModal(),
+    };
+    listen(store, commands, tiers, end_s);
+    const details = panel(store, panes);
+    const course = charts(store, runs, end_s);
+    const colours = legend(store, runs[0].header.colours, () => this.range);
+    document.body.replaceChildren(
+      toolbar(store, tiers, commands),
+      h("main", {}, ...panes.map(({ root }) => root)),
+      h("aside", {}, details.root, course.root, colours.root),
+      timeline(store, runs[0].header.warmup_s, end_s),
+      this.notice,
+      keys,
+    );
+    return [details, course, colours];
+  }
+
+  private react(names: ReadonlySet<keyof ViewState>): void {
+    this.dirty = true;
+    if (names.has("theme")) document.documentElement.dataset.theme = this.store.state.theme;
+    if (HEAT_PARTS.some((name) => names.has(name))) this.heatStale = true;
+    const seeking = names.has("time_s") && !this.store.state.playing;
+    if (names.has("selection") || seeking) this.figures_ms = Number.NEGATIVE_INFINITY;
+    if (seeking) for (const pane of this.panes) pane.repaint();
+  }
+
+  private frame(now_ms: number): void {
+    const passed_s = Math.min((now_ms - this.last_ms) / 1000, 0.25);
+    this.last_ms = now_ms;
+    const { state } = this.store;
+    if (state.playing) {
+      const time_s = Math.min(state.time_s + passed_s * state.speed, this.end_s);
+      this.store.set({ time_s, playing: time_s < this.end_s || this.runs[0].header.live });
+    }
+    if (this.dirty) this.draw(now_ms);
+    requestAnimationFrame((next_ms) => this.frame(next_ms));
+  }
+
+  private draw(now_ms: number): void {
+    this.dirty = false;
+    if (this.heatStale) this.countHeat();
+    for (const pane of this.panes) pane.frame(now_ms);
+    this.frames++;
+    if (now_ms - this.figures_ms > FIGURES_MS) {
+      this.figures_ms = now_ms;
+      for (const part of this.side) part.update();
+    }
+  }
+
+  private countHeat(): void {
+    this.heatStale = false;
+    const { heat, from_s, to_s } = this.store.state;
+    if (heat !== "off") {
+      for (const pane of this.panes) {
+        pane.counts = pane.run.passages.count(heat, from_s * 1e6, to_s * 1e6);
+      }
+      this.range = rangeOf(this.panes.flatMap(({ counts }) => (counts ? [counts] : [])));
+    }
+    for (const pane of this.panes) pane.showHeat(this.range);
+  }
+
+  private fit(): void {
+    for (const pane of this.panes) pane.stage.overlook(pane.placement);
+  }
+
+  private savePicture(): void {
+    const name = `${this.runs[0].header.title}-${Math.round(this.store.state.time_s)}s.png`;
+    h("a", { href: this.picture(), download: name }).click();
+    this.say(`saved as ${name}`);
+  }
+
+  private copyLink(): void {
+    const link = this.link();
+    history.replaceState(null, "", link);
+    navigator.clipboard?.writeText(link).then(
+      () => this.say("link copied"),
+      () => this.say("the link is in the address bar"),
+    );
+  }
+}

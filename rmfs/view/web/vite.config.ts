@@ -1,0 +1,51 @@
+import { createHash } from "node:crypto";
+import { readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { defineConfig, type Plugin } from "vite";
+
+const OUT = process.env.RMFS_VIEWER_OUT ?? "../static";
+
+/** What the build is made from: these and everything below src. */
+const SOURCES = [
+  "index.html",
+  "package-lock.json",
+  "package.json",
+  "tsconfig.json",
+  "vite.config.ts",
+];
+
+/** Writes the hash of the sources beside the build, so that a test tells whether they agree. */
+function recorded(): Plugin {
+  return {
+    name: "recorded",
+    closeBundle() {
+      const below = readdirSync("src", { recursive: true, withFileTypes: true });
+      const files = below
+        .filter((entry) => entry.isFile())
+        .map((entry) => join(entry.parentPath, entry.name).replaceAll("\\", "/"));
+      const hash = createHash("sha256");
+      for (const name of [...SOURCES, ...files].sort()) {
+        hash.update(`${name}\n`).update(readFileSync(name)).update("\n");
+      }
+      const text = JSON.stringify({ sources_sha256: hash.digest("hex") }, null, 2);
+      writeFileSync(join(OUT, "build.json"), `${text}\n`);
+    },
+  };
+}
+
+// Fixed names and one file each: the server knows what it serves, and the export can inline it.
+export default defineConfig({
+  base: "./",
+  plugins: [recorded()],
+  build: {
+    outDir: OUT,
+    emptyOutDir: true,
+    target: "es2022",
+    modulePreload: false,
+    cssCodeSplit: false,
+    chunkSizeWarningLimit: 1500,
+    rollupOptions: {
+      output: { entryFileNames: "app.js", assetFileNames: "app[extname]", codeSplitting: false },
+    },
+  },
+});

@@ -1,0 +1,40 @@
+"""The tracked build is what its sources make."""
+
+import hashlib
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from rmfs.view import pages
+
+WEB = Path(pages.__file__).parent / "web"
+SOURCES = ("index.html", "package-lock.json", "package.json", "tsconfig.json", "vite.config.ts")
+BUILT = ("index.html", "app.js", "app.css", "build.json")
+
+
+def test_the_build_was_made_from_these_sources() -> None:
+    files = [*SOURCES, *(path.relative_to(WEB).as_posix() for path in (WEB / "src").rglob("*.*"))]
+    state = hashlib.sha256()
+    for name in sorted(files):
+        state.update(f"{name}\n".encode() + (WEB / name).read_bytes() + b"\n")
+    told = json.loads(pages.content("build.json"))
+    assert told == {"sources_sha256": state.hexdigest()}, "run `make viewer`"
+
+
+def test_everything_served_is_built() -> None:
+    assert {path.name for path in pages.STATIC.iterdir()} == set(BUILT)
+    assert {name for name, _ in pages.FILES.values()} == set(BUILT) - {"build.json"}
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("npm") is None, reason="npm is not installed")
+def test_building_again_gives_the_same(tmp_path: Path) -> None:
+    copy = tmp_path / "web"
+    shutil.copytree(WEB, copy, ignore=shutil.ignore_patterns("node_modules"))
+    for command in (["npm", "ci"], ["npm", "run", "lint"], ["npm", "run", "build"]):
+        subprocess.run(command, cwd=copy, check=True, capture_output=True)
+    for name in BUILT:
+        assert (tmp_path / "static" / name).read_bytes() == pages.content(name), name
