@@ -160,6 +160,14 @@ def run(
         ),
     ] = "instant",
     trace: Annotated[bool, typer.Option("--trace", help="Write the trace of all motion.")] = False,
+    record: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder for the orders and bundles that come, to be replayed (orders.csv, "
+            "bundles.csv).",
+            show_default=False,
+        ),
+    ] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Prove the motion safe; fills `collisions`.")
     ] = False,
@@ -173,10 +181,12 @@ def run(
     """Simulate a warehouse and write a run folder."""
     from rmfs.config import parse_override
     from rmfs.measure.folder import fill, reserved
+    from rmfs.scenario import StreamRecorder, write_streams
 
     overrides = [parse_override(text) for text in set_ or []]
     inputs = {"layout": layout, "scenario": scenario, "controllers": controllers}
     target = out or Path("results") / default_name(inputs, seed)
+    streams = None if record is None else StreamRecorder()
     with reserved(target) as folder:
         done = simulated(
             inputs,
@@ -184,8 +194,12 @@ def run(
             overrides=overrides,
             pacing=pacing,
             trace=trace or check,
+            streams=streams,
             allow_not_well_formed=allow_not_well_formed,
         )
+        if record is not None and streams is not None:
+            step("writing the streams")
+            write_streams(streams, done.world.skus, record)
         report = proven(done) if check else None
         step("writing the tables")
         fill(folder, done, report=report, trace=trace, inputs=inputs)

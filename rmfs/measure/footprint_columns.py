@@ -195,6 +195,13 @@ FOOTPRINT = (
     ),
     Column("orders_created", INTEGER, "orders", "Orders that arrived"),
     Column("order_redraws", INTEGER, "draws", "Drawn orders that the stock could not serve"),
+    Column(
+        "orders_short",
+        INTEGER,
+        "orders",
+        "Orders for which stock was short when they arrived: there was less than they and the "
+        "orders before them want; they wait",
+    ),
     Column("backlog_orders_end", INTEGER, "orders", "Orders that wait for a station at the end"),
     Column("open_orders_mean", REAL, "orders", "Time average of the orders open at stations"),
     Column("bundles_created", INTEGER, "bundles", "Bundles that arrived"),

@@ -19,6 +19,7 @@ from rmfs.config import apply_overrides, read_toml, validate
 from rmfs.errors import InputError
 from rmfs.layout.parameters import LayoutParameters
 from rmfs.layout.rawsimo.xlayo import read_xlayo_table
+from rmfs.scenario import named_files
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -59,6 +60,7 @@ def describe(
         },
         "scenario": {
             **source("scenario", given["scenario"]),
+            "files": {key: _hash(path) for key, path in named_files(run.scenario).items()},
             "parameters": run.scenario.model_dump(mode="json"),
         },
         "controllers": {
@@ -85,7 +87,7 @@ def source(part: str, given: str) -> dict[str, Any]:
     """Return name, file and hash of an input; nothing but the name if it came from no file."""
     try:
         path = instances.locate(KINDS[part], given)
-        content = path.read_bytes()
+        content = _hash(path)
     except (InputError, OSError):
         return {"name": given, "file": None, "sha256": None}
     shipped = path.is_relative_to(instances.ROOT)
@@ -93,8 +95,13 @@ def source(part: str, given: str) -> dict[str, Any]:
     return {
         "name": path.stem,
         "file": told.as_posix(),
-        "sha256": hashlib.sha256(content).hexdigest(),
+        "sha256": content,
     }
+
+
+def _hash(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def layout_parameters(

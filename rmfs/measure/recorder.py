@@ -1,17 +1,17 @@
 """The observer that writes down what happens in a run.
 
-It only appends to lists while the run goes on; the tables are made afterwards (`tables`). What
-happened before the end of the warm-up stays in the lists, because work in progress carries over;
+It only adds rows to logs while the run goes on; the tables are made afterwards (`tables`). What
+happened before the end of the warm-up stays in the logs, because work in progress carries over;
 the tables leave it out.
 """
 
 from __future__ import annotations
 
-from array import array
 from math import nan
 from typing import TYPE_CHECKING
 
 from rmfs.control.solutions import to_text
+from rmfs.measure.log import Log
 from rmfs.measure.observer import Observer
 
 if TYPE_CHECKING:
@@ -26,30 +26,10 @@ if TYPE_CHECKING:
     from rmfs.world.world import World
 
 
-class Calls:
-    """Calls of controllers that came to a decision, column by column: a long run has millions.
+TASKS = ("pick", "replenish", "park", "reposition", "rest")
+"""Kinds of tasks, by the number under which they are written down."""
 
-    Attributes
-    ----------
-    number
-        A number for each problem, in the order in which they first occurred.
-    time_s, problem, decisions, wall_s
-        One entry per call; `problem` holds the problem's number.
-    """
-
-    def __init__(self) -> None:
-        self.number: dict[str, int] = {}
-        self.time_s = array("d")
-        self.problem = array("b")
-        self.decisions = array("i")
-        self.wall_s = array("d")
-
-    def add(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
-        """Write a call down."""
-        self.time_s.append(time_s)
-        self.problem.append(self.number.setdefault(problem, len(self.number)))
-        self.decisions.append(decisions)
-        self.wall_s.append(wall_s)
+_TASK_NUMBER = {kind: number for number, kind in enumerate(TASKS)}
 
 
 class Recorder(Observer):
@@ -60,27 +40,29 @@ class Recorder(Observer):
     start_s, end_s
         The measured time.
     units
-        Picked units: time, order, sku, pod, robot, station, late bound.
+        Picked units.
     lines
-        Finished lines: time, sku, station.
-    finished_orders
-        Completed orders, one row each as in `order_row`.
+        Finished lines.
+    orders
+        Completed orders: `order_row`.
     open_orders
         Orders not yet completed, by index.
-    stored_bundles
-        Stored bundles: time, created, assigned, sku, units, space, pod, station, robot.
+    bundles
+        Stored bundles: `bundle_row` and the robot.
     open_bundles
         Bundles not yet stored, by index.
     visits
-        Pods at stations: station, pod, robot, begin, end.
+        Pods at stations; `end_s` is nan for those that are there at the end.
     busy
-        Stations at work: station, begin, end.
+        Stations at work.
     tasks
-        Tasks started: time, robot, kind.
+        Tasks started; `kind` is a place in `TASKS`.
     lifts
-        Pods lifted: time, pod, robot.
+        Pods lifted.
     calls
-        Controllers asked that came to a decision.
+        Controllers asked that came to a decision; `problem` is a place in `problems`.
+    problems
+        Decision problems in the order in which their controllers first decided.
     asked
         Per problem, number and wall time of all calls since the warm-up.
     questions
@@ -89,8 +71,8 @@ class Recorder(Observer):
         Their solutions as text, by number.
     by_rule
         Per problem whose controller asks optimisers, its decisions without one since the warm-up.
-    activations
-        Stations switched: time, station, active.
+    switches
+        Stations switched on or off.
     samples
         Every minute: time, and the fleet's totals of distance and times since the last reset.
     """
@@ -100,22 +82,32 @@ class Recorder(Observer):
         self.world: World
         self.start_s = 0.0
         self.end_s = nan
-        self.units: list[tuple[float, int, int, int, int, int, bool]] = []
-        self.lines: list[tuple[float, int, int]] = []
-        self.finished_orders: list[tuple[Any, ...]] = []
+        self.units = Log(
+            **{"time_s": "f8", "order": "i4", "sku": "i4", "pod": "i4"},
+            **{"robot": "i2", "station": "i2", "late_bound": "?"},
+        )
+        self.lines = Log(time_s="f8", sku="i4", station="i2")
+        self.orders = Log(
+            **{"order": "i4", "station": "i2", "lines": "i4", "units": "i4"},
+            **{"created_s": "f8", "due_s": "f8", "assigned_s": "f8", "completed_s": "f8"},
+        )
         self.open_orders: dict[int, Order] = {}
-        self.stored_bundles: list[tuple[Any, ...]] = []
+        self.bundles = Log(
+            **{"time_s": "f8", "created_s": "f8", "assigned_s": "f8", "sku": "i4", "units": "i4"},
+            **{"space": "f8", "pod": "i4", "station": "i2", "robot": "i2"},
+        )
         self.open_bundles: dict[int, Bundle] = {}
-        self.visits: list[tuple[int, int, int, float, float]] = []
-        self.busy: list[tuple[int, float, float]] = []
-        self.tasks: list[tuple[float, int, str]] = []
-        self.lifts: list[tuple[float, int, int]] = []
-        self.calls = Calls()
+        self.visits = Log(station="i2", pod="i4", robot="i2", begin_s="f8", end_s="f8")
+        self.busy = Log(station="i2", begin_s="f8", end_s="f8")
+        self.tasks = Log(begin_s="f8", robot="i2", kind="i1")
+        self.lifts = Log(time_s="f8", pod="i4", robot="i2")
+        self.calls = Log(time_s="f8", problem="i1", decisions="i4", wall_s="f8")
+        self.problems: list[str] = []
         self.asked: dict[str, list[float]] = {}
         self.questions: list[Call] = []
         self.solutions: dict[int, str] = {}
         self.by_rule: dict[str, int] = {}
-        self.activations: list[tuple[float, int, bool]] = []
+        self.switches = Log(time_s="f8", station="i2", active="?")
         self.samples: list[tuple[float, dict[str, float]]] = []
         self.stored_space_start = 0.0
         self.motion: dict[str, NDArray[Any]] = {}
@@ -124,7 +116,7 @@ class Recorder(Observer):
         self.edges: dict[str, NDArray[Any]] = {}
         self.counters: dict[str, float] = {}
         self._at_station: dict[int, tuple[float, int, int]] = {}
-        self._redraws_before = 0
+        self._before = {"order_redraws": 0, "orders_short": 0}
 
     @property
     def duration_s(self) -> float:
@@ -142,7 +134,7 @@ class Recorder(Observer):
         self.start_s = time_s
         self.asked.clear()
         self.by_rule.clear()
-        self._redraws_before = self.world.order_redraws
+        self._before = self._order_counts()
 
     def run_ended(self, time_s: float) -> None:
         """Take what traffic has counted, and close what is still open."""
@@ -154,9 +146,15 @@ class Recorder(Observer):
         self.trips = self._traffic.trips()
         self.edges = self._traffic.edges()
         self.counters = self._traffic.counters()
-        self.counters["order_redraws"] = self.world.order_redraws - self._redraws_before
+        for name, number in self._order_counts().items():
+            self.counters[name] = number - self._before[name]
         for station, (since, pod, robot) in self._at_station.items():
-            self.visits.append((station, pod, robot, since, nan))
+            self.visits.add(station, pod, robot, since, nan)
+
+    def _order_counts(self) -> dict[str, int]:
+        """Return what the world has counted of orders since the start of the run."""
+        world = self.world
+        return {"order_redraws": world.order_redraws, "orders_short": world.orders_short}
 
     def sampled(self, time_s: float) -> None:
         """Add up the robots' motion."""
@@ -169,7 +167,7 @@ class Recorder(Observer):
 
     def order_completed(self, order: Order) -> None:
         """Write the order down and let it go."""
-        self.finished_orders.append(order_row(order))
+        self.orders.add(*order_row(order))
         del self.open_orders[order.index]
 
     def unit_picked(
@@ -183,11 +181,11 @@ class Recorder(Observer):
         late_bound: bool,
     ) -> None:
         """Write the unit down."""
-        self.units.append((time_s, order.index, sku, pod, robot, station, late_bound))
+        self.units.add(time_s, order.index, sku, pod, robot, station, late_bound)
 
     def line_picked(self, time_s: float, order: Order, sku: int, units: int) -> None:
         """Write the line down."""
-        self.lines.append((time_s, sku, order.station))
+        self.lines.add(time_s, sku, order.station)
 
     def bundle_created(self, bundle: Bundle) -> None:
         """Follow the bundle."""
@@ -195,7 +193,7 @@ class Recorder(Observer):
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
         """Write the bundle down and let it go."""
-        self.stored_bundles.append((*bundle_row(bundle), robot))
+        self.bundles.add(*bundle_row(bundle), robot)
         del self.open_bundles[bundle.index]
 
     def visit_started(self, time_s: float, station: int, pod: int, robot: int) -> None:
@@ -205,19 +203,19 @@ class Recorder(Observer):
     def visit_ended(self, time_s: float, station: int, pod: int, robot: int) -> None:
         """Write the visit down."""
         since = self._at_station.pop(station)[0]
-        self.visits.append((station, pod, robot, since, time_s))
+        self.visits.add(station, pod, robot, since, time_s)
 
     def station_busy(self, station: int, from_s: float, to_s: float) -> None:
         """Write the work down."""
-        self.busy.append((station, from_s, to_s))
+        self.busy.add(station, from_s, to_s)
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
         """Write the task down."""
-        self.tasks.append((time_s, robot, kind))
+        self.tasks.add(time_s, robot, _TASK_NUMBER[kind])
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
         """Write the lift down."""
-        self.lifts.append((time_s, pod, robot))
+        self.lifts.add(time_s, pod, robot)
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
         """Write the call down."""
@@ -228,7 +226,9 @@ class Recorder(Observer):
         asked[0] += 1
         asked[1] += wall_s
         if decisions:
-            self.calls.add(problem, time_s, wall_s, decisions)
+            if problem not in self.problems:
+                self.problems.append(problem)
+            self.calls.add(time_s, self.problems.index(problem), decisions, wall_s)
 
     def rule_decided(self, problem: str, time_s: float) -> None:
         """Count the decision."""
@@ -245,7 +245,7 @@ class Recorder(Observer):
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
         """Write the switch down."""
-        self.activations.append((time_s, station, active))
+        self.switches.add(time_s, station, active)
 
 
 def order_row(order: Order) -> tuple[Any, ...]:

@@ -30,5 +30,6 @@ from rmfs.scenario.stock import InitialStock as InitialStock
 from rmfs.scenario.stock import initial_stock as initial_stock
 from rmfs.scenario.streams import StreamRecorder as StreamRecorder
 from rmfs.scenario.streams import write_stream as write_stream
+from rmfs.scenario.streams import write_streams as write_streams
 from rmfs.scenario.top_up import BundleTopUp as BundleTopUp
 from rmfs.scenario.top_up import OrderTopUp as OrderTopUp

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from rmfs.measure import EventLog, Recorder
     from rmfs.measure.observer import Observer
+    from rmfs.scenario import StreamRecorder
     from rmfs.simulation.pacing import PacingSettings
     from rmfs.simulation.statistics import DecisionStatistics
     from rmfs.world import World
@@ -111,6 +112,7 @@ def simulate(
     observers: Sequence[Observer] = (),
     pacing: str = "instant",
     trace: bool = False,
+    streams: StreamRecorder | None = None,
     progress: Callable[[float, float], None] | None = None,
     allow_not_well_formed: bool = False,
 ) -> Run:
@@ -132,6 +134,8 @@ def simulate(
         `work`, `fixed=SECONDS` or `replay=RUN_DIR` (docs: optimisers in the loop).
     trace
         Whether every piece of motion and everything that happens is kept.
+    streams
+        Keeps all orders and bundles that come, to be written by `rmfs.scenario.write_stream`.
     progress
         Called with the simulated time so far and in total, about a hundred times.
     allow_not_well_formed
@@ -161,6 +165,7 @@ def simulate(
         observers=[recorder, *([events] if events is not None else []), *observers],
         pacing=pace,
         traffic=traffic,
+        streams=streams,
     )
     begun = time.perf_counter()
     simulation.run(progress)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rmfs.control.settings import ControllerSettings
     from rmfs.layout.model import Layout
     from rmfs.measure.observer import Observer
-    from rmfs.scenario import Scenario
+    from rmfs.scenario import Scenario, StreamRecorder
     from rmfs.simulation.pacing import PacingSettings
 
 SAMPLE_S = 60.0
@@ -63,6 +63,8 @@ class Simulation:
         What the thinking of optimisers costs in simulated time.
     traffic
         What moves the robots; by default the compiled core without trace.
+    streams
+        Keeps all orders and bundles that come, so that they can be written and replayed.
 
     Attributes
     ----------
@@ -80,6 +82,7 @@ class Simulation:
         observers: Sequence[Observer] = (),
         pacing: PacingSettings | None = None,
         traffic: Traffic | None = None,
+        streams: StreamRecorder | None = None,
     ) -> None:
         self.layout = layout
         self.scenario = scenario
@@ -103,7 +106,7 @@ class Simulation:
         self.dispatch = Dispatch(self)
         self.phase = DecisionPhase(self, controllers)
         self.late_binding = LateBinding(self.world, travel, self.panel)
-        self.supply = Supply(self, scenario, seed)
+        self.supply = Supply(self, scenario, seed, streams)
         self.services: list[PickService | ReplenishmentService] = [
             *(
                 PickService(self, station, given)

@@ -146,6 +146,7 @@ def _bundles(world: World) -> None:
     used = dict.fromkeys((s.index for s in world.replenishment_stations), 0.0)
     reserved = dict.fromkeys(used, 0)
     alive, space = 0, 0.0
+    incoming = np.zeros_like(world.incoming)
     assigned = [
         bundle
         for station in world.replenishment_stations
@@ -155,6 +156,7 @@ def _bundles(world: World) -> None:
     for bundle in (*world.bundles, *assigned):
         alive += 1
         space += bundle.space
+        incoming[bundle.sku] += bundle.units
         if bundle.pod >= 0:
             promised[bundle.pod] += bundle.space
         if bundle.station >= 0:
@@ -162,6 +164,7 @@ def _bundles(world: World) -> None:
             reserved[bundle.station] += 1
     _check(alive == world.bundles_created - world.bundles_stored, "number of bundles")
     _check(world.unstored_space == space, "space of bundles not stored")
+    _check(np.array_equal(world.incoming, incoming), "units of bundles not stored")
     _check(np.array_equal(world.inventory.promised, promised), "space promised")
     _check(world.inventory.promised_space == promised.sum(), "space promised in total")
     _check(world.bundles.space == sum(b.space for b in world.bundles), "space of the backlog")

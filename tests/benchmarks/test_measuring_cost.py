@@ -38,9 +38,6 @@ def tabled(recorder: Recorder) -> float:
     return time.process_time() - begin
 
 
-@pytest.mark.xfail(
-    reason="known gap: 13 to 16 % on a busy machine (recording 7 %, tables 6 to 8 %)"
-)
 def test_all_tables_together_cost_less_than_15_percent():
     recorders = [Recorder() for _ in range(5)]
     off, on = zip(*((simulated(None), simulated(one)) for one in recorders), strict=True)

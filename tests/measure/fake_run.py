@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import nan
 from types import SimpleNamespace
+from typing import ClassVar
 
 import numpy as np
 import pydantic
@@ -111,6 +112,10 @@ class Settings(pydantic.BaseModel):
     """Stands for a scenario or a set of controllers."""
 
     name: str = "fake"
+    # a scenario that names no files
+    skus: ClassVar = None
+    demand: ClassVar = None
+    replenishment: ClassVar = None
 
     def to_table(self) -> dict[str, str]:
         return {"name": self.name}
@@ -156,6 +161,7 @@ def world():
         skus=Skus(),
         storage=SimpleNamespace(place_of=np.array([1, -1, 3])),
         order_redraws=5,
+        orders_short=2,
     )
 
 
@@ -196,7 +202,7 @@ def recorded() -> Recorder:
     recorder.station_busy(0, 95.0, 105.0)
     recorder.unit_picked(98.0, one, 0, 0, 0, 0, False)
     # the measured time begins while pod 0 still is at station 0
-    place.order_redraws = 6
+    place.order_redraws, place.orders_short = 6, 3
     traffic.since_s = traffic.now_s = WARMUP_S
     recorder.warmup_ended(WARMUP_S)
     recorder.station_busy(0, 105.0, 115.0)
@@ -205,6 +211,7 @@ def recorded() -> Recorder:
     recorder.visit_ended(110.0, 0, 0, 0)
     recorder.task_started(110.0, 0, "park", -1)
     two = order(2, 150.0, [(1, 3)], due=1000.0)
+    place.orders_short += 4
     recorder.order_created(two)
     recorder.decision("poa", 150.0, 0.001, 2)
     recorder.rule_decided("poa", 150.0)

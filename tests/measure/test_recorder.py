@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import struct
 import time
+from math import isnan
 from types import SimpleNamespace
 
+import pytest
 from fake_run import FakeTraffic, bundle, layout, order, recorded, world
 
 from rmfs.measure import Recorder
+from rmfs.measure.log import Log
 
 
 def a_busy_run(callbacks: int) -> float:
@@ -46,7 +50,7 @@ def test_finished_work_is_let_go():
     recorder = recorded()
     assert set(recorder.open_orders) == {2}
     assert set(recorder.open_bundles) == {1}
-    assert len(recorder.finished_orders) == 2
+    assert recorder.orders.columns()["order"].tolist() == [0, 1]
 
 
 def test_a_visit_at_the_end_stays_open():
@@ -54,6 +58,21 @@ def test_a_visit_at_the_end_stays_open():
     recorder.run_started(SimpleNamespace(layout=layout(), world=world(), traffic=FakeTraffic()))
     recorder.visit_started(3.0, 0, 1, 1)
     recorder.run_ended(10.0)
-    ((station, pod, robot, begin, end),) = recorder.visits
-    assert (station, pod, robot, begin) == (0, 1, 1, 3.0)
-    assert end != end
+    visits = {name: column.tolist() for name, column in recorder.visits.columns().items()}
+    end = visits.pop("end_s")
+    assert visits == {"station": [0], "pod": [1], "robot": [1], "begin_s": [3.0]}
+    assert isnan(end[0])
+
+
+def test_a_log_keeps_every_value_and_may_be_read_at_any_time():
+    log = Log(time_s="f8", pod="i4", kind="i1", late="?")
+    rows = [(0.1 * k, 10**9 + k, k % 5, k % 2 == 0) for k in range(1000)]
+    for number, row in enumerate(rows):
+        assert len(log) == number
+        log.add(*row)
+        if number % 300 == 0:
+            assert len(log.columns()["pod"]) == number + 1
+    told = log.columns()
+    assert list(zip(*(told[name].tolist() for name in told), strict=True)) == rows
+    with pytest.raises(struct.error):
+        log.add(0.0, 2**31, 0, False)

@@ -77,6 +77,7 @@ EXPECTED = {
     "open_orders_mean": 110.0 / 400.0,
     "orders_created": 1,
     "order_redraws": 0,
+    "orders_short": 4,  # and 3 in the warm-up
     "bundles_created": 2,
     "units_stored": 4,
     "bundle_turnover_mean_s": 130.0,

@@ -14,6 +14,8 @@ from rmfs.measure.tables.tidy import tidy
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from numpy.typing import NDArray
+
     from rmfs.control.asks import Answer, Call
     from rmfs.measure.tables.logs import Logs
 
@@ -31,16 +33,12 @@ _OF_ANSWERS: dict[str, Callable[[Answer], Any]] = {
 
 def decisions(logs: Logs) -> pd.DataFrame:
     """One row per call of a controller that came to a decision, and one per question it asked."""
-    calls = logs.recorder.calls
-    time_s = np.array(calls.time_s)
-    now = time_s >= logs.start_s
-    names = np.array([*calls.number, ""])
+    calls = _calls(logs)
+    names = np.array([*logs.recorder.problems, ""])
     rules = {
-        "time_s": time_s[now],
-        "problem": names[np.array(calls.problem)[now]],
+        **calls,
+        "problem": names[calls["problem"]],
         "source": "rule",
-        "decisions": np.array(calls.decisions)[now],
-        "wall_s": np.array(calls.wall_s)[now],
         "call": pd.NA,
         **dict.fromkeys(("sizes", "outcome", "failure", "backend", "status"), ""),
         **dict.fromkeys(("completed_s", "paced_s", "objective", "bound", "gap"), nan),
@@ -81,10 +79,10 @@ def controllers(logs: Logs) -> pd.DataFrame:
     asked = dict(sorted(logs.recorder.asked.items()))
     calls = np.array([number for number, _ in asked.values()])
     wall_s = np.array([wall for _, wall in asked.values()])
-    recorded = logs.recorder.calls
-    now = np.array(recorded.time_s) >= logs.start_s
-    number = np.array(recorded.problem)[now]
-    given = np.bincount(number, weights=np.array(recorded.decisions)[now], minlength=127)
+    recorded = _calls(logs)
+    problems = logs.recorder.problems
+    given = np.bincount(recorded["problem"], weights=recorded["decisions"], minlength=len(problems))
+    decisions = dict(zip(problems, given.tolist(), strict=True))
     questions = _measured(logs)
     counted = {
         name: _by_problem(questions, count)
@@ -101,9 +99,7 @@ def controllers(logs: Logs) -> pd.DataFrame:
         {
             "problem": list(asked),
             "calls": calls,
-            "decisions": [
-                given[recorded.number.get(problem, -1)] + based[problem] for problem in asked
-            ],
+            "decisions": [decisions.get(problem, 0) + based[problem] for problem in asked],
             "wall_s": wall_s,
             "wall_mean_s": wall_s / calls,
             "heuristic_decisions": [logs.recorder.by_rule.get(problem, 0) for problem in asked],
@@ -156,3 +152,10 @@ def _told(asked: list[Call]) -> dict[str, list[Any]]:
         name: [empty[name] if call.answer is None else tell(call.answer) for call in asked]
         for name, tell in _OF_ANSWERS.items()
     }
+
+
+def _calls(logs: Logs) -> dict[str, NDArray[Any]]:
+    """Return the calls of the measured time."""
+    calls = logs.recorder.calls.columns()
+    now = calls["time_s"] >= logs.start_s
+    return {name: column[now] for name, column in calls.items()}

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 import pandas as pd
 
 from rmfs.measure.memory import peak_rss_mb
+from rmfs.measure.recorder import TASKS
 from rmfs.measure.steps import Steps
 from rmfs.measure.tables.orders import completed
-from rmfs.measure.tables.robots import STATES, TASKS
+from rmfs.measure.tables.robots import STATES
 from rmfs.measure.tables.series import inventory_share
 from rmfs.measure.tables.tidy import tidy
 
@@ -119,7 +120,7 @@ def _counts(logs: Logs, stations: pd.DataFrame) -> dict[str, Any]:
         "units_stored": int(logs.stored_now["units"].sum()),
         "orders_created": int((logs.orders["created_s"] >= logs.start_s).sum()),
         "bundles_created": int((logs.bundles["created_s"] >= logs.start_s).sum()),
-        "order_redraws": int(logs.recorder.counters["order_redraws"]),
+        **{name: int(logs.recorder.counters[name]) for name in ("order_redraws", "orders_short")},
     }
 
 

@@ -1,9 +1,8 @@
-"""The recorder's lists as frames, each made once and shared by all tables of a run."""
+"""The recorder's logs as frames, each made once and shared by all tables of a run."""
 
 from __future__ import annotations
 
 from functools import cached_property
-from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,46 +15,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from rmfs.measure.log import Log
     from rmfs.measure.recorder import Recorder
-
-INTEGER, REAL, FLAG, TEXT = np.int64, np.float64, np.bool_, np.object_
-
-UNITS = {
-    "time_s": REAL,
-    "order": INTEGER,
-    "sku": INTEGER,
-    "pod": INTEGER,
-    "robot": INTEGER,
-    "station": INTEGER,
-    "late_bound": FLAG,
-}
-LINES = {"time_s": REAL, "sku": INTEGER, "station": INTEGER}
-ORDERS = {
-    "order": INTEGER,
-    "station": INTEGER,
-    "lines": INTEGER,
-    "units": INTEGER,
-    "created_s": REAL,
-    "due_s": REAL,
-    "assigned_s": REAL,
-    "completed_s": REAL,
-}
-BUNDLES = {
-    "time_s": REAL,
-    "created_s": REAL,
-    "assigned_s": REAL,
-    "sku": INTEGER,
-    "units": INTEGER,
-    "space": REAL,
-    "pod": INTEGER,
-    "station": INTEGER,
-    "robot": INTEGER,
-}
-VISITS = {"station": INTEGER, "pod": INTEGER, "robot": INTEGER, "begin_s": REAL, "end_s": REAL}
-BUSY = {"station": INTEGER, "begin_s": REAL, "end_s": REAL}
-TASKS = {"begin_s": REAL, "robot": INTEGER, "kind": TEXT}
-LIFTS = {"time_s": REAL, "pod": INTEGER, "robot": INTEGER}
-SWITCHES = {"time_s": REAL, "station": INTEGER, "active": FLAG}
 
 
 class Logs:
@@ -76,7 +37,7 @@ class Logs:
     @cached_property
     def units(self) -> pd.DataFrame:
         """Units picked."""
-        return framed(self.recorder.units, UNITS)
+        return framed(self.recorder.units)
 
     @cached_property
     def units_now(self) -> pd.DataFrame:
@@ -86,19 +47,18 @@ class Logs:
     @cached_property
     def lines_now(self) -> pd.DataFrame:
         """Lines finished in the measured time."""
-        return self._since(framed(self.recorder.lines, LINES))
+        return self._since(framed(self.recorder.lines))
 
     @cached_property
     def orders(self) -> pd.DataFrame:
         """Orders that ever arrived, by ordinal."""
         waiting = [order_row(order) for order in self.recorder.open_orders.values()]
-        rows = framed([*self.recorder.finished_orders, *waiting], ORDERS)
-        return rows.sort_values("order", ignore_index=True)
+        return framed(self.recorder.orders, waiting).sort_values("order", ignore_index=True)
 
     @cached_property
     def stored(self) -> pd.DataFrame:
         """Bundles stored."""
-        return framed(self.recorder.stored_bundles, BUNDLES)
+        return framed(self.recorder.bundles)
 
     @cached_property
     def stored_now(self) -> pd.DataFrame:
@@ -109,28 +69,28 @@ class Logs:
     def bundles(self) -> pd.DataFrame:
         """Bundles that ever arrived; those not stored yet have neither time nor robot."""
         waiting = [(*bundle_row(bundle), -1) for bundle in self.recorder.open_bundles.values()]
-        return framed([*self.recorder.stored_bundles, *waiting], BUNDLES)
+        return framed(self.recorder.bundles, waiting)
 
     @cached_property
     def busy(self) -> pd.DataFrame:
         """When stations handled something, by station and time."""
-        frame = framed(self.recorder.busy, BUSY)
+        frame = framed(self.recorder.busy)
         return frame.sort_values(["station", "begin_s"], ignore_index=True)
 
     @cached_property
     def lifts_now(self) -> pd.DataFrame:
         """Pods lifted in the measured time."""
-        return self._since(framed(self.recorder.lifts, LIFTS))
+        return self._since(framed(self.recorder.lifts))
 
     @cached_property
     def switches(self) -> pd.DataFrame:
         """Stations switched on or off."""
-        return framed(self.recorder.activations, SWITCHES)
+        return framed(self.recorder.switches)
 
     @cached_property
     def tasks(self) -> pd.DataFrame:
         """From when to when each robot had each task; a task lasts until the next one starts."""
-        frame = framed(self.recorder.tasks, TASKS)
+        frame = framed(self.recorder.tasks)
         frame = frame.sort_values(["robot", "begin_s"], kind="stable", ignore_index=True)
         robot, begin = frame["robot"].to_numpy(), frame["begin_s"].to_numpy()
         end = np.full(len(frame), self.end_s)
@@ -144,7 +104,7 @@ class Logs:
 
         Each unit or bundle belongs to the last visit to its station that began before it.
         """
-        frame = framed(self.recorder.visits, VISITS)
+        frame = framed(self.recorder.visits)
         frame = frame.sort_values(["station", "begin_s"], ignore_index=True)
         for name, handled in (("units", self.units_now), ("bundles", self.stored_now)):
             which = _visit_of(frame, handled["station"].to_numpy(), handled["time_s"].to_numpy())
@@ -156,15 +116,13 @@ class Logs:
         return frame[frame["time_s"].to_numpy() >= self.start_s]
 
 
-def framed(rows: Sequence[tuple[Any, ...]], columns: dict[str, Any]) -> pd.DataFrame:
-    """Turn rows into a frame with columns of given types, also if there are none."""
-    # column by column: turning the rows over in one call would hold everything twice
-    return pd.DataFrame(
-        {
-            name: np.fromiter(map(itemgetter(place), rows), dtype, len(rows))
-            for place, (name, dtype) in enumerate(columns.items())
-        }
-    )
+def framed(log: Log, more: Sequence[tuple[Any, ...]] = ()) -> pd.DataFrame:
+    """Return a log as a frame, with more rows of the same columns at its end."""
+    columns = log.columns()
+    if more:
+        added = zip(columns.items(), zip(*more, strict=True), strict=True)
+        columns = {name: np.append(column, values) for (name, column), values in added}
+    return pd.DataFrame(columns, copy=False)
 
 
 def count(index: pd.Series[int], length: int) -> NDArray[np.int64]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rmfs.measure.recorder import TASKS
 from rmfs.measure.steps import Steps
 from rmfs.measure.tables.logs import count
 from rmfs.measure.tables.tidy import tidy
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
 
     from rmfs.measure.tables.logs import Logs
 
-TASKS = ("pick", "replenish", "park", "reposition", "rest")
 STATES = ("moving", "turning", "waiting", "served", "transfer", "riding", "idle", "queueing")
 
 
@@ -32,8 +32,8 @@ def robots(logs: Logs) -> pd.DataFrame:
     tasks = logs.tasks
     measured = (tasks["end_s"] - tasks["begin_s"].clip(lower=logs.start_s)).clip(lower=0.0)
     begun = tasks["begin_s"].to_numpy() >= logs.start_s
-    for task in TASKS:
-        own = tasks["kind"].to_numpy() == task
+    for kind, task in enumerate(TASKS):
+        own = tasks["kind"].to_numpy() == kind
         robot, time = tasks["robot"].to_numpy()[own], measured.to_numpy()[own]
         columns[f"tasks_{task}"] = count(tasks["robot"][own & begun], number)
         columns[f"task_{task}_s"] = np.bincount(robot, weights=time, minlength=number)
@@ -45,7 +45,7 @@ def robots(logs: Logs) -> pd.DataFrame:
 
 def with_task(logs: Logs, task: str) -> Steps:
     """Return the number of robots with a task over time."""
-    own = logs.tasks[logs.tasks["kind"].to_numpy() == task]
+    own = logs.tasks[logs.tasks["kind"].to_numpy() == TASKS.index(task)]
     # a task that reaches the end of the run is still held there
     ends = own["end_s"].mask(own["end_s"] >= logs.end_s)
     return Steps.between(own["begin_s"], ends)

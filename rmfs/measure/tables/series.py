@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rmfs.layout.model import PickStation
+from rmfs.measure.recorder import TASKS
 from rmfs.measure.steps import Steps, counts
-from rmfs.measure.tables.robots import STATES, TASKS, with_task
+from rmfs.measure.tables.robots import STATES, with_task
 from rmfs.measure.tables.stations import busy_until
 from rmfs.measure.tables.tidy import tidy
 

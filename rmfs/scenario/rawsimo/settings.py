@@ -1,4 +1,4 @@
-"""Typed access to the elements of an .xsett file, with notes on what was not asked for."""
+"""Typed access to the elements of RAWSim-O's files, with notes on what was not asked for."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from rmfs.errors import InputError
+from rmfs.xml import SCHEMA_NAMESPACE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -24,6 +25,11 @@ class Settings:
         The file, for messages.
     notes
         Where to say what is not used.
+
+    Attributes
+    ----------
+    kind
+        The type the block names (attribute xsi:type), or nothing.
     """
 
     def __init__(self, element: Element | None, path: Path, notes: list[str]) -> None:
@@ -31,6 +37,7 @@ class Settings:
         self._notes = notes
         self._elements: dict[str, Element] = {}
         self._read: set[str] = set()
+        self.kind = _kind(element)
         for child in () if element is None else element:
             if child.tag in self._elements:
                 raise self.error(child.tag, "occurs twice")
@@ -57,6 +64,10 @@ class Settings:
         self._read.add(tag)
         element = self._elements.get(tag)
         return default if element is None else (element.text or "").strip()
+
+    def kind_of(self, tag: str) -> str:
+        """Return the type an element names, or nothing; the element counts as unread."""
+        return _kind(self._elements.get(tag))
 
     def choice(self, tag: str, choices: Mapping[str, str], default: str) -> str:
         """Return what a word stands for."""
@@ -96,6 +107,24 @@ class Settings:
         return sorted(
             (self._number(tag, key), self._switch(tag, value)) for key, value in self._pairs(tag)
         )
+
+    def words(self, tag: str, choices: Mapping[str, str]) -> list[tuple[float, str]]:
+        """Return a list of keys and what the word of each stands for; words are checked."""
+        found = []
+        for key, word in self._pairs(tag):
+            if word not in choices:
+                raise self.error(tag, f"must be one of {', '.join(choices)} (given: {word!r:.40})")
+            found.append((self._number(tag, key), choices[word]))
+        return sorted(found)
+
+    def numbers(self, tag: str, default: tuple[float, ...]) -> list[float]:
+        """Return several numbers: a text with commas, or one to an element."""
+        self._read.add(tag)
+        element = self._elements.get(tag)
+        if element is None:
+            return list(default)
+        parts = [child.text or "" for child in element] or (element.text or "").split(",")
+        return [self._number(tag, part.strip()) for part in parts]
 
     def weights(self, tag: str) -> dict[str, float]:
         """Return a list of words and their positive numbers; words with zero are left out."""
@@ -138,3 +167,7 @@ class Settings:
         if text not in ("true", "false", "1", "0"):
             raise self.error(tag, f"must be true or false (given: {text!r:.40})")
         return text in ("true", "1")
+
+
+def _kind(element: Element | None) -> str:
+    return "" if element is None else element.get(f"{SCHEMA_NAMESPACE}type", "")

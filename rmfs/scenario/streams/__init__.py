@@ -9,3 +9,4 @@ from rmfs.scenario.streams.stream import OrderStream as OrderStream
 from rmfs.scenario.streams.stream import OrderStreamBuilder as OrderStreamBuilder
 from rmfs.scenario.streams.writing import digest as digest
 from rmfs.scenario.streams.writing import write_stream as write_stream
+from rmfs.scenario.streams.writing import write_streams as write_streams

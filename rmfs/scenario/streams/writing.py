@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rmfs.scenario.skus import SkuSet
+    from rmfs.scenario.streams.recorder import StreamRecorder
 
 ORDER_COLUMNS = ("time", "order", "sku", "quantity", "due")
 BUNDLE_COLUMNS = ("time", "order", "sku", "quantity")
@@ -58,6 +59,21 @@ def write_stream(stream: Stream, skus: SkuSet, path: Path) -> str:
 
             write_parquet(_columns(stream, skus), temporary)
     return digest(stream, skus)
+
+
+def write_streams(recorded: StreamRecorder, skus: SkuSet, folder: Path) -> dict[str, str]:
+    """Write what a run was asked for as `orders.csv` and `bundles.csv`; return their digests.
+
+    Raises
+    ------
+    InputError
+        If the files cannot be written.
+    """
+    orders, bundles = recorded.orders.build(), recorded.bundles.build()
+    return {
+        "orders": write_stream(orders, skus, folder / "orders.csv"),
+        "bundles": write_stream(bundles, skus, folder / "bundles.csv"),
+    }
 
 
 def digest(stream: Stream, skus: SkuSet) -> str:

@@ -1,0 +1,88 @@
+"""RAWSim-O's station activation, method management and path planning: SA, MM and PP."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.control.rawsimo.elements import Number, Rule, Whole, translated, values_of
+
+if TYPE_CHECKING:
+    from rmfs.config import Table
+    from rmfs.scenario.rawsimo.settings import Settings
+
+SA = {
+    "ActivateAll": Rule("all"),
+    "BacklogThreshold": Rule(
+        "backlog-threshold",
+        {
+            "Timeout": Number("pause_s", 600.0),
+            "OStationActivateThreshold": Whole("orders_on", 50),
+            "OStationDeactivateThreshold": Number("pick_share_off", 0.7),
+            "IStationActivateThreshold": Whole("bundles_on", 50),
+            "IStationDeactivateThreshold": Number("replenishment_share_off", 0.7),
+        },
+    ),
+    "ConstantRatio": Rule(
+        "constant-ratio",
+        {
+            "ActiveRatio": Number("active_share", 0.5),
+            "PickReplenishRatio": Number("pick_share", 0.5),
+        },
+    ),
+    "WorkShift": Rule("work-shifts", {"LoopTime": Number("loop_s", 86400.0)}),
+}
+_SHIFTS = [(0.0, False), (21600.0, True), (79200.0, False)]
+
+MM = ("NoChange", "Random", "Scheduled")
+_EXCHANGEABLE = {
+    "Nearest": "nearest",
+    "Random": "random",
+    "StationBased": "station-based",
+    "Turnover": "turnover",
+}
+
+PP = ("FAR", "WHCAvStar", "WHCAnStar", "BCP", "CBS", "ODID", "PAS", "Simple", "Dummy")
+"""Their planners: we have one, which needs none of their parameters."""
+
+
+def sa(kind: str, block: Settings) -> Table:
+    """Return our table for a station activation."""
+    table = translated(block, SA[kind])
+    if kind == "WorkShift":
+        shifts = block.switches("Shifts") or _SHIFTS
+        table["shifts"] = [{"at_s": at_s, "on": on} for at_s, on in shifts]
+    return table
+
+
+def mm(kind: str, block: Settings) -> Table:
+    """Return our table for a method management, which there exchanges pod storage only.
+
+    Raises
+    ------
+    InputError
+        If a pod storage is named that RAWSim-O itself cannot exchange.
+    """
+    if kind == "Random":
+        exchanges = block.switch("ExchangePodStorage", default=True)
+        period = values_of(block, {"ChangeTimeout": Number("period_s", 7200.0)})
+        return {"name": "random", **period} if exchanges else {"name": "none"}
+    if kind == "Scheduled":
+        key = "at_share" if block.switch("RelativeMode", default=True) else "at_s"
+        planned = [pair for tag in block.tags for pair in block.words(tag, _EXCHANGEABLE)]
+        planned = sorted(planned) or [(0.5, "nearest")]
+        return {
+            "name": "scheduled",
+            "exchanges": [{key: at, "psa": {"name": name}} for at, name in planned],
+        }
+    return {"name": "none"}
+
+
+def pp(kind: str, block: Settings) -> Table:
+    """Return our table for a path planning: there is one planner here."""
+    tags = [tag for tag in block.tags if tag != "Name"]
+    block.note(
+        f"{kind} becomes time-windows, which plans each way once and without conflict, and is "
+        "limited by work, not by time"
+    )
+    block.leave(tags, "parameters of another planner")
+    return {"name": "time-windows"}

@@ -1,0 +1,243 @@
+"""RAWSim-O's task allocation with its pod selection: TA and PPS."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.control.rawsimo.elements import (
+    METRICS,
+    Complement,
+    Element,
+    Number,
+    Rule,
+    Switch,
+    Whole,
+    Word,
+    translated,
+    values_of,
+)
+
+if TYPE_CHECKING:
+    from rmfs.config import Table
+    from rmfs.scenario.rawsimo.settings import Settings
+
+_REST = {
+    "Random": "random",
+    "RandomSameTier": "random",
+    "Middle": "middle",
+    "MiddleSameTier": "middle",
+    "Nearest": "nearest",
+}
+_TIER = "robots rest, and pods go on to other stations, on their tier anyway"
+_DROPPED = "RAWSim-O itself has dropped it"
+
+TA = {
+    "Balanced": Rule(
+        "balanced",
+        {
+            "BotReallocationTimeout": Number("period_s", 30.0),
+            "WeightInputStations": Number("replenishment_weight", 1.0),
+            "WeightOutputStations": Number("pick_weight", 2.0),
+            "WeightRepositioning": Number("reposition_weight", 0.0),
+            "BotsPerStationLimit": Whole("robots_per_station", 9),
+            "ExtendSearch": Switch("other_stations", False),
+            "ExtendedSearchRadius": Number("search_radius_m", 8.0),
+            "SearchAll": Switch("search_all", False),
+            "RepositionBeforeRest": Switch("reposition_before_rest", True),
+            "RestLocationOrderType": Word("rest", _REST, "MiddleSameTier"),
+        },
+        {
+            "PreferSameTier": _TIER,
+            **dict.fromkeys(
+                ("Solver", "WeightInventoryFeedback", "InventoryFillDesired"), _DROPPED
+            ),
+        },
+    ),
+    "ConstantRatio": Rule(
+        "constant-ratio",
+        {
+            "PickBotRatio": Number("pick_share", 0.75),
+            "RefreshAllocationTimeout": Number("period_s", 30.0),
+            "RestLocationOrderType": Word("rest", _REST, "MiddleSameTier"),
+        },
+        dict.fromkeys(
+            ("OnTheFlyExtract", "OnTheFlyStore"),
+            "RAWSim-O itself looks at those of the pod selection only",
+        ),
+    ),
+    "Swarm": Rule(
+        "swarm",
+        {
+            "alpha": Number("threshold_weight", 1.0),
+            "beta": Number("distance_weight", 1.0),
+            "multiplikator": Number("growth", 1.2),
+            "maxMultiplikatorValue": Number("growth_limit", 30.0),
+            "restPercentage": Number("rest_share", 0.8),
+            "maximumBotsPerStation": Whole("work_limit", 6),
+            "ExtendSearch": Switch("other_stations", False),
+            "ExtendedSearchRadius": Number("search_radius_m", 5.0),
+            "RestLocationOrderType": Word("rest", _REST, "Nearest"),
+        },
+    ),
+    "Random": Rule(
+        "random",
+        {
+            "StickToModeProbability": Complement("switch_probability", 0.9),
+            "StickToPodProbability": Number("keep_pod_probability", 0.95),
+            "RepositioningProbability": Number("reposition_probability", 0.05),
+            "SwitchModeIfNoWork": Switch("other_kind", True),
+            "PreferSameTier": Switch("prefer_same_tier", True),
+        },
+        {"DoRepositioningIfNoWork": "RAWSim-O itself never looks at it"},
+    ),
+    "BruteForce": Rule("brute-force"),
+}
+
+_FILTERS = {
+    "AssignedOnly": "assigned",
+    "AssignedAndCompleteQueued": "assigned-and-completable",
+    "AssignedAndQueuedEqually": "assigned-and-queued",
+}
+_BINDING: dict[str, Element] = {
+    "OnTheFlyExtract": Switch("late_picks", True),
+    "OnTheFlyStore": Switch("late_bundles", True),
+    "FilterForConsideration": Word("consider", _FILTERS, "AssignedAndCompleteQueued"),
+    "FilterForReservation": Word("reserve", _FILTERS, "AssignedAndCompleteQueued"),
+}
+_VALUES = {"Picks": "picks", "OrderAge": "age", "OrderDueTime": "lateness"}
+_SAME_TIER: dict[str, Element] = {"PreferSameTier": Switch("prefer_same_tier", True)}
+_NEAR: dict[str, Element] = {"EstimateBotPodDistance": Switch("estimate", True)}
+_LATENESS: dict[str, Element] = {
+    "ValueMetric": Word("metric", _VALUES, "Picks"),
+    "OnlyPositiveLateness": Switch("only_positive_lateness", False),
+}
+_OLD_AGE = {"IncludeAge": "RAWSim-O itself has dropped it; ValueMetric says it"}
+_ON_ITS_TIER = {"PreferSameTier": _TIER}
+
+_PICK_POD = {
+    "Random": Rule("random", _SAME_TIER),
+    "Nearest": Rule(
+        "nearest", {**_NEAR, "DistanceMetric": Word("metric", METRICS, "ShortestTime")}
+    ),
+    "Fill": Rule(
+        "fill",
+        {
+            "PreferFullest": Switch("prefer_fullest", True),
+            "Binary": Switch("binary", True),
+            "Threshold": Number("threshold", 0.7),
+        },
+    ),
+    "Demand": Rule("demand"),
+    "Completeable": Rule("completeable", {"IncludeQueuedOrders": Switch("queued", True)}),
+    "WorkAmount": Rule(
+        "work-amount",
+        {
+            **_LATENESS,
+            **_SAME_TIER,
+            "BacklogWeight": Number("queued_weight", 0.2),
+            "CompleteableOrderBoost": Number("completable_boost", 1.0),
+            "CompleteableQueuedOrders": Switch("boost_queued", True),
+            "TimeCosts": Number("time_cost", 1 / 3),
+            "EstimateBotPodDistancePenalty": Switch("estimate_to_pod", True),
+            "EstimatePodStationDistancePenalty": Switch("estimate_to_station", False),
+        },
+        _OLD_AGE,
+    ),
+}
+_REPLENISHMENT_POD = {
+    "Random": Rule("random", _SAME_TIER),
+    "Nearest": Rule("nearest", {**_NEAR, "DistanceMetric": Word("metric", METRICS, "Euclidean")}),
+    "Demand": Rule("demand"),
+    "WorkAmount": Rule("work-amount", {"IncludeAge": Switch("age", False), **_SAME_TIER}),
+}
+_NEXT_PICK = {
+    "Random": Rule("random", left=_ON_ITS_TIER),
+    "Nearest": Rule("nearest", {"DistanceMetric": Word("metric", METRICS, "Euclidean")}),
+    "WorkAmount": Rule("work-amount", _LATENESS, {**_ON_ITS_TIER, **_OLD_AGE}),
+}
+_NEXT_REPLENISHMENT = {
+    "Random": Rule("random", left=_ON_ITS_TIER),
+    "Nearest": Rule("nearest", {"DistanceMetric": Word("metric", METRICS, "Euclidean")}),
+    "WorkAmount": Rule("work-amount", {"IncludeAge": Switch("bundle_age", False)}, _ON_ITS_TIER),
+}
+
+_OLD_ORDERS = (
+    *("InputPodOrderType", "OutputPodOrderType"),
+    *("InputStationExtendedSearchOrderType", "OutputStationExtendedSearchOrderType"),
+)
+
+
+def ta(kind: str, block: Settings) -> Table:
+    """Return our table for a task allocation, without its pod selection."""
+    block.leave(_OLD_ORDERS, "RAWSim-O itself has dropped it, and takes its default pod selection")
+    table = translated(block, TA[kind])
+    if table.get("period_s") == 0:
+        block.note("a period of 0 means never: 10^9 s here")
+        table["period_s"] = 1e9
+    return table
+
+
+def pps(kind: str, block: Settings) -> Table:
+    """Return our table for the pod selection of a task allocation.
+
+    Robots that choose pods themselves need a dummy; they bind nothing on the way there.
+    """
+    selection = block.block("PodSelectionConfig")
+    if kind in ("Random", "BruteForce"):
+        return {"name": "dummy", "late_picks": False, "late_bundles": False}
+    table: Table = {"name": "lexicographic", **values_of(selection, _BINDING)}
+    if kind == "Swarm":
+        table |= {"late_picks": False, "late_bundles": False}
+        selection.note("Swarm binds nothing on the way, whatever OnTheFlyExtract and -Store say")
+    table["pick_pod"] = _scorers(
+        selection, "OutputPodScorer", _PICK_POD, ("Completeable", "WorkAmount", "Nearest")
+    )
+    table["replenishment_pod"] = _scorers(
+        selection, "InputPodScorer", _REPLENISHMENT_POD, ("WorkAmount", "Nearest", "Random")
+    )
+    _next_stations(selection, table)
+    selection.text("Name")
+    selection.leave_rest()
+    scorers = [*table["pick_pod"], *table["replenishment_pod"], *table["next_station"]]
+    if all(scorer["scorer"] == "random" for scorer in scorers):
+        binding = {key: table[key] for key in ("late_picks", "late_bundles", "consider", "reserve")}
+        return {
+            "name": "random",
+            **binding,
+            "prefer_same_tier": table["pick_pod"][0]["prefer_same_tier"],
+        }
+    return table
+
+
+def _next_stations(selection: Settings, table: Table) -> None:
+    """Map the two lists of scorers of stations, for which we have one."""
+    usual = ("WorkAmount", "Nearest", "Random")
+    picks = _scorers(selection, "OutputExtendedSearchScorer", _NEXT_PICK, usual)
+    bundles = _scorers(selection, "InputExtendedSearchScorer", _NEXT_REPLENISHMENT, usual)
+    named = [[scorer["scorer"] for scorer in scorers] for scorers in (picks, bundles)]
+    if named[0] != named[1]:
+        selection.note(
+            "pods that go on to another station are scored alike for both kinds of station: "
+            f"InputExtendedSearchScorer ({', '.join(named[1])}) is left out"
+        )
+    for scorer, other in zip(picks, bundles, strict=True):
+        if scorer["scorer"] == other["scorer"] == "work-amount":
+            scorer["bundle_age"] = other["bundle_age"]
+    table["next_station"] = picks
+
+
+def _scorers(
+    selection: Settings, tag: str, rules: dict[str, Rule], usual: tuple[str, str, str]
+) -> list[Table]:
+    """Return a scorer and its two tie breakers; absent ones are the usual ones."""
+    found = []
+    for end, default in zip(("", "TieBreaker1", "TieBreaker2"), usual, strict=True):
+        block = selection.block(tag + end)
+        word = next((word for word in rules if block.kind.endswith(word)), None)
+        if block.kind and word is None:
+            raise selection.error(tag + end, f"unknown scorer {block.kind:.60}")
+        table = translated(block, rules[word or default])
+        table["scorer"] = table.pop("name")
+        block.leave_rest()
+        found.append(table)
+    return found

@@ -1,0 +1,126 @@
+"""Reader for RAWSim-O's controller configurations (.xconf).
+
+Every element is mapped to a rule or a parameter of ours, or named in a note together with the
+reason why not.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from rmfs.control.rawsimo import orders, others, pods, tasks
+from rmfs.scenario.rawsimo.settings import Settings
+from rmfs.xml import read_root
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection
+    from pathlib import Path
+
+    from rmfs.config import Table
+
+ROOT = "ControlConfiguration"
+
+
+class _Block(NamedTuple):
+    """One of the nine blocks: its element, its usual method, and how to read it."""
+
+    tag: str
+    usual: str
+    methods: Collection[str]
+    read: Callable[[str, Settings], Table]
+
+
+_BLOCKS = {
+    "poa": _Block("OrderBatchingConfig", "PodMatching", orders.POA, orders.poa),
+    "roa": _Block("ReplenishmentBatchingConfig", "SamePod", orders.ROA, orders.roa),
+    "rps": _Block("ItemStorageConfig", "Emptiest", pods.RPS, pods.rps),
+    "ta": _Block("TaskAllocationConfig", "Balanced", tasks.TA, tasks.ta),
+    "psa": _Block("PodStorageConfig", "Nearest", pods.PSA, pods.psa),
+    "repositioning": _Block("RepositioningConfig", "Dummy", pods.REPOSITIONING, pods.repositioning),
+    "sa": _Block("StationActivationConfig", "ActivateAll", others.SA, others.sa),
+    "mm": _Block("MethodManagementConfig", "NoChange", others.MM, others.mm),
+    "pp": _Block("PathPlanningConfig", "FAR", others.PP, others.pp),
+}
+
+_OLD_TYPES = tuple(f"{block.tag.removesuffix('Config')}Type" for block in _BLOCKS.values())
+_COMMENTS = ("CommentTag1", "CommentTag2", "CommentTag3")
+
+
+class ImportedControllers(NamedTuple):
+    """What a controller configuration says.
+
+    Attributes
+    ----------
+    table
+        As in a controllers file, not yet validated.
+    notes
+        What was left out and what we do differently.
+    """
+
+    table: Table
+    notes: list[str]
+
+
+def read_xconf(path: Path) -> ImportedControllers:
+    """Read a controller configuration; what it does not say takes RAWSim-O's default.
+
+    Raises
+    ------
+    InputError
+        If the file is not such XML, or a method or a value in it is unknown.
+    """
+    notes: list[str] = []
+    root = Settings(read_root(path, ROOT), path, notes)
+    table: Table = {"format": "rmfs-controllers/1", "name": root.text("Name") or path.stem}
+    comments = [text for tag in _COMMENTS if (text := root.text(tag))]
+    table["description"] = "; ".join(comments) or f"imported from RAWSim-O's {path.name}"
+    root.leave(_OLD_TYPES, "RAWSim-O itself has dropped it; the type of each block says it")
+    for problem, given in _BLOCKS.items():
+        before = len(notes)
+        block = root.block(given.tag)
+        block.text("Name")
+        method = _method(given, block, root)
+        table[problem] = given.read(method, block)
+        if problem == "ta":
+            table["pps"] = tasks.pps(method, block)
+        block.leave_rest()
+        # the same is often said of each of several scorers
+        notes[before:] = dict.fromkeys(f"{given.tag}: {note}" for note in notes[before:])
+    root.leave_rest()
+    _let_robots_decide(table, notes)
+    return ImportedControllers(table, notes)
+
+
+def _method(given: _Block, block: Settings, root: Settings) -> str:
+    """Return the method of a block, which its type names."""
+    suffix = f"{given.tag.removesuffix('Config')}Configuration"
+    method = block.kind.removesuffix(suffix) or given.usual
+    if method not in given.methods:
+        raise root.error(
+            given.tag,
+            f"type {block.kind:.60} is unknown or has no rule here; known methods: "
+            f"{', '.join(given.methods)}",
+        )
+    return method
+
+
+def _let_robots_decide(table: Table, notes: list[str]) -> None:
+    """Put rules that decide where theirs leaves it to the robots and ours does not, or inversely.
+
+    Brute force chooses pods and parks them here as there; but it takes bundles to the pods that RPS
+    has chosen, and leaves their stations to ROA.
+    """
+    brute = table["ta"]["name"] == "brute-force"
+    if brute and table["psa"]["name"] != "dummy":
+        name = table["psa"]["name"]
+        notes.append(f"PodStorageConfig: {name} not used: robots park by themselves")
+        table["psa"] = {"name": "dummy"}
+    if table["rps"]["name"] == "dummy":
+        notes.append(
+            "ItemStorageConfig: bundles are brought to the pods that RPS chooses, which must be a "
+            "rule: random takes the place of the dummy"
+        )
+        table["rps"] = {"name": "random"}
+    if table["psa"]["name"] == "dummy" and not brute:
+        notes.append("PodStorageConfig: nobody parks pods: random takes the place of the dummy")
+        table["psa"] = {"name": "random"}

@@ -1,0 +1,56 @@
+"""Rows of fixed types in one growing block of memory.
+
+A long run writes down millions of rows. As tuples each would take some 200 bytes and its own
+objects; packed, a row takes the bytes of its values, and becomes columns without a copy per value.
+"""
+
+from __future__ import annotations
+
+from struct import Struct
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_CODES = {"f8": "d", "i4": "i", "i2": "h", "i1": "b", "?": "?"}
+"""How `struct` writes each type of NumPy."""
+
+
+class Log:
+    """Rows that are only ever added.
+
+    Parameters
+    ----------
+    columns
+        Name and type of each column: `f8`, `i4`, `i2`, `i1` or `?`, as NumPy says it.
+    """
+
+    def __init__(self, **columns: str) -> None:
+        self._dtype = np.dtype([(name, f"<{kind}") for name, kind in columns.items()])
+        self._pack = Struct("<" + "".join(_CODES[kind] for kind in columns.values())).pack
+        self._rows = bytearray()
+
+    def __len__(self) -> int:
+        return len(self._rows) // self._dtype.itemsize
+
+    def add(self, *values: Any) -> None:
+        """Add a row: one value per column.
+
+        Raises
+        ------
+        struct.error
+            If a number does not fit into its column.
+        """
+        self._rows += self._pack(*values)
+
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """Return a copy of each column, shape (rows,); whole numbers as int64, to reckon with."""
+        rows = np.frombuffer(self._rows, self._dtype)
+        kinds = {"i": np.dtype(np.int64)}
+        # a view would forbid the block to grow
+        return {
+            name: rows[name].astype(kinds.get(dtype.kind, dtype))
+            for name, (dtype, *_) in (self._dtype.fields or {}).items()
+        }
