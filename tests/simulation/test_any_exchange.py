@@ -164,7 +164,9 @@ def check_nothing_was_lost(ledger: Ledger, bundles: Bundles) -> None:
     assert [b.index for b in held_back if b.created_s <= EXCHANGED_UNTIL_S] == []
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize(
+    "seed", [*range(8), *(pytest.param(s, marks=pytest.mark.slow) for s in range(8, 200))]
+)
 def test_promises_outlive_whoever_made_them(seed) -> None:
     bundles = Bundles()
     made = small(seed, bundles)

@@ -7,14 +7,17 @@ from __future__ import annotations
 import sys
 from itertools import pairwise
 from math import inf
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
-from hand_made import HandMade
+from every_rule import always_busy, rules_of, tables_of
 
 from rmfs.control import registry
 from rmfs.control.base import Controller
 from rmfs.control.problems import Problem, Trigger
+
+if TYPE_CHECKING:
+    from hand_made import HandMade
 
 DURATION_S = 1800.0
 
@@ -30,30 +33,6 @@ TABLE_1 = {
 
 STATIONS_CHANGE = {Problem.ROA, Problem.POA}
 """Besides, as in the reference system, these are asked when a station is switched."""
-
-PARTNERS: dict[tuple[str, str], dict[str, Any]] = {
-    ("rps", "nearest"): {"roa": "random"},
-    ("rps", "reactive"): {"roa": "random"},
-    ("ta", "random"): {"pps": "dummy"},
-    ("ta", "brute-force"): {"pps": "dummy", "psa": "dummy"},
-    ("repositioning", "cache-drop-off"): {"psa": {"name": "cache", "drop_off_places": 1}},
-}
-PARAMETERS: dict[tuple[str, str], dict[str, Any]] = {
-    ("poa", "near-best-pod"): {"metric": "manhattan"},
-    ("sa", "backlog-threshold"): {"pause_s": 60.0, "orders_on": 5, "bundles_on": 5},
-    ("sa", "work-shifts"): {
-        "shifts": [{"at_s": 0.0, "on": True}, {"at_s": 200.5, "on": False}],
-        "loop_s": 250.0,
-    },
-    ("mm", "scheduled"): {
-        "exchanges": [{"at_s": 100.0, "poa": "random"}, {"at_s": 300.0, "psa": "random"}]
-    },
-    ("mm", "random"): {
-        "period_s": 70.0,
-        "alternatives": [{"psa": "nearest"}, {"poa": "first-come"}],
-    },
-    ("repositioning", "cache-drop-off"): {"drop_off_places": 1},
-}
 
 
 class Spied:
@@ -105,44 +84,17 @@ def spied(rule: type[Controller[Any]], spy: Spied) -> type[Controller[Any]]:
     return type("Watched", (rule,), methods)
 
 
-def watch(problem: Problem, name: str, monkeypatch, **others: Any) -> tuple[Spied, HandMade]:
+def watch(problem: Problem, name: str, monkeypatch) -> tuple[Spied, HandMade]:
     """Run a small warehouse that always has work, with one rule watched."""
     spy = Spied()
     rule = spied(registry.find(problem, name), spy)
     monkeypatch.setattr(sys.modules[__name__], "Watched", rule, raising=False)
-    key = (str(problem), name)
-    tables: dict[str, Any] = {
-        "rps": {"name": "emptiest", "buffer_threshold": 0.6, "buffer_timeout_s": 100.0},
-        **PARTNERS.get(key, {}),
-        **others,
-    }
-    tables = {k: {"name": t} if isinstance(t, str) else t for k, t in tables.items()}
-    given = {k: v for k, v in tables.get(str(problem), {}).items() if k != "name"}
-    fields = rule.parameters_model.model_fields
-    given = {k: v for k, v in given.items() if k in fields} | PARAMETERS.get(key, {})
-    tables[str(problem)] = {"name": f"{__name__}:Watched", **given}
-    made = HandMade(
-        {"robots": 4, "places": 14, "pods": 9, "pick_stations": 2, "replenishment_stations": 2},
-        {
-            "duration_s": DURATION_S,
-            "stock": {"initial_share": 0.5},
-            "demand": {"mode": "backlog", "orders": 8},
-            "replenishment": {"mode": "backlog", "bundles": 8},
-        },
-        **tables,
-    )
+    tables = tables_of(problem, name)
+    tables[str(problem)]["name"] = f"{__name__}:Watched"
+    made = always_busy(DURATION_S, **tables)
     made.run()
     assert made.world.orders_completed > 10
     return spy, made
-
-
-def rules_of(*problems: Problem) -> list[tuple[Problem, str]]:
-    return [
-        (problem, name)
-        for problem in problems
-        for name in registry.built_in(problem)
-        if not registry.find(problem, name).is_dummy
-    ]
 
 
 def instant_of(time_s: float, after_s: float) -> float:
