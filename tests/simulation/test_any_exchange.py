@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 EXCHANGED_UNTIL_S = 1500.0
 DURATION_S = 5400.0
 GAP_S = 40.0
-JOINT = "joint:Joint"
+JOINT = {Problem.POA: "joint:Joint", Problem.ROA: "joint:JointSupply"}
 FAST_RELEASE = {"buffer_threshold": 0.6, "buffer_timeout_s": 100.0}
 PARAMETERS: dict[tuple[Problem, str], dict[str, Any]] = {
     (Problem.RPS, name): FAST_RELEASE
@@ -55,14 +55,14 @@ def choice(problem: Problem, name: str) -> Choice:
 
 
 def all_choices() -> list[Choice]:
-    """Every built-in rule but those of MM, and a joint one; dummies come with joint ones."""
+    """Every built-in rule but those of MM, and joint ones; dummies come with these."""
     made = [
         choice(problem, name)
         for problem in Problem
         for name in registry.built_in(problem)
         if problem is not Problem.MM and not registry.find(problem, name).is_dummy
     ]
-    return [*made, choice(Problem.POA, JOINT)]
+    return [*made, *(choice(problem, name) for problem, name in JOINT.items())]
 
 
 def start() -> dict[Problem, Choice]:
@@ -146,6 +146,8 @@ class Bundles(Observer):
 
     def controller_exchanged(self, time_s, problem, name):
         verify(self.world)
+        if (problem, name) == ("rps", "dummy"):
+            assert not self.world.bundles.unreleased, "nobody would release these"
 
     def bundle_assigned(self, bundle):
         self.assigned.append(bundle)
