@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
+import shlex
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from experiments.running.code import code
@@ -13,7 +15,6 @@ from rmfs.measure.provenance import commit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     import pandas as pd
 
@@ -66,11 +67,19 @@ def write(
         },
         "runs_made_by": [{"code": made, "git_commit": told} for made, told in made_by],
         "written_by": {**code(), **commit()},
-        "command": " ".join(["rmfs" if "rmfs" in sys.argv[0] else "python", *sys.argv[1:]]),
+        "command": command(),
     }
     target = path.with_name(path.name + SUFFIX)
     write_text(target, json.dumps(told, indent=1, ensure_ascii=False, default=str) + "\n")
     return target
+
+
+def command() -> str:
+    """Return the present command, without the places of a machine: `/a/b/c` becomes `.../c`."""
+    module = getattr(sys.modules["__main__"], "__spec__", None)
+    name = Path(sys.argv[0]).name if module is None else f"python -m {module.name}"
+    given = [f".../{Path(one).name}" if Path(one).is_absolute() else one for one in sys.argv[1:]]
+    return shlex.join([*name.split(), *given])
 
 
 def rows_hash(frame: pd.DataFrame, columns: Sequence[str]) -> str:

@@ -19,13 +19,14 @@ import pandas as pd
 
 from experiments.figures.style import saving
 from experiments.papers.study import command, done, parser
-from experiments.tables import Table
+from experiments.tables import means
 from rmfs.measure.plots import heat as draw_heat
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from experiments.papers.study import Study
+    from experiments.tables import Table
     from rmfs.layout.model import Layout
 
 COUNTS = ("visits", "loaded_visits", "waiting_s")
@@ -52,23 +53,32 @@ def areas(layout: Layout) -> NDArray[np.str_]:
     return names
 
 
-def spread(mean: pd.DataFrame, area: NDArray[np.str_]) -> pd.DataFrame:
-    """Return per area the waypoints, visits and waiting time, and their shares."""
-    grouped = mean.assign(area=area[mean["waypoint"].to_numpy(int)]).groupby("area")
-    made = pd.DataFrame({"waypoints": grouped.size(), "visits": grouped["visits"].sum()})
-    made["visits per waypoint"] = made["visits"] / made["waypoints"]
-    made["share of visits %"] = 100 * made["visits"] / made["visits"].sum()
-    made["waiting h"] = grouped["waiting_s"].sum() / 3600.0
-    made["share of waiting %"] = 100 * made["waiting h"] / made["waiting h"].sum()
-    return made.sort_values("visits per waypoint", ascending=False)
+def spread(heat: pd.DataFrame, area: NDArray[np.str_]) -> pd.DataFrame:
+    """Return, per seed and area, waypoints, visits per waypoint, and the shares in percent.
+
+    Parameters
+    ----------
+    heat
+        The table `heat` of one arm.
+    area
+        Of each waypoint, (N,).
+    """
+    of_waypoint = area[heat["waypoint"].to_numpy(int)]
+    grouped = heat.assign(area=of_waypoint).groupby(["replication", "area"])
+    sums = grouped[["visits", "waiting_s"]].sum()
+    made = pd.DataFrame({"waypoints": grouped.size()})
+    made["visits per waypoint"] = sums["visits"] / made["waypoints"]
+    for column, name in (("visits", "share of visits %"), ("waiting_s", "share of waiting %")):
+        made[name] = 100 * sums[column] / sums[column].groupby("replication").transform("sum")
+    return made.reset_index()
 
 
-def as_table(found: pd.DataFrame, seeds: int) -> Table:
-    """Return the spread as a table to publish."""
-    frame = found.copy()
-    frame.columns = pd.MultiIndex.from_tuples([(name, "") for name in found.columns])
-    decimals = dict(zip(frame.columns, (0, 0, 0, 1, 1, 1), strict=True))
-    return Table(frame, decimals, f"Robots' visits and waiting by area; mean of {seeds} seeds.")
+def as_table(found: pd.DataFrame) -> Table:
+    """Return the spread as a table to publish: means over the seeds, busiest area first."""
+    columns = ["waypoints", "visits per waypoint", "share of visits %", "share of waiting %"]
+    busiest = found.groupby("area")["visits per waypoint"].mean().sort_values(ascending=False)
+    ordered = found.set_index("area").loc[busiest.index].reset_index()
+    return means(ordered, columns, by="area")
 
 
 def picture(study: Study, mean: pd.DataFrame, seeds: int) -> Path:
@@ -88,10 +98,10 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser("heat-map", __doc__, reference="mati/MaTiMilli.xinst")
     study = done(options.parse_args(arguments))
     (arm,) = study.plan.arms
-    mean = together(study.table("heat"))
+    heat = study.table("heat")
     seeds = study.frame["replication"].nunique()
-    study.publish(as_table(spread(mean, areas(study.layout(arm))), seeds), "figure-5b", ["robots"])
-    print(picture(study, mean, seeds))
+    study.publish(as_table(spread(heat, areas(study.layout(arm)))), "figure-5b", ["robots"])
+    print(picture(study, together(heat), seeds))
 
 
 if __name__ == "__main__":

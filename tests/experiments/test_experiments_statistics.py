@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import gc
+import re
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -229,3 +231,27 @@ def test_bootstrap_and_sequential_intervals_are_reported():
     assert 0.75 <= coverage.fixed(5, "bootstrap", 100) <= 1.0
     reached, taken = coverage.sequential(10, experiments=100)
     assert reached > 0.85 and 20 < taken < 35
+
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "coverage.md"
+
+
+def test_the_page_on_coverage_keeps_the_promises():
+    text = PAGE.read_text(encoding="utf-8")
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    head, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
+    found = pd.DataFrame(rows, columns=head).set_index(["runs", "seeds"]).astype(float)
+    assert found.index.tolist() == [(s, n) for s in ("normal", "skewed") for n in ("5", "10", "30")]
+    assert found.loc["normal", "t"].between(0.93, 0.97).all()
+    assert found.loc["normal", "false alarms, 1 arm"].between(0.035, 0.065).all()
+    assert (found.loc["normal", "false alarms, 5 arms"] <= 0.065).all()
+    assert found[["bootstrap", "sequential"]].notna().all(axis=None)
+    (right,) = re.findall(r"right in (\S+) of the experiments", text)
+    assert float(right) >= 0.95
+
+
+@pytest.mark.slow
+def test_the_page_on_coverage_is_what_the_command_writes(tmp_path):
+    """Half an hour on a busy machine."""
+    assert coverage.main(["--page", str(tmp_path / "coverage.md")]) == 0
+    assert (tmp_path / "coverage.md").read_text() == PAGE.read_text()
