@@ -32,12 +32,26 @@ def test_the_example_runs(page, tmp_path, monkeypatch):
     assert near.split()[1:] != ours.split()[1:]
 
 
-def test_the_command_runs(page, tmp_path):
+def test_the_commands_run(page, tmp_path):
+    """The rule and the one it replaces, then the comparison, which names the rule that differs."""
     rule = re.search(r"```python\n(.*?)```", page, re.DOTALL)[1]
     (tmp_path / "my_rules.py").write_text(rule)
-    command = re.search(r"```sh\nPYTHONPATH=\. rmfs (.*?)\n```", page)[1]
-    subprocess.run([sys.executable, "-m", "rmfs", *shlex.split(command)], cwd=tmp_path, check=True)
+    blocks = re.findall(r"```sh\n(.*?)\n```", page, re.DOTALL)
+    commands = [line.removeprefix("PYTHONPATH=. ") for b in blocks for line in b.splitlines()]
+    told = [
+        subprocess.run(
+            [sys.executable, "-m", *shlex.split(command)],
+            cwd=tmp_path,
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout
+        for command in commands
+    ]
     assert (tmp_path / "results/wanted-near/footprint.csv").is_file()
+    assert [command.split()[1] for command in commands] == ["run", "run", "compare"]
+    assert "my_rules:WantedNear" in told[-1]
+    assert "units_per_h" in told[-1]
 
 
 def test_the_catalogue_is_up_to_date():
