@@ -185,6 +185,7 @@ def run(
 
     overrides = [parse_override(text) for text in set_ or []]
     inputs = {"layout": layout, "scenario": scenario, "controllers": controllers}
+    overrides = [*asked_of_layout(inputs), *overrides]
     target = out or Path("results") / default_name(inputs, seed)
     streams = None if record is None else StreamRecorder()
     with reserved(target) as folder:
@@ -351,6 +352,27 @@ def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
         except (StalledError, OptimiserError, ReplayError) as error:
             print(f"rmfs: {error}", file=sys.stderr)
             raise typer.Exit(GIVEN_UP) from None
+
+
+def asked_of_layout(inputs: dict[str, str]) -> list[tuple[list[str], Any]]:
+    """Say what imports of RAWSim-O's files leave out or do differently.
+
+    Returns
+    -------
+    What a scenario of RAWSim-O asks of the layout, as overrides.
+    """
+    from rmfs import control, layout, scenario
+    from rmfs.scenario.rawsimo import read_xsett
+
+    loaders = {"layout": layout, "scenario": scenario, "controllers": control.settings}
+    asked: list[tuple[list[str], Any]] = []
+    for part, given in inputs.items():
+        if Path(given).suffix.lower() in (".xinst", ".xlayo", ".xsett", ".xconf"):
+            for note in loaders[part].load_with_notes(given)[1]:
+                print(f"rmfs: {given}: {note}", file=sys.stderr)
+        if part == "scenario" and Path(given).suffix.lower() == ".xsett":
+            asked = read_xsett(Path(given)).layout
+    return asked
 
 
 def default_name(inputs: dict[str, str], seed: int) -> str:

@@ -1,7 +1,8 @@
-"""`rmfs controllers`: list, show and check sets of controllers."""
+"""`rmfs controllers`: list, show, check and import sets of controllers."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -12,15 +13,18 @@ from rmfs import instances
 from rmfs.config import parse_override
 from rmfs.control import registry
 from rmfs.control.problems import Problem
-from rmfs.control.settings import load
+from rmfs.control.settings import load, load_with_notes
 from rmfs.control.toml import to_toml
 from rmfs.errors import InputError
+from rmfs.files import write_text
 
 app = typer.Typer(
-    name="controllers", help="List, show and check sets of controllers.", no_args_is_help=True
+    name="controllers",
+    help="List, show, check and import sets of controllers.",
+    no_args_is_help=True,
 )
 
-Name = Annotated[str, typer.Argument(help="A TOML file, or the name of a shipped set.")]
+Name = Annotated[str, typer.Argument(help="A .toml or .xconf file, or the name of a shipped set.")]
 
 
 @app.command("list")
@@ -43,15 +47,47 @@ def show(
 ) -> None:
     """Print all rules and parameters as TOML, defaults included and explained."""
     overrides = [_below_controllers(text) for text in settings or []]
-    typer.echo(to_toml(load(controllers, overrides)), nl=False)
+    read, notes = load_with_notes(controllers, overrides)
+    _print_notes(notes)
+    typer.echo(to_toml(read), nl=False)
 
 
 @app.command()
 def check(controllers: Name) -> None:
     """Read a set of controllers, and say what is wrong or which rules it names."""
-    choices = load(controllers).choices.values()
+    read, notes = load_with_notes(controllers)
+    _print_notes(notes)
+    choices = read.choices.values()
     named = ", ".join(f"{choice.problem} {choice.name}" for choice in choices)
     typer.echo(f"{controllers}: ok, {named}")
+
+
+@app.command("import")
+def import_command(
+    path: Annotated[Path, typer.Argument(metavar="FILE", help="A RAWSim-O .xconf.")],
+    out: Annotated[
+        Path | None, typer.Option(help="The .toml file to write; default: NAME.toml.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace a file that exists.")] = False,
+) -> None:
+    """Turn a RAWSim-O controller configuration into a set of ours, and say what is different."""
+    if path.suffix.lower() != ".xconf":
+        raise InputError(f"{path}: expected a .xconf file")
+    target = out if out is not None else Path(f"{path.stem}.toml")
+    if target.suffix.lower() != ".toml":
+        raise InputError(f"{target}: the name must end in .toml")
+    if target.exists() and not force:
+        raise InputError(f"{target}: exists already; --force replaces it")
+    read, notes = load_with_notes(path)
+    write_text(target, to_toml(read))
+    _print_notes(notes)
+    typer.echo(f"{target}: written")
+
+
+def _print_notes(notes: list[str]) -> None:
+    # beside the output proper, which may be TOML
+    for note in notes:
+        typer.echo(f"note: {note}", err=True)
 
 
 def _sets() -> Table:

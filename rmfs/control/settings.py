@@ -12,6 +12,7 @@ from rmfs import config, instances
 from rmfs.config import Model, Table
 from rmfs.control.choices import DEFAULTS, Choice, check_together, choose
 from rmfs.control.problems import Problem
+from rmfs.control.rawsimo import read_xconf
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -62,16 +63,27 @@ class _File(Model):
 def load(
     name_or_path: str | Path, overrides: Sequence[tuple[list[str], Any]] = ()
 ) -> ControllerSettings:
-    """Read a controllers file.
+    """Read a controllers file; see `load_with_notes`."""
+    return load_with_notes(name_or_path, overrides)[0]
+
+
+def load_with_notes(
+    name_or_path: str | Path, overrides: Sequence[tuple[list[str], Any]] = ()
+) -> tuple[ControllerSettings, list[str]]:
+    """Read a controllers file and the remarks of its import.
 
     Parameters
     ----------
     name_or_path
-        A path or the name of a shipped instance.
+        A TOML file, a file of RAWSim-O (.xconf), or the name of a shipped set.
     overrides
         Pairs of path and value, for example `(["psa", "name"], "random")`. An override that
         chooses another rule drops the parameters the file gave to the former one; a problem set to
         a plain name chooses that rule with its defaults.
+
+    Returns
+    -------
+    The controllers, and remarks on what an import left out or does differently.
 
     Raises
     ------
@@ -79,7 +91,11 @@ def load(
         If something in the file is wrong; names the key and what is valid.
     """
     path = instances.locate("controllers", str(name_or_path))
-    return settings(config.read_toml(path), overrides, source=str(path))
+    if path.suffix.lower() == ".xconf":
+        table, notes = read_xconf(path)
+    else:
+        table, notes = config.read_toml(path), []
+    return settings(table, overrides, source=str(path)), notes
 
 
 def settings(

@@ -9,7 +9,7 @@ from rmfs.config import Table, apply_overrides, read_toml, validate
 from rmfs.errors import InputError
 from rmfs.layout.explicit import read_json
 from rmfs.layout.generator import generate
-from rmfs.layout.overrides import override
+from rmfs.layout.overrides import FACTORS, override
 from rmfs.layout.parameters import LayoutParameters
 from rmfs.layout.rawsimo.xinst import read_xinst
 from rmfs.layout.rawsimo.xlayo import read_xlayo_table
@@ -46,7 +46,8 @@ def load_with_notes(
         `.xinst` (RAWSim-O).
     overrides
         (path, value) pairs such as `(["robots"], 16)`, applied to the parameters before they are
-        validated. On explicit layouts only the keys of `ExplicitOverrides`.
+        validated. On explicit layouts only the keys of `ExplicitOverrides`; its `FACTORS` serve
+        generated layouts, too.
 
     Returns
     -------
@@ -74,4 +75,13 @@ def load_with_notes(
 
 
 def _generated(table: Table, overrides: Sequence[Override], source: str) -> Layout:
-    return generate(validate(LayoutParameters, apply_overrides(table, list(overrides)), source))
+    parameters, factors = split_factors(overrides)
+    layout = generate(validate(LayoutParameters, apply_overrides(table, parameters), source))
+    return override(layout, factors, source)
+
+
+def split_factors(overrides: Sequence[Override]) -> tuple[list[Override], list[Override]]:
+    """Part overrides of a generated layout into parameters and what is applied afterwards."""
+    is_factor = [path[0] in FACTORS for path, _ in overrides]
+    pairs = list(zip(overrides, is_factor, strict=True))
+    return [one for one, late in pairs if not late], [one for one, late in pairs if late]

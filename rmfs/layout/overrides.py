@@ -1,19 +1,22 @@
-"""Overrides on explicit layouts: the few parameters that make sense without a generator.
+"""Overrides on layouts that are there already: what makes sense without a generator.
 
 A layout given waypoint by waypoint has no aisles to lengthen, but its robots and stations can
-still be other ones. The keys are those of layout parameters, and mean the same.
+still be other ones. The keys are those of layout parameters, and mean the same. Shares of stations
+and robots per station are factors of experiments, and serve generated layouts too.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import numpy as np
+import pydantic
 
 from rmfs.config import apply_overrides, validate
 from rmfs.errors import InputError
 from rmfs.layout.generator.placement import draw_robots
+from rmfs.layout.model import PickStation, ReplenishmentStation
 from rmfs.layout.values import Count, Positive, Strict
 
 if TYPE_CHECKING:
@@ -26,6 +29,8 @@ _ROBOT_KEYS = (
     *("acceleration_m_s2", "deceleration_m_s2", "top_speed_m_s"),
     *("full_turn_s", "pod_transfer_s"),
 )
+
+Share = Annotated[float, pydantic.Field(gt=0, le=1)]
 
 SEED = 0
 """Robots of an explicit layout are drawn with a fixed seed, as in RAWSim-O."""
@@ -46,6 +51,13 @@ class ExplicitOverrides(Strict):
     top_speed_m_s: Positive | None = None
     full_turn_s: Positive | None = None
     pod_transfer_s: Positive | None = None
+    pick_station_share: Share | None = None
+    replenishment_station_share: Share | None = None
+    robots_per_pick_station: Count | None = None
+
+
+FACTORS = ("pick_station_share", "replenishment_station_share", "robots_per_pick_station")
+"""Keys that generated layouts have, too; applied when all else is in place."""
 
 
 def override(layout: Layout, overrides: Sequence[tuple[list[str], Any]], source: str) -> Layout:
@@ -54,7 +66,9 @@ def override(layout: Layout, overrides: Sequence[tuple[list[str], Any]], source:
     Parameters
     ----------
     overrides
-        (path, value) pairs; `robots` counts robots per tier, drawn anew from the road waypoints.
+        (path, value) pairs; `robots` counts robots per tier, drawn anew from the road waypoints,
+        as are those of `robots_per_pick_station`. Of the stations of a kind a share is kept,
+        rounded down, but one at least: those that are switched on first.
     source
         Name of the file, for messages.
 
@@ -71,10 +85,15 @@ def override(layout: Layout, overrides: Sequence[tuple[list[str], Any]], source:
         f"{source} (an explicit layout)",
     )
     changed = _stations(_robot_kinds(layout, given), given)
+    changed = _fewer_stations(changed, given)
     if given.pod_capacity is not None:
         changed = replace(changed, pod_capacity=np.full(changed.pods, given.pod_capacity))
     if given.robots is not None:
-        changed = _robots(changed, given.robots, source)
+        changed = _robots(changed, [given.robots] * len(changed.tiers), source)
+    if given.robots_per_pick_station is not None:
+        total = given.robots_per_pick_station * len(changed.pick_stations)
+        tiers = len(changed.tiers)
+        changed = _robots(changed, [(total + k) // tiers for k in range(tiers)], source)
     return changed
 
 
@@ -104,18 +123,43 @@ def _robot_kinds(layout: Layout, overrides: ExplicitOverrides) -> Layout:
     )
 
 
-def _robots(layout: Layout, per_tier: int, source: str) -> Layout:
+def _fewer_stations(layout: Layout, overrides: ExplicitOverrides) -> Layout:
+    """Drop stations; the places of their queues become roads."""
+    picks = _first(layout.pick_stations, overrides.pick_station_share)
+    others = _first(layout.replenishment_stations, overrides.replenishment_station_share)
+    stations: tuple[PickStation | ReplenishmentStation, ...] = (*picks, *others)
+    kept = {place for station in stations for place in station.queue}
+    dropped = {place for station in layout.stations for place in station.queue} - kept
+    is_queue = layout.is_queue.copy()
+    is_queue[sorted(dropped)] = False
+    return replace(layout, pick_stations=picks, replenishment_stations=others, is_queue=is_queue)
+
+
+S = TypeVar("S", PickStation, ReplenishmentStation)
+
+
+def _first(stations: tuple[S, ...], share: float | None) -> tuple[S, ...]:
+    """Return the share of stations that are switched on first, in their order."""
+    if share is None or not stations:
+        return stations
+    # a share such as 0.7 is a little less than seven tenths
+    number = max(1, int(share * len(stations) + 1e-9))
+    ranks = sorted(range(len(stations)), key=lambda one: (stations[one].activation, one))
+    return tuple(stations[one] for one in sorted(ranks[:number]))
+
+
+def _robots(layout: Layout, per_tier: Sequence[int], source: str) -> Layout:
     """Replace the robots: all of the first robot's kind, on the road waypoints of every tier."""
     road = ~layout.is_storage & ~layout.is_queue
     drawn = []
-    for tier in range(len(layout.tiers)):
+    for tier, number in enumerate(per_tier):
         candidates = np.flatnonzero(road & (layout.tier == tier)).astype(np.int32)
-        if per_tier > len(candidates):
+        if number > len(candidates):
             raise InputError(
                 f"{source}: robots: tier {tier} has only {len(candidates)} waypoints that are "
-                f"neither storage nor queue (given: {per_tier})"
+                f"neither storage nor queue (given: {number})"
             )
-        drawn.append(draw_robots(candidates, per_tier, SEED, tier))
+        drawn.append(draw_robots(candidates, number, SEED, tier))
     waypoints = np.concatenate(drawn)
     kind = layout.robot_kind[0] if layout.robots else 0
     return replace(

@@ -17,6 +17,7 @@ import numpy as np
 from rmfs import instances
 from rmfs.config import apply_overrides, read_toml, validate
 from rmfs.errors import InputError
+from rmfs.layout.loading import split_factors
 from rmfs.layout.parameters import LayoutParameters
 from rmfs.layout.rawsimo.xlayo import read_xlayo_table
 from rmfs.scenario import named_files
@@ -121,7 +122,7 @@ def layout_parameters(
         table, _ = read_xlayo_table(path)
     else:
         return None
-    own = [(keys[1:], value) for keys, value in overrides if keys[0] == "layout"]
+    own, _ = split_factors([(keys[1:], value) for keys, value in overrides if keys[0] == "layout"])
     parameters = validate(LayoutParameters, apply_overrides(table, own), str(path))
     return parameters.model_dump(mode="json")
 

@@ -162,3 +162,30 @@ def test_stock_at_the_end_is_what_the_world_holds():
     assert run.footprint["units_picked"] == run.world.units_picked
     assert run.footprint["orders_completed"] == run.world.orders_completed
     assert isinstance(run.decisions, pd.DataFrame)
+
+
+def test_recorded_streams_replay_the_run(tmp_path):
+    short = ["--set", "scenario.warmup_s=0", "--set", "scenario.duration_s=600", "--seed", "4"]
+    first, again = tmp_path / "first", tmp_path / "again"
+    streams = tmp_path / "streams"
+    assert main(["run", *short, "--out", str(first), "--record", str(streams)]) == 0
+    replay = [f'scenario.demand={{mode="stream",file="{streams / "orders.csv"}"}}']
+    replay += [f'scenario.replenishment={{mode="stream",file="{streams / "bundles.csv"}"}}']
+    options = [word for key in replay for word in ("--set", key)]
+    assert main(["run", *short, *options, "--out", str(again)]) == 0
+    one, other = (load_run(folder).table("orders") for folder in (first, again))
+    columns = ["order", "lines", "units", "created_s", "due_s"]
+    assert one[columns].equals(other[columns])
+    assert len(one) > 100
+
+
+def test_a_file_of_rawsimo_says_what_is_different(tmp_path, capsys):
+    controllers = tmp_path / "far.xconf"
+    controllers.write_text("<ControlConfiguration><Name>far</Name><Old/></ControlConfiguration>")
+    short = ["--set", "scenario.warmup_s=0", "--set", "scenario.duration_s=60"]
+    arguments = ["run", "--controllers", str(controllers), *short, "--out", str(tmp_path / "run")]
+    assert main(arguments) == 0
+    told = capsys.readouterr().err
+    assert "Old unknown, left out" in told
+    assert "FAR becomes time-windows" in told
+    assert load_run(tmp_path / "run").footprint["controllers"] == "far"

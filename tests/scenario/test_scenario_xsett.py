@@ -264,9 +264,13 @@ def test_overrides_of_the_layout_are_handed_on(tmp_path: Path):
     )
     _, notes = read(tmp_path, general=f"<OverrideConfig>{body}</OverrideConfig>")
     imported = read_xsett(tmp_path / "test.xsett")
-    assert imported.layout == [(["layout", "top_speed_m_s"], 2.5), (["layout", "order_slots"], 9)]
+    assert imported.layout == [
+        (["layout", "top_speed_m_s"], 2.5),
+        (["layout", "order_slots"], 9),
+        (["layout", "robots_per_pick_station"], 6),
+    ]
     assert noted(notes, "--set layout.top_speed_m_s=2.5")
-    assert noted(notes, "OverrideBotCountPerOStation = 6 not applied: set layout.robots")
+    assert noted(notes, "--set layout.robots_per_pick_station=6")
     assert noted(notes, "OverridePodCapacityValue not used: OverridePodCapacity is not true")
     assert not noted(notes, "unknown")
 

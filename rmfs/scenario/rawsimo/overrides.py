@@ -18,12 +18,12 @@ _NUMBERS = {
     "OverrideInputStationItemBundleTransferTime": "bundle_transfer_s",
     "OverrideOutputStationItemTransferTime": "unit_transfer_s",
     "OverrideOutputStationItemPickTime": "unit_pick_s",
+    "OverrideInputStationCount": "replenishment_station_share",
+    "OverrideOutputStationCount": "pick_station_share",
 }
-_COUNTS = {"OverrideOutputStationCapacity": "order_slots"}
-_OF_THE_LAYOUT = {
-    "OverrideInputStationCount": "a factor: set the replenishment stations of the layout",
-    "OverrideOutputStationCount": "a factor: set the pick stations of the layout",
-    "OverrideBotCountPerOStation": "set layout.robots to this many times its pick stations",
+_COUNTS = {
+    "OverrideOutputStationCapacity": "order_slots",
+    "OverrideBotCountPerOStation": "robots_per_pick_station",
 }
 
 
@@ -38,17 +38,13 @@ def layout_overrides(block: Settings) -> list[tuple[list[str], Any]]:
         If a switch or a value is wrong.
     """
     overrides: list[tuple[list[str], Any]] = []
-    for switch in (*_NUMBERS, *_COUNTS, *_OF_THE_LAYOUT):
+    for switch in (*_NUMBERS, *_COUNTS):
         values = [tag for tag in block.tags if tag.startswith(switch) and tag != switch]
         if not block.switch(switch, default=False):
             block.leave(values, f"{switch} is not true")
             continue
         if len(values) != 1:
             raise block.error(switch, "is true, but has not one value")
-        if switch in _OF_THE_LAYOUT:
-            given = block.number(values[0], 0.0)
-            block.note(f"{switch} = {given:g} not applied: {_OF_THE_LAYOUT[switch]}")
-            continue
         key = _NUMBERS.get(switch) or _COUNTS[switch]
         value = block.whole(values[0], 0) if switch in _COUNTS else block.number(values[0], 0.0)
         overrides.append((["layout", key], value))
