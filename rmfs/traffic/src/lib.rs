@@ -7,6 +7,7 @@ pub mod fleet;
 pub mod heat;
 pub mod kinematics;
 pub mod network;
+pub mod planner;
 pub mod postpone;
 pub mod record;
 pub mod reservations;

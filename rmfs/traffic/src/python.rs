@@ -350,7 +350,7 @@ impl Core {
             ("plans", fleet.counters.plans),
             ("plan_failures", fleet.counters.failures),
             ("replans", fleet.counters.replans),
-            ("expansions", fleet.planner.expansions),
+            ("expansions", fleet.pathfinder.expansions),
             ("cost_tables", fleet.costs.computed),
             ("planning_ns", fleet.counters.planning.as_nanos() as u64),
         ])

@@ -22,10 +22,11 @@ use std::time::Duration;
 use crate::costs::Cache;
 use crate::kinematics::Kind;
 use crate::network::Network;
+use crate::planner::{Planner, TimeWindows};
 use crate::record::Record;
 use crate::reservations::Table;
 use crate::robot::{Phase, Robot, Step};
-use crate::search::Planner;
+use crate::search::Pathfinder;
 use crate::units::Us;
 
 /// What happened to a robot.
@@ -89,10 +90,11 @@ pub struct Fleet {
     pub now: Us,
     pub record: Record,
     pub counters: Counters,
-    pub planner: Planner,
+    pub pathfinder: Pathfinder,
     pub costs: Cache,
     table: Table,
     budget: u64,
+    per_leg: Box<dyn Planner>,
     /// Robots with a place in each station's queue, in the order of their places.
     queues: Vec<Vec<u32>>,
     legs: Vec<Option<Leg>>,
@@ -119,7 +121,8 @@ impl Fleet {
         with_trace: bool,
     ) -> Result<Self, String> {
         let mut fleet = Self {
-            planner: Planner::new(&network),
+            pathfinder: Pathfinder::new(&network),
+            per_leg: Box::new(TimeWindows { budget }),
             costs: Cache::new(&network, &kinds, cost_bytes),
             table: Table::new(network.resources),
             record: Record::new(robots.len(), &network, with_trace),
