@@ -91,7 +91,8 @@ impl Fleet {
     }
 
     /// Robots that want to drive and have found no way.
-    pub fn blocked(&self) -> &[u32] {
-        &self.blocked
+    pub fn blocked(&self) -> Vec<u32> {
+        let waits = |&robot: &u32| self.robots[robot as usize].phase == Phase::Blocked;
+        (0..self.robots.len() as u32).filter(waits).collect()
     }
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::kinematics::Kind;
 use crate::network::Network;
-use crate::planner::{Agent, Scene};
+use crate::planner::{Agent, Answer, Scene};
 use crate::postpone::postpone;
 use crate::record::enters_zone;
 use crate::reservations::Interval;
@@ -88,8 +88,8 @@ impl Fleet {
             table.remove(held.resource, robot);
         }
         let mut scene = Scene { now: self.now, network, kinds, robots, table, pathfinder, costs };
-        let answer = per_leg.plan(&mut scene, std::slice::from_ref(&agent)).pop().flatten();
-        let Some(mut moves) = answer else {
+        let answer = per_leg.plan(&mut scene, std::slice::from_ref(&agent)).pop();
+        let Some(Answer::Way(mut moves)) = answer else {
             self.counters.failures += 1;
             self.reserve(robot);
             return false;
@@ -151,7 +151,7 @@ impl Fleet {
 }
 
 /// How long a plan that ends in a queue zone takes from entering it to its end.
-fn time_in_zone(network: &Network, kind: &Kind, moves: &[Move], zone: u32) -> Us {
+pub(super) fn time_in_zone(network: &Network, kind: &Kind, moves: &[Move], zone: u32) -> Us {
     let entered = moves.iter().find_map(|step| enters_zone(network, kind, step, zone));
     entered.map_or(0, |at| moves[moves.len() - 1].end - at)
 }

@@ -2,11 +2,21 @@
 //!
 //! There are two rhythms. A planner *per leg* gives a robot its whole way when it is told where to
 //! go, free of conflict with everything granted before. A *rolling* planner is asked for all robots
-//! again and again; what it returns are wishes, of which the fleet grants one straight run at a
-//! time, when the robot is at rest and the run is free (`fleet/rolling.rs`). Either way only the
+//! again and again; what it returns are wishes, of which the fleet grants a few straight runs at a
+//! time, when the robot is at rest and they are free (`fleet/rolling.rs`). Either way only the
 //! fleet reserves, so that no planner can cause a collision.
 
+mod bcp;
+mod cbs;
+mod conflicts;
+mod deadlock;
+mod draft;
+mod far;
+mod pbs;
+mod settings;
 mod time_windows;
+mod whca_persistent;
+mod whca_volatile;
 
 use std::fmt::Debug;
 
@@ -18,6 +28,7 @@ use crate::robot::Robot;
 use crate::search::{Move, Pathfinder};
 use crate::units::Us;
 
+pub use settings::{Settings, build};
 pub use time_windows::TimeWindows;
 
 /// What a planner may look at and work with.
@@ -54,9 +65,26 @@ pub struct Agent {
 pub enum Rhythm {
     /// Once for each leg, for one robot at a time.
     PerLeg,
-    /// For all robots that drive, when one of them needs a plan, but not before this much time has
-    /// passed since the last call.
-    Rolling(Us),
+    /// For all robots that drive, when one of them needs a plan, but not before `period` has passed
+    /// since the last call. Robots are granted at most so many runs of their wishes at once.
+    Rolling { period: Us, runs: usize },
+}
+
+/// What a planner says of an agent.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// Moves from rest to rest that begin at the agent's start, not before it is ready there.
+    Way(Vec<Move>),
+    /// Rolling planners: what was wanted before stands.
+    Keep,
+    /// No way has been found.
+    NoWay,
+}
+
+impl Answer {
+    fn of(way: Option<Vec<Move>>) -> Self {
+        way.map_or(Answer::NoWay, Answer::Way)
+    }
 }
 
 /// A method of path planning.
@@ -64,10 +92,9 @@ pub trait Planner: Debug + Send + Sync {
     /// When it is asked.
     fn rhythm(&self) -> Rhythm;
 
-    /// Plans ways for agents; one answer each, `None` where it has found no way.
+    /// Plans ways for agents; one answer each.
     ///
-    /// A way is a sequence of moves from rest to rest that begins at the agent's start, not before
-    /// it is ready there. A planner per leg returns a way to the goal that is free in the scene's
-    /// table and ends where the robot can stay; a rolling planner what it would like.
-    fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Option<Vec<Move>>>;
+    /// A planner per leg returns a way to the goal that is free in the scene's table and ends where
+    /// the robot can stay; a rolling planner what it would like.
+    fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer>;
 }

@@ -2,7 +2,7 @@
 
 use crate::search::{End, Move, Outcome, Query};
 
-use super::{Agent, Planner, Rhythm, Scene};
+use super::{Agent, Answer, Planner, Rhythm, Scene};
 
 /// Plans each leg once around the windows that others have reserved.
 #[derive(Debug)]
@@ -45,7 +45,7 @@ impl Planner for TimeWindows {
         Rhythm::PerLeg
     }
 
-    fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Option<Vec<Move>>> {
-        agents.iter().map(|agent| self.plan_one(scene, agent)).collect()
+    fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
+        agents.iter().map(|agent| Answer::of(self.plan_one(scene, agent))).collect()
     }
 }

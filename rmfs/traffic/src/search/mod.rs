@@ -247,12 +247,18 @@ impl<'a> Search<'a> {
     fn is_end(&self, index: u32) -> bool {
         let label = &self.memory.labels[index as usize];
         let at_goal = self.is_goal(label.node);
+        let rests = |end: Us| at_goal || (label.arrival >= end && self.may_rest(label.node));
         match self.query.end {
             End::ForGood => label.until == FOREVER && at_goal,
             End::Arrival => at_goal,
-            End::Window(end) => label.arrival >= end || (at_goal && label.until >= end),
-            End::WindowForGood(end) => label.until == FOREVER && (at_goal || label.arrival >= end),
+            End::Window(end) => label.until >= end && rests(end),
+            End::WindowForGood(end) => label.until == FOREVER && rests(end),
         }
+    }
+
+    /// Whether a window may end with the robot here: not in an elevator.
+    fn may_rest(&self, node: u32) -> bool {
+        self.network.lifts_from(node).is_empty()
     }
 
     /// When waiting at a label is an end of its own: the window closes while the robot stands there.
@@ -262,7 +268,8 @@ impl<'a> Search<'a> {
             End::WindowForGood(end) => (end, FOREVER),
             End::ForGood | End::Arrival => return None,
         };
-        (label.arrival < end && label.until >= needed && !self.is_goal(label.node)).then_some(end)
+        let is_stop = self.may_rest(label.node) && !self.is_goal(label.node);
+        (label.arrival < end && label.until >= needed && is_stop).then_some(end)
     }
 
     fn is_goal(&self, node: u32) -> bool {
