@@ -121,6 +121,8 @@ fn moves(reached: &BTreeMap<(u32, u8), Reached>, end: (u32, u8)) -> Vec<Move> {
             start: departure,
             end: arrival,
             ride,
+            late: 0,
+            begun: 0,
         });
         state = before;
     }

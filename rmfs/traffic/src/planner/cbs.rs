@@ -8,6 +8,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::rc::Rc;
 
+use crate::network::NONE;
 use crate::reservations::Table;
 use crate::robot::Held;
 use crate::search::{End, Move};
@@ -114,8 +115,12 @@ impl Cbs {
                 return tree.swap_remove(index).expect("kept");
             };
             latest = latest.max((node.is_free_until(), index));
-            let held =
-                Held { resource: conflict.resource, start: conflict.start, end: conflict.end };
+            let held = Held {
+                resource: conflict.resource,
+                start: conflict.start,
+                end: conflict.end,
+                entered_by: NONE,
+            };
             let (before, plans) = (node.constraints.clone(), node.plans.clone());
             for agent in conflict.agents {
                 let constraint = Rc::new(Constraint { agent, held, before: before.clone() });

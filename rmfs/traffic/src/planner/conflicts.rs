@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     fn held(resource: u32, start: Us, end: Us) -> Held {
-        Held { resource, start, end }
+        Held { resource, start, end, entered_by: 0 }
     }
 
     #[test]

@@ -80,5 +80,7 @@ pub fn run(scene: &Scene, agent: &Agent, heading: u8, to: u32, length: f64) -> M
         start,
         end: start + kind.run_time(length),
         ride: false,
+        late: 0,
+        begun: 0,
     }
 }
