@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
 
 __all__ = [
+    "TIME_WINDOWS",
     "EventKind",
     "Motion",
     "Piece",
