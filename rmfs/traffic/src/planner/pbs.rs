@@ -73,7 +73,7 @@ impl Node {
 
     /// An agent and those who have to plan around it, in an order in which nobody comes before
     /// those above it.
-    fn from_here_down(&self, agent: usize) -> Vec<usize> {
+    fn self_and_below(&self, agent: usize) -> Vec<usize> {
         let mut order: Vec<(usize, usize)> = Vec::new();
         for other in 0..self.above.len() {
             let above = self.all_above(other);
@@ -161,7 +161,7 @@ impl Pbs {
         }
         let mut node = parent.clone();
         node.above[lower].push(higher);
-        for agent in node.from_here_down(lower) {
+        for agent in node.self_and_below(lower) {
             let above = node.all_above(agent);
             let occupied: Vec<Held> = (0..agents.len())
                 .filter(|&other| above[other])
