@@ -198,7 +198,7 @@ class Traffic:
                 )
                 for kind in layout.robot_kinds
             ],
-            tuple(planner),
+            (planner.name, planner.parameters, planner.seed),
             EXPANSION_BUDGET,
             cost_table_bytes,
             record_trace,
