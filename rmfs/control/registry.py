@@ -92,7 +92,15 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "utility": "rmfs.control.repositioning.utility:Utility",
         "dummy": "rmfs.control.dummies:DummyRepositioning",
     },
-    Problem.PP: {"time-windows": "rmfs.control.pp.time_windows:TimeWindows"},
+    Problem.PP: {
+        "time-windows": "rmfs.control.pp.time_windows:TimeWindows",
+        "whca-v": "rmfs.control.pp.whca:WhcaVolatile",
+        "whca-n": "rmfs.control.pp.whca:WhcaPersistent",
+        "far": "rmfs.control.pp.far:Far",
+        "bcp": "rmfs.control.pp.bcp:Bcp",
+        "cbs": "rmfs.control.pp.trees:Cbs",
+        "pbs": "rmfs.control.pp.trees:Pbs",
+    },
 }
 
 _SOLVER_BACKED: dict[Problem, dict[str, str]] = {}

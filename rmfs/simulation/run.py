@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 from rmfs import control, measure
 from rmfs import layout as layouts
 from rmfs import scenario as scenarios
+from rmfs.control.pp import planner_settings
+from rmfs.control.problems import Problem
 from rmfs.control.settings import ControllerSettings
 from rmfs.errors import InputError
 from rmfs.layout.model import Layout
@@ -156,7 +158,8 @@ def simulate(
     layouts.refuse(plan, _name(layout), allow_not_well_formed=allow_not_well_formed)
     recorder = measure.Recorder()
     events = measure.EventLog() if trace else None
-    traffic = Traffic(plan, record_trace=trace)
+    planner = planner_settings(rules.choices[Problem.PP], seed)
+    traffic = Traffic(plan, record_trace=trace, planner=planner)
     simulation = Simulation(
         plan,
         work,

@@ -21,10 +21,12 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
 
 __all__ = [
+    "TIME_WINDOWS",
     "EventKind",
     "Motion",
     "Piece",
     "PlannedMove",
+    "PlannerSettings",
     "Step",
     "Traffic",
     "TrafficEvent",
@@ -33,6 +35,7 @@ __all__ = [
 
 COST_TABLE_BYTES = 200_000_000
 EXPANSION_BUDGET = 50_000
+"""Labels a search for a leg may look at before the robot waits for all planned motion to end."""
 
 _BY_PURPOSE = ("visits", "waiting_s")
 
@@ -109,6 +112,27 @@ class PlannedMove(NamedTuple):
     is_ride: bool
 
 
+class PlannerSettings(NamedTuple):
+    """A planner of the core.
+
+    Attributes
+    ----------
+    name
+        As in a controllers file.
+    parameters
+        All it has; durations in seconds, switches as 0 and 1.
+    seed
+        Of its random decisions.
+    """
+
+    name: str
+    parameters: dict[str, float]
+    seed: int = 0
+
+
+TIME_WINDOWS = PlannerSettings("time-windows", {"labels": EXPANSION_BUDGET})
+
+
 class Traffic:
     """The robots of one layout.
 
@@ -120,14 +144,14 @@ class Traffic:
         Whether every piece of motion is kept (see `trace`).
     cost_table_bytes
         Memory for tables of unhindered times; the least recently used are dropped.
-    expansion_budget
-        Labels a search may expand before it waits for all planned motion to end; a count of work,
-        so that results repeat.
+    planner
+        Who plans the ways.
 
     Raises
     ------
     ValueError
-        If two robots start at one waypoint, or a waypoint has two edges in one direction.
+        If two robots start at one waypoint, a waypoint has two edges in one direction, or the core
+        has no such planner.
     """
 
     def __init__(
@@ -136,7 +160,7 @@ class Traffic:
         *,
         record_trace: bool = False,
         cost_table_bytes: int = COST_TABLE_BYTES,
-        expansion_budget: int = EXPANSION_BUDGET,
+        planner: PlannerSettings = TIME_WINDOWS,
     ) -> None:
         self._kind = layout.robot_kind
         self._from_cache: dict[tuple[int, int, bool], NDArray[np.float64]] = {}
@@ -174,7 +198,8 @@ class Traffic:
                 )
                 for kind in layout.robot_kinds
             ],
-            expansion_budget,
+            (planner.name, planner.parameters, planner.seed),
+            EXPANSION_BUDGET,
             cost_table_bytes,
             record_trace,
         )
@@ -349,7 +374,11 @@ class Traffic:
         return self._core.trace(known)
 
     def counters(self) -> dict[str, float]:
-        """`plans`, `plan_failures`, `replans`, `expansions`, `cost_tables`, `planning_s` (wall)."""
+        """Count the work of planning.
+
+        `plans` (legs), `plan_failures`, `replans`, `refusals` (runs a rolling planner wanted that
+        were not free), `expansions`, `cost_tables`, and wall time, `planning_s`.
+        """
         counts: dict[str, float] = dict(self._core.counters())
         counts["planning_s"] = counts.pop("planning_ns") / 1e9
         return counts

@@ -32,6 +32,7 @@ class Core:
         lifts: list[tuple[int, int, int]],
         robots: list[tuple[int, float, int]],
         kinds: list[tuple[float, float, float, int, int]],
+        planner: tuple[str, dict[str, float], int],
         budget: int,
         cost_bytes: int,
         with_trace: bool,

@@ -6,7 +6,7 @@ import heapq
 import random
 from dataclasses import dataclass, field
 
-from rmfs.traffic import EventKind, Step, Traffic
+from rmfs.traffic import TIME_WINDOWS, EventKind, PlannerSettings, Step, Traffic
 
 
 @dataclass
@@ -19,11 +19,12 @@ class RandomTasks:
     layout: object
     seed: int = 0
     record_trace: bool = True
+    planner: PlannerSettings = TIME_WINDOWS
     visits: list[tuple[float, int]] = field(default_factory=list)
 
     def __post_init__(self):
         self.random = random.Random(self.seed)
-        self.traffic = Traffic(self.layout, record_trace=self.record_trace)
+        self.traffic = Traffic(self.layout, record_trace=self.record_trace, planner=self.planner)
         self.place = self.layout.pod_waypoint.tolist()
         taken = set(self.place)
         storage = self.layout.is_storage.nonzero()[0].tolist()

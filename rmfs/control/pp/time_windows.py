@@ -2,9 +2,21 @@
 
 from __future__ import annotations
 
-from rmfs.control.base import NoParameters
+import pydantic
+
+from rmfs.control.base import Parameters
 from rmfs.control.pp import PathPlanning
 
 
-class TimeWindows(PathPlanning[NoParameters]):
+class TimeWindowsParameters(Parameters):
+    """How hard a way is looked for."""
+
+    labels: int = pydantic.Field(50_000, ge=1)
+    """Labels a search may look at before the robot waits until all planned motion is over."""
+
+
+class TimeWindows(PathPlanning[TimeWindowsParameters]):
     """Plans each leg once, first come first served, around the windows others have reserved."""
+
+    parameters_model = TimeWindowsParameters
+    planner = "time-windows"

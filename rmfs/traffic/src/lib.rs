@@ -7,10 +7,13 @@ pub mod fleet;
 pub mod heat;
 pub mod kinematics;
 pub mod network;
+pub mod planner;
 pub mod postpone;
+pub mod random;
 pub mod record;
 pub mod reservations;
 pub mod robot;
+pub mod route;
 pub mod search;
 pub mod units;
 

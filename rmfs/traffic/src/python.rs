@@ -12,6 +12,7 @@ use crate::fleet::{Fleet, Rest, Shift};
 use crate::heat::Passages;
 use crate::kinematics::{Kind, Profile};
 use crate::network::{Lift, Network, Plan};
+use crate::planner::{Settings, build};
 use crate::record::Totals;
 use crate::robot::Step;
 use crate::units::{Us, from_radians, to_radians};
@@ -113,6 +114,7 @@ impl Core {
         lifts: Vec<(u32, u32, Us)>,
         robots: Vec<(u32, f64, u8)>,
         kinds: Vec<KindTuple>,
+        planner: (String, HashMap<String, f64>, u64),
         budget: u64,
         cost_bytes: usize,
         with_trace: bool,
@@ -138,7 +140,10 @@ impl Core {
         };
         let robots: Vec<(u32, u8, u8)> = robots.iter().map(place).collect();
         let kinds = kinds.into_iter().map(kind_of).collect();
-        let fleet = Fleet::new(network, kinds, &robots, budget, cost_bytes, with_trace);
+        let (name, parameters, seed) = planner;
+        let settings = Settings { name, parameters: parameters.into_iter().collect(), seed };
+        let planner = build(&settings, &network).map_err(PyValueError::new_err)?;
+        let fleet = Fleet::new(network, kinds, &robots, planner, budget, cost_bytes, with_trace);
         fleet.map(|fleet| Self { fleet }).map_err(PyValueError::new_err)
     }
 
@@ -171,7 +176,7 @@ impl Core {
     }
 
     fn blocked(&self) -> Vec<u32> {
-        self.fleet.blocked().to_vec()
+        self.fleet.blocked()
     }
 
     fn travel_times_to<'py>(
@@ -350,7 +355,8 @@ impl Core {
             ("plans", fleet.counters.plans),
             ("plan_failures", fleet.counters.failures),
             ("replans", fleet.counters.replans),
-            ("expansions", fleet.planner.expansions),
+            ("refusals", fleet.counters.refusals),
+            ("expansions", fleet.pathfinder.expansions),
             ("cost_tables", fleet.costs.computed),
             ("planning_ns", fleet.counters.planning.as_nanos() as u64),
         ])

@@ -50,6 +50,38 @@ impl Table {
         row.insert(at, new);
     }
 
+    /// Who occupies the resource first during `[start, end)`, if anybody.
+    pub fn occupant(&self, resource: u32, start: Us, end: Us) -> Option<Interval> {
+        let row = &self.rows[resource as usize];
+        let at = row.partition_point(|old| old.end <= start);
+        row.get(at).filter(|old| old.start < end).copied()
+    }
+
+    /// Adds an occupation together with whatever it overlaps: one interval, of the new robot.
+    pub fn cover(&mut self, resource: u32, mut new: Interval) {
+        let row = &mut self.rows[resource as usize];
+        row.retain(|old| {
+            let touches = old.start < new.end && new.start < old.end;
+            if touches {
+                new.start = new.start.min(old.start);
+                new.end = new.end.max(old.end);
+            }
+            !touches
+        });
+        let at = row.partition_point(|old| old.start < new.start);
+        row.insert(at, new);
+    }
+
+    /// Exchanges the row of a resource.
+    pub fn replace(&mut self, resource: u32, row: Vec<Interval>) {
+        self.rows[resource as usize] = row;
+    }
+
+    /// Empties the table.
+    pub fn clear(&mut self) {
+        self.rows.iter_mut().for_each(Vec::clear);
+    }
+
     /// Removes every occupation of a resource by a robot.
     pub fn remove(&mut self, resource: u32, robot: u32) {
         self.rows[resource as usize].retain(|old| old.robot != robot);
@@ -162,6 +194,23 @@ mod tests {
         assert_eq!(table.gap_at(0, 12), None);
         table.remove(0, 1);
         assert_eq!(table.gap_at(0, 12), Some((4, 20)));
+    }
+
+    #[test]
+    fn occupants_are_found_and_covered() {
+        let mut table = Table::new(1);
+        table.insert(0, Interval { start: 10, end: 20, robot: 1 }, 0);
+        table.insert(0, Interval { start: 30, end: 40, robot: 2 }, 0);
+        assert_eq!(table.occupant(0, 0, 10), None);
+        assert_eq!(table.occupant(0, 20, 30), None);
+        assert_eq!(table.occupant(0, 19, 35).map(|found| found.robot), Some(1));
+        assert_eq!(table.occupant(0, 20, 31).map(|found| found.robot), Some(2));
+        table.cover(0, Interval { start: 15, end: 25, robot: 3 });
+        table.cover(0, Interval { start: 24, end: 26, robot: 4 });
+        assert_eq!(
+            table.row(0),
+            [Interval { start: 10, end: 26, robot: 4 }, Interval { start: 30, end: 40, robot: 2 }]
+        );
     }
 
     #[test]

@@ -102,39 +102,8 @@ impl Robot {
 
     /// Everything the robot occupies: anchor, the way, and the end of the plan without limit.
     pub fn occupation(&self, network: &Network, kind: &Kind) -> Vec<Held> {
-        let mut held = Vec::new();
-        let (mut since, mut entered_by) = (self.anchored, NONE);
-        for (index, step) in self.moves.iter().enumerate() {
-            if step.ride {
-                // the shaft is one resource, so the ride continues the same occupation
-                continue;
-            }
-            let line: Vec<(u32, f64)> = network.line(step.from, step.to, step.heading).collect();
-            let length = line.last().map_or(0.0, |end| end.1);
-            let profile = kind.run(length);
-            let mut node = step.from;
-            let mut passed = 0.0;
-            for (i, &(next, distance)) in line.iter().enumerate() {
-                let reached = profile.time_at(distance);
-                held.push(Held {
-                    resource: network.resource[node as usize],
-                    start: since,
-                    end: step.start + step.late + ceil_us(reached),
-                    entered_by,
-                });
-                let late = if i < step.begun as usize { 0 } else { step.late };
-                since = step.start + late + floor_us(passed);
-                entered_by = index as u32;
-                passed = reached;
-                node = next;
-            }
-        }
-        let end = self.destination().0;
-        let resource = network.resource[end as usize];
-        held.push(Held { resource, start: since, end: FOREVER, entered_by });
-        held
+        occupation(network, kind, self.anchor, self.anchored, &self.moves)
     }
-
     /// How many of the moves can no longer be changed at `now`: those whose turn has begun.
     pub fn committed(&self, network: &Network, kind: &Kind, now: Us) -> usize {
         self.moves
@@ -180,4 +149,47 @@ impl Robot {
             .or(served.map(|(station, _)| station as usize))
             .unwrap_or_else(|| if for_pod() { stations } else { stations + 1 })
     }
+}
+
+/// What a robot occupies that stands at `from` since a time and then makes the moves: the start,
+/// the way, and the end without limit.
+pub fn occupation<'a>(
+    network: &Network,
+    kind: &Kind,
+    from: u32,
+    since: Us,
+    moves: impl IntoIterator<Item = &'a Move>,
+) -> Vec<Held> {
+    let mut held = Vec::new();
+    let (mut since, mut entered_by) = (since, NONE);
+    let mut end = from;
+    for (index, step) in moves.into_iter().enumerate() {
+        end = step.to;
+        if step.ride {
+            // the shaft is one resource, so the ride continues the same occupation
+            continue;
+        }
+        let line: Vec<(u32, f64)> = network.line(step.from, step.to, step.heading).collect();
+        let length = line.last().map_or(0.0, |end| end.1);
+        let profile = kind.run(length);
+        let mut node = step.from;
+        let mut passed = 0.0;
+        for (i, &(next, distance)) in line.iter().enumerate() {
+            let reached = profile.time_at(distance);
+            held.push(Held {
+                resource: network.resource[node as usize],
+                start: since,
+                end: step.start + step.late + ceil_us(reached),
+                entered_by,
+            });
+            let late = if i < step.begun as usize { 0 } else { step.late };
+            since = step.start + late + floor_us(passed);
+            entered_by = index as u32;
+            passed = reached;
+            node = next;
+        }
+    }
+    let resource = network.resource[end as usize];
+    held.push(Held { resource, start: since, end: FOREVER, entered_by });
+    held
 }

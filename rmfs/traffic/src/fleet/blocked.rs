@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 
 use crate::network::NONE;
 use crate::robot::{Phase, Step};
-use crate::search::{Outcome, Query};
+use crate::search::{End, Outcome, Query};
 use crate::units::Us;
 
 use super::{Due, Fleet};
@@ -60,7 +60,7 @@ impl Fleet {
     /// Sends a blocked robot that stands in the way of others to the nearest free storage place.
     pub(super) fn step_aside(&mut self, robot: u32) {
         self.settle(robot);
-        let Fleet { network, kinds, robots, table, planner, costs, .. } = self;
+        let Fleet { network, kinds, robots, table, pathfinder, costs, .. } = self;
         let state = &robots[robot as usize];
         let rests_well = network.storage[state.anchor as usize] || state.place.is_some();
         if !state.moves.is_empty() || rests_well {
@@ -78,8 +78,10 @@ impl Fleet {
             kind: &kinds[state.kind as usize],
             model: &costs.models[state.kind as usize],
             budget: self.budget,
+            end: End::ForGood,
+            times: None,
         };
-        match planner.search(network, table, &query) {
+        match pathfinder.search(network, table, &query) {
             Outcome::Found(moves) => {
                 self.counters.replans += 1;
                 self.adopt(robot, 0, moves);
@@ -89,7 +91,8 @@ impl Fleet {
     }
 
     /// Robots that want to drive and have found no way.
-    pub fn blocked(&self) -> &[u32] {
-        &self.blocked
+    pub fn blocked(&self) -> Vec<u32> {
+        let waits = |&robot: &u32| self.robots[robot as usize].phase == Phase::Blocked;
+        (0..self.robots.len() as u32).filter(waits).collect()
     }
 }

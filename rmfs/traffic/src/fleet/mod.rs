@@ -11,6 +11,7 @@ mod programs;
 mod progress;
 mod queues;
 mod regroup;
+mod rolling;
 
 pub use late::Shift;
 pub use regroup::Rest;
@@ -22,11 +23,14 @@ use std::time::Duration;
 use crate::costs::Cache;
 use crate::kinematics::Kind;
 use crate::network::Network;
+use crate::planner::{Planner, TimeWindows};
 use crate::record::Record;
 use crate::reservations::Table;
 use crate::robot::{Phase, Robot, Step};
-use crate::search::Planner;
+use crate::search::Pathfinder;
 use crate::units::Us;
+
+use rolling::Rolling;
 
 /// What happened to a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +61,10 @@ enum Due {
     TransferEnd,
     LegEnd,
     Retry,
+    /// A robot wants to turn for its next run; see `rolling.rs`.
+    Depart,
+    /// The rolling planner is asked.
+    Call,
 }
 
 /// What planning has cost so far.
@@ -65,6 +73,8 @@ pub struct Counters {
     pub plans: u64,
     pub failures: u64,
     pub replans: u64,
+    /// Runs that a rolling planner wanted and that were not free.
+    pub refusals: u64,
     /// Wall time spent planning.
     pub planning: Duration,
 }
@@ -89,10 +99,13 @@ pub struct Fleet {
     pub now: Us,
     pub record: Record,
     pub counters: Counters,
-    pub planner: Planner,
+    pub pathfinder: Pathfinder,
     pub costs: Cache,
     table: Table,
     budget: u64,
+    /// Plans whole legs; beside a rolling planner only the moves up in queues.
+    per_leg: Box<dyn Planner>,
+    rolling: Option<Rolling>,
     /// Robots with a place in each station's queue, in the order of their places.
     queues: Vec<Vec<u32>>,
     legs: Vec<Option<Leg>>,
@@ -114,12 +127,19 @@ impl Fleet {
         network: Network,
         kinds: Vec<Kind>,
         robots: &[(u32, u8, u8)],
+        planner: Box<dyn Planner>,
         budget: u64,
         cost_bytes: usize,
         with_trace: bool,
     ) -> Result<Self, String> {
+        let (per_leg, rolling): (Box<dyn Planner>, _) = match Rolling::of(planner, robots.len()) {
+            Ok(rolling) => (Box::new(TimeWindows { budget }), Some(rolling)),
+            Err(per_leg) => (per_leg, None),
+        };
         let mut fleet = Self {
-            planner: Planner::new(&network),
+            pathfinder: Pathfinder::new(&network),
+            per_leg,
+            rolling,
             costs: Cache::new(&network, &kinds, cost_bytes),
             table: Table::new(network.resources),
             record: Record::new(robots.len(), &network, with_trace),
@@ -210,6 +230,8 @@ impl Fleet {
                     self.leg_ended(robot)
                 }
                 Due::LegEnd => {}
+                Due::Depart => self.departure_due(robot, version),
+                Due::Call => self.call_planner(),
                 Due::Retry => {
                     self.retry_due = false;
                     for station in std::mem::take(&mut self.stalled) {

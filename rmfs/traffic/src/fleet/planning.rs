@@ -5,11 +5,12 @@ use std::time::Instant;
 
 use crate::kinematics::Kind;
 use crate::network::Network;
+use crate::planner::{Agent, Answer, Scene};
 use crate::postpone::postpone;
 use crate::record::enters_zone;
 use crate::reservations::Interval;
 use crate::robot::Phase;
-use crate::search::{Move, Outcome, Query};
+use crate::search::Move;
 use crate::units::Us;
 
 use super::{Due, EventKind, Fleet, Leg};
@@ -56,7 +57,7 @@ impl Fleet {
         keep: impl Fn(&Network, &Move) -> bool,
     ) -> bool {
         self.settle(robot);
-        let Fleet { network, kinds, robots, table, planner, costs, .. } = self;
+        let Fleet { network, kinds, robots, table, pathfinder, costs, per_leg, .. } = self;
         let state = &robots[robot as usize];
         let kind = &kinds[state.kind as usize];
         if table.final_holder(network.resource[goal as usize]).is_some_and(|holder| holder != robot)
@@ -72,37 +73,31 @@ impl Fleet {
             None => (state.anchor, state.heading, state.rested),
         };
         let ready = rested.max(self.now).max(state.busy_until);
-        let loaded = state.pod.is_some();
-        let model = &costs.models[state.kind as usize];
-        for held in &state.held {
-            table.remove(held.resource, robot);
-        }
-        let mut query = Query {
+        let agent = Agent {
+            robot,
+            kind: state.kind,
             start,
             heading,
             ready,
             goal,
-            loaded,
-            kind,
-            model,
-            budget: self.budget.min(effort.labels()),
+            loaded: state.pod.is_some(),
+            effort: effort.labels(),
+            needs_plan: true,
         };
-        let mut outcome = planner.search(network, table, &query);
-        if outcome == Outcome::OutOfBudget && effort == Effort::Full {
-            // with every planned motion over, the search is an ordinary shortest path
-            query.ready = query.ready.max(table.horizon());
-            query.budget = u64::MAX;
-            outcome = planner.search(network, table, &query);
+        for held in &state.held {
+            table.remove(held.resource, robot);
         }
-        let Outcome::Found(mut moves) = outcome else {
+        let mut scene = Scene { now: self.now, network, kinds, robots, table, pathfinder, costs };
+        let answer = per_leg.plan(&mut scene, std::slice::from_ref(&agent)).pop();
+        let Some(Answer::Way(mut moves)) = answer else {
             self.counters.failures += 1;
             self.reserve(robot);
             return false;
         };
         // a trip to a station ends at its queue zone, and so does the time it is compared with
         let zone = network.zone[goal as usize];
-        let unhindered =
-            planner.unhindered(network, &query) - time_in_zone(network, kind, &moves, zone);
+        let unhindered = pathfinder.unhindered(network, start, heading)
+            - time_in_zone(network, kind, &moves, zone);
         postpone(network, table, kind, &mut moves);
         let departs = kept == 0 && !moves.is_empty();
         if self.legs[robot as usize].is_none() {
@@ -156,7 +151,7 @@ impl Fleet {
 }
 
 /// How long a plan that ends in a queue zone takes from entering it to its end.
-fn time_in_zone(network: &Network, kind: &Kind, moves: &[Move], zone: u32) -> Us {
+pub(super) fn time_in_zone(network: &Network, kind: &Kind, moves: &[Move], zone: u32) -> Us {
     let entered = moves.iter().find_map(|step| enters_zone(network, kind, step, zone));
     entered.map_or(0, |at| moves[moves.len() - 1].end - at)
 }

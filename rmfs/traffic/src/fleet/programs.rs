@@ -27,6 +27,9 @@ impl Fleet {
 
     /// Plans the way of a driving step; without one the robot is blocked and tries again later.
     pub(super) fn set_off(&mut self, robot: u32) {
+        if self.rolling.is_some() {
+            return self.set_off_rolling(robot);
+        }
         if !self.plan_step(robot) {
             self.robots[robot as usize].phase = Phase::Blocked;
             self.blocked.push(robot);
@@ -61,7 +64,8 @@ impl Fleet {
         self.start_transfer(robot);
         // plan ahead, so that the robot leaves the moment it has its pod
         let state = &mut self.robots[robot as usize];
-        if matches!(state.program.get(1), Some(Step::Drive(_) | Step::Station(_))) {
+        let drives_on = matches!(state.program.get(1), Some(Step::Drive(_) | Step::Station(_)));
+        if drives_on && self.rolling.is_none() {
             let step = state.program.pop_front().expect("the lift");
             self.plan_step(robot);
             let state = &mut self.robots[robot as usize];
@@ -114,6 +118,9 @@ impl Fleet {
         if state.phase != Phase::Driving {
             // a blocked robot came to the end of what it still had to drive
             return;
+        }
+        if self.rolling.is_some() {
+            return self.run_ended(robot);
         }
         match state.program.front().copied() {
             Some(Step::Drive(goal)) if state.anchor == goal => self.arrived(robot, goal),

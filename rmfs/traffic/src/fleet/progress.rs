@@ -125,7 +125,7 @@ impl Fleet {
             (0..self.robots.len()).map(|r| self.in_progress(r)).collect();
         self.record.reset(self.now, &in_progress);
         self.counters = Counters::default();
-        self.planner.expansions = 0;
+        self.pathfinder.expansions = 0;
     }
 
     /// The trace up to now without its first `known` rows in the order of recording, by robot and

@@ -74,6 +74,10 @@ impl Fleet {
             if let Some((station, _)) = self.robots[robot as usize].place.take() {
                 self.queues[station as usize].retain(|&other| other != robot);
             }
+            if self.rolling.is_some() {
+                self.set_off_rolling(robot);
+                continue;
+            }
             self.robots[robot as usize].phase = Phase::Blocked;
             self.blocked.push(robot);
         }

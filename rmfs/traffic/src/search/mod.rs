@@ -42,6 +42,20 @@ pub struct Move {
     pub begun: u32,
 }
 
+/// When a search has found what it looks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The robot is at the goal and can stay there for good.
+    ForGood,
+    /// The robot is at the goal, whoever comes there later.
+    Arrival,
+    /// The window ends at this time: the robot is at the goal or on the way, and can stay where it
+    /// is until then. What others do later does not count.
+    Window(Us),
+    /// The same, and the robot can stay there for good.
+    WindowForGood(Us),
+}
+
 /// What a robot wants.
 #[derive(Clone, Debug)]
 pub struct Query<'a> {
@@ -56,6 +70,9 @@ pub struct Query<'a> {
     pub model: &'a Model,
     /// Labels that may be looked at.
     pub budget: u64,
+    pub end: End,
+    /// Exact unhindered times to the goal, as [`crate::costs::Table`]; searched for if not given.
+    pub times: Option<&'a [u32]>,
 }
 
 /// How a search ended.
@@ -94,9 +111,12 @@ const GUIDE_STEP: u32 = 1 << 19;
 /// How much later than the label's own estimate successors may arrive in its first scan.
 const SLACK: Us = 500_000;
 
+/// Marks an entry of the open list that stands for waiting at a label until the window ends.
+const STAY: u32 = 1 << 31;
+
 /// Reusable memory of searches, and what they have cost.
 #[derive(Debug)]
-pub struct Planner {
+pub struct Pathfinder {
     labels: Vec<Label>,
     /// Labels by least total time, then by least time to go.
     open: BinaryHeap<Reverse<(Us, Us, u32)>>,
@@ -111,7 +131,7 @@ pub struct Planner {
     pub expansions: u64,
 }
 
-impl Planner {
+impl Pathfinder {
     /// Memory for searches on `network`.
     pub fn new(network: &Network) -> Self {
         Self {
@@ -128,7 +148,7 @@ impl Planner {
     }
 
     /// Finds the earliest arrival at the goal that can be held forever; when that takes more than a
-    /// few hundred labels, one that is early enough.
+    /// few hundred labels, one that is early enough. [`Query::end`] may ask for less.
     ///
     /// The robot's own reservations must not be in `table`.
     pub fn search(&mut self, network: &Network, table: &Table, query: &Query) -> Outcome {
@@ -142,15 +162,15 @@ impl Planner {
         Outcome::OutOfBudget
     }
 
-    /// Time of the way just searched for if nobody else were there.
-    pub fn unhindered(&self, network: &Network, query: &Query) -> Us {
-        Us::from(self.guide.to_go(network, query.start, query.heading))
+    /// Time of the way just searched for, without given times, if nobody else were there.
+    pub fn unhindered(&self, network: &Network, start: u32, heading: u8) -> Us {
+        Us::from(self.guide.to_go(network, start, heading))
     }
 }
 
 /// One search.
 struct Search<'a> {
-    memory: &'a mut Planner,
+    memory: &'a mut Pathfinder,
     network: &'a Network,
     table: &'a Table,
     query: &'a Query<'a>,
@@ -162,7 +182,7 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(
-        memory: &'a mut Planner,
+        memory: &'a mut Pathfinder,
         network: &'a Network,
         table: &'a Table,
         query: &'a Query<'a>,
@@ -171,7 +191,7 @@ impl<'a> Search<'a> {
         memory.labels.clear();
         memory.open.clear();
         memory.stamp += 1;
-        let goal_free = if query.goal == NONE {
+        let goal_free = if query.goal == NONE || query.end != End::ForGood {
             0
         } else {
             table.row(network.resource[query.goal as usize]).last().map_or(0, |last| last.end)
@@ -205,8 +225,8 @@ impl<'a> Search<'a> {
         for _ in 0..budget {
             match self.next_label() {
                 None => return Outcome::NoWay,
-                Some((_, index)) if self.is_end(index) => {
-                    return Outcome::Found(self.trace_back(index));
+                Some((_, index)) if index & STAY != 0 || self.is_end(index) => {
+                    return Outcome::Found(self.trace_back(index & !STAY));
                 }
                 Some((estimate, index)) => self.look_at(index, estimate),
             }
@@ -217,7 +237,7 @@ impl<'a> Search<'a> {
     /// The most promising label and its estimate.
     fn next_label(&mut self) -> Option<(Us, u32)> {
         while let Some(Reverse((estimate, _, index))) = self.memory.open.pop() {
-            if !self.memory.labels[index as usize].dead {
+            if !self.memory.labels[(index & !STAY) as usize].dead {
                 return (estimate < FOREVER).then_some((estimate, index));
             }
         }
@@ -226,7 +246,30 @@ impl<'a> Search<'a> {
 
     fn is_end(&self, index: u32) -> bool {
         let label = &self.memory.labels[index as usize];
-        label.until == FOREVER && self.is_goal(label.node)
+        let at_goal = self.is_goal(label.node);
+        let rests = |end: Us| at_goal || (label.arrival >= end && self.may_rest(label.node));
+        match self.query.end {
+            End::ForGood => label.until == FOREVER && at_goal,
+            End::Arrival => at_goal,
+            End::Window(end) => label.until >= end && rests(end),
+            End::WindowForGood(end) => label.until == FOREVER && rests(end),
+        }
+    }
+
+    /// Whether a window may end with the robot here: not in an elevator.
+    fn may_rest(&self, node: u32) -> bool {
+        self.network.lifts_from(node).is_empty()
+    }
+
+    /// When waiting at a label is an end of its own: the window closes while the robot stands there.
+    fn waits_until(&self, label: &Label) -> Option<Us> {
+        let (end, needed) = match self.query.end {
+            End::Window(end) => (end, end),
+            End::WindowForGood(end) => (end, FOREVER),
+            End::ForGood | End::Arrival => return None,
+        };
+        let is_stop = self.may_rest(label.node) && !self.is_goal(label.node);
+        (label.arrival < end && label.until >= needed && is_stop).then_some(end)
     }
 
     fn is_goal(&self, node: u32) -> bool {
@@ -264,6 +307,9 @@ impl<'a> Search<'a> {
     /// Starts the unhindered search back from the goal. Returns whether there is a way at all.
     fn guide_from_start(&mut self) -> bool {
         let Query { start, heading, goal, loaded, model, .. } = *self.query;
+        if self.query.times.is_some() {
+            return self.to_go(start, heading).is_some();
+        }
         let guide = &mut self.memory.guide;
         guide.begin(self.network, model, goal, loaded, Some(start));
         while !guide.knows(self.network, start, heading) {
@@ -278,7 +324,10 @@ impl<'a> Search<'a> {
         if self.query.goal == NONE {
             return Some(0);
         }
-        let time = self.memory.guide.to_go(self.network, node, heading);
+        let time = match self.query.times {
+            Some(times) => times[self.network.index(node, heading)],
+            None => self.memory.guide.to_go(self.network, node, heading),
+        };
         (time != UNREACHABLE).then_some(Us::from(time))
     }
 
@@ -290,7 +339,7 @@ impl<'a> Search<'a> {
     /// Where the guide has not been yet, lets it search on until the label is known or can wait; a
     /// larger estimate comes back.
     fn sharpen(&mut self, label: &Label, estimate: Us) -> Option<Us> {
-        if self.query.goal == NONE {
+        if self.query.goal == NONE || self.query.times.is_some() {
             return None;
         }
         while !self.memory.guide.knows(self.network, label.node, label.heading) {
@@ -309,6 +358,7 @@ impl<'a> Search<'a> {
     fn offer(&mut self, mut label: Label) {
         let Some(to_go) = self.to_go(label.node, label.heading) else { return };
         let estimate = self.estimate(label.arrival, to_go);
+        let stays = self.waits_until(&label).map(|end| self.estimate(end, to_go));
         let memory = &mut *self.memory;
         let newest = &mut memory.newest[self.network.index(label.node, label.heading)];
         if newest.0 != memory.stamp {
@@ -328,6 +378,9 @@ impl<'a> Search<'a> {
         label.sibling = newest.1;
         newest.1 = memory.labels.len() as u32;
         memory.open.push(Reverse((estimate, to_go, newest.1)));
+        if let Some(estimate) = stays {
+            memory.open.push(Reverse((estimate, to_go, newest.1 | STAY)));
+        }
         memory.labels.push(label);
     }
 

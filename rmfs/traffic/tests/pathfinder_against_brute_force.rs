@@ -1,4 +1,4 @@
-//! The planner against an exhaustive search over critical departure times on small random grids.
+//! The pathfinder against an exhaustive search over critical departure times on small random grids.
 
 use std::collections::{BTreeSet, HashSet};
 
@@ -6,7 +6,7 @@ use _core::costs::Model;
 use _core::kinematics::Kind;
 use _core::network::{Lift, Network, Plan};
 use _core::reservations::{Interval, Table};
-use _core::search::{Outcome, Planner, Query};
+use _core::search::{End, Outcome, Pathfinder, Query};
 use _core::units::{FOREVER, Us, ceil_us, floor_us};
 
 struct Random(u64);
@@ -192,12 +192,14 @@ fn earliest_arrivals_agree_with_exhaustive_search() {
             kind: &kind,
             model: &model,
             budget: u64::MAX,
+            end: End::ForGood,
+            times: None,
         };
         if !free(&table, start, query.ready, query.ready + 1) {
             continue;
         }
         let expected = brute_force(&network, &table, &query);
-        let got = match Planner::new(&network).search(&network, &table, &query) {
+        let got = match Pathfinder::new(&network).search(&network, &table, &query) {
             Outcome::Found(moves) => Some(moves.last().map_or(query.ready, |last| last.end)),
             _ => None,
         };
@@ -228,6 +230,8 @@ fn bounds_never_exceed_the_time_on_an_empty_network() {
                 kind: &kind,
                 model: &model,
                 budget: u64::MAX,
+                end: End::ForGood,
+                times: None,
             };
             let bound = times[network.index(start, 0)];
             match brute_force(&network, &table, &query) {

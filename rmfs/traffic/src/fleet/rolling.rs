@@ -1,0 +1,378 @@
+//! Driving by the wishes of a rolling planner: granted a few straight runs at a time.
+//!
+//! A robot at rest asks for the next runs of its wish when it wants to turn for the first. As many
+//! are granted as the planner allows, are free, and let the robot stay at their end for good; if
+//! not even the first is, the wish is dropped and a new plan is needed. A run onto an elevator is granted only together with the
+//! ride and the run that leaves the shaft. A robot that stops in the queue of its station has
+//! arrived there: from then on it moves up like all others in the queue (`queues.rs`).
+
+use std::cmp::Reverse;
+use std::collections::VecDeque;
+use std::time::Instant;
+
+use crate::network::NONE;
+use crate::planner::{Agent, Answer, Planner, Rhythm, Scene};
+use crate::robot::{Phase, Step, occupation};
+use crate::route::{Leg as Way, route};
+use crate::search::Move;
+use crate::units::Us;
+
+use super::planning::time_in_zone;
+use super::{Due, EventKind, Fleet, Leg};
+
+/// A rolling planner and what it wants.
+#[derive(Debug)]
+pub struct Rolling {
+    planner: Box<dyn Planner>,
+    period: Us,
+    /// Runs that may be granted at once.
+    runs: usize,
+    wishes: Vec<VecDeque<Move>>,
+    needs_plan: Vec<bool>,
+    /// Changes with every wish, so that departures of old ones are recognised.
+    serial: Vec<u32>,
+    last_call: Us,
+    call_due: bool,
+}
+
+impl Rolling {
+    /// Nothing wanted yet; the planner itself if it works per leg.
+    pub fn of(planner: Box<dyn Planner>, robots: usize) -> Result<Self, Box<dyn Planner>> {
+        let Rhythm::Rolling { period, runs } = planner.rhythm() else { return Err(planner) };
+        Ok(Self {
+            planner,
+            period,
+            runs,
+            wishes: vec![VecDeque::new(); robots],
+            needs_plan: vec![false; robots],
+            serial: vec![0; robots],
+            last_call: -period,
+            call_due: false,
+        })
+    }
+
+    fn replace(&mut self, robot: u32, wish: Vec<Move>) {
+        self.wishes[robot as usize] = wish.into();
+        self.serial[robot as usize] += 1;
+    }
+}
+
+impl Fleet {
+    /// Starts a driving step: the robot waits for a plan, or for the end of what it still drives.
+    pub(super) fn set_off_rolling(&mut self, robot: u32) {
+        let begun = Instant::now();
+        self.begin_leg(robot);
+        self.counters.planning += begun.elapsed();
+        let rolling = self.rolling.as_mut().expect("a rolling planner");
+        rolling.replace(robot, Vec::new());
+        let state = &mut self.robots[robot as usize];
+        state.phase = Phase::Driving;
+        if state.moves.is_empty() {
+            // it may be where it wants to be
+            state.version += 1;
+            let due = self.now.max(state.busy_until);
+            self.agenda.push(Reverse((due, robot, Due::LegEnd, state.version)));
+        }
+        self.need_plan(robot);
+    }
+
+    /// The robot stopped: where it wants to be, or on the way.
+    pub(super) fn run_ended(&mut self, robot: u32) {
+        let state = &self.robots[robot as usize];
+        let anchor = state.anchor;
+        match state.program.front().copied() {
+            Some(Step::Drive(goal)) if anchor == goal => return self.arrived(robot, goal),
+            Some(Step::Station(station)) if state.queues_at(station) => {
+                return self.stopped_in_queue(robot, station);
+            }
+            Some(Step::Station(station)) => {
+                let places = &self.network.stations[station as usize];
+                if let Some(place) = places.iter().position(|&node| node == anchor) {
+                    return self.enter_queue(robot, station, place);
+                }
+            }
+            _ => {}
+        }
+        self.robots[robot as usize].phase = Phase::Blocked;
+        self.depart(robot);
+    }
+
+    /// Takes the place in the queue at which the robot stands.
+    fn enter_queue(&mut self, robot: u32, station: u32, place: usize) {
+        if let Some((old, _)) = self.robots[robot as usize].place {
+            self.leave_queue(robot, old);
+        }
+        let queue = &self.queues[station as usize];
+        let rank = queue.partition_point(|&other| self.place_of(other) < place);
+        self.queues[station as usize].insert(rank, robot);
+        self.robots[robot as usize].place = Some((station, place));
+        self.rolling.as_mut().expect("a rolling planner").replace(robot, Vec::new());
+        self.stopped_in_queue(robot, station);
+        self.move_up(station);
+    }
+
+    /// Asks for the next run of a resting robot's wish, or says when it will.
+    pub(super) fn depart(&mut self, robot: u32) {
+        if !self.departs_now(robot) {
+            self.refuse(robot);
+        }
+    }
+
+    /// Starts the first run of a resting robot's wish, or says when it will start, or that it needs
+    /// a wish. Returns whether it was not refused.
+    fn departs_now(&mut self, robot: u32) -> bool {
+        let rolling = self.rolling.as_mut().expect("a rolling planner");
+        let state = &self.robots[robot as usize];
+        let kind = &self.kinds[state.kind as usize];
+        let fits =
+            |first: &&Move| first.from == state.anchor && first.heading_before == state.heading;
+        let Some(first) = rolling.wishes[robot as usize].front().filter(fits) else {
+            self.drop_wish(robot);
+            return true;
+        };
+        let turn = kind.turn(
+            self.network.headings[first.heading_before as usize],
+            self.network.headings[first.heading as usize],
+        );
+        let due = first.start - turn;
+        if due > self.now {
+            let serial = rolling.serial[robot as usize];
+            self.agenda.push(Reverse((due, robot, Due::Depart, serial)));
+            return true;
+        }
+        self.is_granted(robot, self.now - due)
+    }
+
+    /// Lets resting robots ask for the first runs of their new wishes: who is refused asks again
+    /// when another one has been granted its run, for that may have made room.
+    fn depart_together(&mut self, mut robots: Vec<u32>) {
+        loop {
+            let before = robots.len();
+            robots.retain(|&robot| !self.departs_now(robot));
+            if robots.is_empty() || robots.len() == before {
+                break;
+            }
+        }
+        robots.into_iter().for_each(|robot| self.refuse(robot));
+    }
+
+    /// The time has come to turn for the first run of a wish.
+    pub(super) fn departure_due(&mut self, robot: u32, serial: u32) {
+        let rolling = self.rolling.as_ref().expect("a rolling planner");
+        if rolling.serial[robot as usize] == serial {
+            self.depart(robot);
+        }
+    }
+
+    /// Grants the first runs of the wish, `late` by so much: as many as allowed that are free.
+    fn is_granted(&mut self, robot: u32, late: Us) -> bool {
+        let rolling = self.rolling.as_mut().expect("a rolling planner");
+        let wish = &mut rolling.wishes[robot as usize];
+        for step in wish.iter_mut() {
+            step.start += late;
+            step.end += late;
+        }
+        let outside = |at: &usize| self.network.lifts_from(wish[*at].to).is_empty();
+        let ends: Vec<usize> = (0..wish.len()).filter(outside).take(rolling.runs).collect();
+        let most = ends.last().map_or(0, |last| last + 1);
+        let moves: Vec<Move> = wish.range(..most).cloned().collect();
+        for &last in ends.iter().rev() {
+            if self.is_free(robot, &moves[..=last]) {
+                let rolling = self.rolling.as_mut().expect("a rolling planner");
+                rolling.wishes[robot as usize].drain(..=last);
+                let moves = moves[..=last].to_vec();
+                self.grant(robot, moves);
+                return true;
+            }
+        }
+        false
+    }
+
+    fn is_free(&self, robot: u32, moves: &[Move]) -> bool {
+        let state = &self.robots[robot as usize];
+        let kind = &self.kinds[state.kind as usize];
+        let held = occupation(&self.network, kind, state.anchor, state.anchored, moves);
+        held.iter().all(|want| {
+            let row = self.table.row(want.resource).iter();
+            row.filter(|taken| taken.robot != robot)
+                .all(|taken| taken.end <= want.start || want.end <= taken.start)
+        })
+    }
+
+    fn refuse(&mut self, robot: u32) {
+        self.counters.refusals += 1;
+        self.drop_wish(robot);
+    }
+
+    fn grant(&mut self, robot: u32, moves: Vec<Move>) {
+        for held in &self.robots[robot as usize].held {
+            self.table.remove(held.resource, robot);
+        }
+        let state = &self.robots[robot as usize];
+        let (anchor, place) = (state.anchor, state.place);
+        self.adopt(robot, 0, moves);
+        if self.network.storage[anchor as usize] {
+            self.emit(EventKind::Departed, robot, anchor);
+        }
+        if let Some((station, _)) = place {
+            self.leave_queue(robot, station);
+        }
+    }
+
+    fn drop_wish(&mut self, robot: u32) {
+        self.rolling.as_mut().expect("a rolling planner").replace(robot, Vec::new());
+        self.need_plan(robot);
+    }
+
+    fn need_plan(&mut self, robot: u32) {
+        let rolling = self.rolling.as_mut().expect("a rolling planner");
+        rolling.needs_plan[robot as usize] = true;
+        if !std::mem::replace(&mut rolling.call_due, true) {
+            let due = self.now.max(rolling.last_call + rolling.period);
+            self.agenda.push(Reverse((due, u32::MAX, Due::Call, 0)));
+        }
+    }
+
+    /// Asks the planner for all robots that drive.
+    pub(super) fn call_planner(&mut self) {
+        let begun = Instant::now();
+        let agents = self.agents();
+        let Fleet { network, kinds, robots, table, pathfinder, costs, rolling, .. } = self;
+        let rolling = rolling.as_mut().expect("a rolling planner");
+        rolling.call_due = false;
+        rolling.last_call = self.now;
+        let mut scene = Scene { now: self.now, network, kinds, robots, table, pathfinder, costs };
+        let answers = rolling.planner.plan(&mut scene, &agents);
+        self.counters.planning += begun.elapsed();
+        let mut resting = Vec::new();
+        for (agent, answer) in agents.iter().zip(answers) {
+            let changed = self.take_answer(agent.robot, answer);
+            if changed && self.robots[agent.robot as usize].phase == Phase::Blocked {
+                resting.push(agent.robot);
+            }
+        }
+        self.depart_together(resting);
+    }
+
+    /// Makes the answer the robot's wish. Returns whether that is a new one.
+    fn take_answer(&mut self, robot: u32, answer: Answer) -> bool {
+        let rolling = self.rolling.as_mut().expect("a rolling planner");
+        match answer {
+            Answer::Way(moves) => {
+                self.counters.replans += 1;
+                rolling.needs_plan[robot as usize] = false;
+                rolling.replace(robot, moves);
+            }
+            Answer::NoWay => {
+                self.counters.failures += 1;
+                self.need_plan(robot);
+                return false;
+            }
+            Answer::Keep if rolling.needs_plan[robot as usize] => {
+                self.need_plan(robot);
+                return false;
+            }
+            Answer::Keep => return false,
+        }
+        true
+    }
+
+    /// Robots on the way or waiting for one, with the waypoints they want to reach.
+    fn agents(&mut self) -> Vec<Agent> {
+        let mut agents = Vec::new();
+        let mut bound: Vec<Vec<usize>> = vec![Vec::new(); self.network.stations.len()];
+        for robot in 0..self.robots.len() as u32 {
+            let state = &self.robots[robot as usize];
+            if !matches!(state.phase, Phase::Driving | Phase::Blocked) {
+                continue;
+            }
+            let goal = match state.program.front() {
+                Some(&Step::Drive(goal)) => goal,
+                Some(&Step::Station(station)) if !state.queues_at(station) => {
+                    bound[station as usize].push(agents.len());
+                    NONE
+                }
+                _ => continue,
+            };
+            let (start, heading, end) = state.destination();
+            let needs_plan =
+                self.rolling.as_ref().expect("a rolling planner").needs_plan[robot as usize];
+            agents.push(Agent {
+                robot,
+                kind: state.kind,
+                start,
+                heading,
+                ready: end.max(self.now).max(state.busy_until),
+                goal,
+                loaded: state.pod.is_some(),
+                effort: u64::MAX,
+                needs_plan,
+            });
+        }
+        for (station, members) in bound.iter().enumerate() {
+            self.aim_at_places(station as u32, members, &mut agents);
+        }
+        agents.retain(|agent| agent.goal != agent.start);
+        agents
+    }
+
+    /// Gives robots outside a queue the places behind those in it, nearest first; when there are
+    /// none left, all others aim at the last place.
+    fn aim_at_places(&mut self, station: u32, members: &[usize], agents: &mut [Agent]) {
+        let places = self.network.stations[station as usize].clone();
+        let in_queue = self.queues[station as usize].iter();
+        let mut free = in_queue.map(|&robot| self.place_of(robot) + 1).max().unwrap_or(0);
+        let mut nearest: Vec<(u32, usize)> = Vec::new();
+        for &index in members {
+            let agent = &agents[index];
+            let table = self.costs.towards(&self.network, places[0], agent.kind, agent.loaded);
+            nearest.push((table[self.network.index(agent.start, agent.heading)], index));
+        }
+        nearest.sort_unstable();
+        for (_, index) in nearest {
+            // a run that ends at a place of the queue is its own
+            let own = places.iter().position(|&node| node == agents[index].start);
+            let place = own.unwrap_or(free.min(places.len() - 1));
+            agents[index].goal = places[place];
+            free = free.max(place + 1);
+        }
+    }
+
+    /// Notes what the new leg is to be compared with.
+    fn begin_leg(&mut self, robot: u32) {
+        let state = &self.robots[robot as usize];
+        let (goal, zone) = match state.program.front() {
+            Some(&Step::Station(station)) => {
+                let places = &self.network.stations[station as usize];
+                (places[places.len() - 1], station)
+            }
+            Some(&Step::Drive(goal)) => (goal, NONE),
+            _ => return,
+        };
+        let (start, heading, end) = state.destination();
+        let ready = end.max(self.now).max(state.busy_until);
+        let loaded = state.pod.is_some();
+        let times = self.costs.towards(&self.network, goal, state.kind, loaded);
+        let way = Way {
+            start,
+            heading,
+            ready,
+            goal,
+            loaded,
+            kind: &self.kinds[state.kind as usize],
+            model: &self.costs.models[state.kind as usize],
+            times: &times,
+        };
+        let moves = route(&self.network, &way, |_| Some(0)).unwrap_or_default();
+        let whole = moves.last().map_or(0, |last| last.end - ready);
+        let unhindered = whole - time_in_zone(&self.network, way.kind, &moves, zone);
+        self.counters.plans += 1;
+        self.legs[robot as usize] = Some(Leg {
+            from: start,
+            start: ready,
+            unhindered,
+            distance_before: self.record.totals[robot as usize].distance,
+            zone_entered: None,
+        });
+    }
+}

@@ -1,0 +1,123 @@
+//! BCP: biased cost pathfinding. Ways through space whose clashes make waypoints dearer.
+//!
+//! Geramifard, Chubak, Bulitko (2006), in the form of Merschformann, Xie, Erdmann (2017): each agent
+//! takes its quickest way; where it clashes with one planned before, the waypoint becomes dearer for
+//! this agent alone, it stops before it, and the next round begins.
+
+use std::collections::BTreeMap;
+
+use crate::reservations::{Interval, Table};
+use crate::search::Move;
+use crate::units::{FOREVER, Us};
+
+use super::deadlock::{Deadlocks, run};
+use super::draft::Clash;
+use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
+
+/// The planner and its parameters.
+#[derive(Debug)]
+pub struct Bcp {
+    pub rhythm: Rhythm,
+    /// Metres by which a clash makes a waypoint dearer; they count at top speed.
+    pub bias: f64,
+    /// Rounds per call.
+    pub rounds: u32,
+    pub deadlocks: Deadlocks,
+    pub table: Table,
+}
+
+impl Planner for Bcp {
+    fn rhythm(&self) -> Rhythm {
+        self.rhythm
+    }
+
+    fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
+        let times = draft::times(scene, agents);
+        let mut dearer = vec![BTreeMap::new(); agents.len()];
+        let mut answers = Vec::new();
+        for _ in 0..self.rounds {
+            let mut is_free = true;
+            draft::block(scene, agents, &mut self.table);
+            agents.iter().for_each(|agent| self.hold_start(scene, agent));
+            answers.clear();
+            for (index, agent) in agents.iter().enumerate() {
+                let (answer, clash) = self.plan_one(scene, agent, &times[index], &dearer[index]);
+                answers.push(answer);
+                if let Some(clash) = clash {
+                    is_free = false;
+                    let pace = scene.costs.models[agent.kind as usize].pace;
+                    *dearer[index].entry(clash.node).or_insert(0) += (self.bias * pace) as Us;
+                }
+            }
+            if is_free {
+                break;
+            }
+        }
+        self.deadlocks.resolve(scene, agents, &mut answers);
+        answers
+    }
+}
+
+impl Bcp {
+    /// Everybody may have to stay where it stops next.
+    fn hold_start(&mut self, scene: &Scene, agent: &Agent) {
+        let resource = scene.network.resource[agent.start as usize];
+        let next = self.table.occupant(resource, agent.ready, FOREVER);
+        let end = next.map_or(FOREVER, |next| next.start);
+        if agent.ready < end {
+            let interval = Interval { start: agent.ready, end, robot: agent.robot };
+            self.table.insert(resource, interval, scene.now);
+        }
+    }
+
+    /// The way of one agent, reserved if it is free; else where it clashes, with a stop before.
+    fn plan_one(
+        &mut self,
+        scene: &Scene,
+        agent: &Agent,
+        times: &[u32],
+        dearer: &BTreeMap<u32, Us>,
+    ) -> (Answer, Option<Clash>) {
+        let penalty = |node: u32| Some(dearer.get(&node).copied().unwrap_or(0));
+        let Some(moves) = draft::way(scene, agent, &[], agent.ready, times, penalty) else {
+            return (Answer::NoWay, None);
+        };
+        let Some(clash) = draft::clash(scene, &self.table, agent, &moves) else {
+            for held in draft::occupied(scene, agent, &moves, FOREVER) {
+                let interval = Interval { start: held.start, end: held.end, robot: agent.robot };
+                self.table.cover(held.resource, interval);
+            }
+            return (Answer::Way(moves), None);
+        };
+        let stopping = stop_before(scene, agent, &moves, &clash, times);
+        (Answer::Way(stopping.unwrap_or(moves)), Some(clash))
+    }
+}
+
+/// The way with a stop before the waypoint where it clashes, or `None` if that is its next one.
+fn stop_before(
+    scene: &Scene,
+    agent: &Agent,
+    moves: &[Move],
+    clash: &Clash,
+    times: &[u32],
+) -> Option<Vec<Move>> {
+    let step = &moves[clash.step];
+    let mut way = moves[..clash.step].to_vec();
+    let line = scene.network.line(step.from, step.to, step.heading);
+    if let Some((to, length)) = line.take_while(|at| at.0 != clash.node).last() {
+        let from = Agent {
+            start: step.from,
+            heading: step.heading_before,
+            ready: way.last().map_or(agent.ready, |last: &Move| last.end),
+            ..agent.clone()
+        };
+        way.push(run(scene, &from, step.heading, to, length));
+    }
+    if way.is_empty() {
+        return None;
+    }
+    let rest = draft::way(scene, agent, &way, 0, times, |_| Some(0))?;
+    way.extend(rest);
+    Some(way)
+}
