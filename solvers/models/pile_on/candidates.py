@@ -76,7 +76,7 @@ class Pruning:
     orders_per_slot
         Orders per free slot of a station. Default 16.
     stations_per_order
-        Stations per order, so that none is left out. Default 4.
+        Stations per order, so that none is left out; if more than so many have slots. Default 4.
     robots_per_pod
         Robots per pod. Default 4.
 
@@ -170,11 +170,13 @@ def _order_price(data: PileOn, sku_price: Floats) -> Floats:
 
 
 def _best_places(data: PileOn, price: Floats, keep: Pruning) -> Flags:
-    """The cheapest orders of each station and the cheapest stations of each order."""
+    """The cheapest orders of each station and, of many stations, the cheapest of each order."""
     open_price = np.where(data.slots > 0, price, np.inf)
     by_station = np.argsort(np.argsort(open_price, axis=0, kind="stable"), axis=0)
     by_order = np.argsort(np.argsort(open_price, axis=1, kind="stable"), axis=1)
-    best = (by_station < keep.orders_per_slot * data.slots) | (by_order < keep.stations_per_order)
+    best = by_station < keep.orders_per_slot * data.slots
+    if np.count_nonzero(data.slots) > keep.stations_per_order:
+        best |= by_order < keep.stations_per_order
     takes: Flags = best & (data.slots > 0)
     return takes
 

@@ -191,10 +191,11 @@ def coverable_lines(data: PileOn, candidates: Candidates) -> Flags:
     candidates
         The pairs to use.
     """
+    pods = np.flatnonzero(candidates.calls.any(axis=1))
+    calls, stock = candidates.calls[pods], data.stock[pods]
     # Sums of units are exact in float64, and float products are much faster than integer ones.
-    calls = candidates.calls.astype(np.float64)
-    reach = data.surplus + calls.T @ data.stock.astype(np.float64)
-    coverable: Flags = (reach[:, data.line_sku] >= data.line_units).T
+    coming = calls.T.astype(np.float64) @ stock[:, data.line_sku].astype(np.float64)
+    coverable: Flags = (data.surplus[:, data.line_sku] + coming >= data.line_units).T
     return coverable
 
 

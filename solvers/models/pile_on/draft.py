@@ -27,6 +27,37 @@ class Call:
     pods: tuple[int, ...]
 
 
+@dataclass(frozen=True)
+class Offers:
+    """Which pod holds something for which line: few of all pairs, so that they are listed.
+
+    Parameters
+    ----------
+    pod, line, units
+        One entry per pod and line whose SKU it holds, sorted by pod, then line.
+    match
+        For each entry the number of its match: a pod and an order it holds something for.
+    match_pod, match_order
+        Pod and order of each match.
+    """
+
+    pod: Integers
+    line: Integers
+    units: Integers
+    match: Integers
+    match_pod: Integers
+    match_order: Integers
+
+    @classmethod
+    def of(cls, data: PileOn) -> Offers:
+        """List the offers of an input."""
+        pod, line = np.nonzero(data.stock[:, data.line_sku])
+        order = data.line_order[line]
+        new = (np.diff(pod, prepend=-1) != 0) | (np.diff(order, prepend=-1) != 0)
+        units = data.stock[pod, data.line_sku[line]]
+        return cls(pod, line, units, np.cumsum(new) - 1, pod[new], order[new])
+
+
 class Draft:
     """Orders placed and pods called so far.
 
@@ -56,7 +87,7 @@ class Draft:
         self.robots = data.free_robots
         units = np.bincount(data.line_order, data.line_units, minlength=data.orders)
         self._rank = np.lexsort((units, -data.order_worth))
-        self._stock_of = np.ascontiguousarray(data.stock.T)
+        self._offers = Offers.of(data)
         self._pods_of = [np.flatnonzero(calls) for calls in candidates.calls.T]
         self._fetch = self._fetch_costs()
 
@@ -126,12 +157,24 @@ class Draft:
 
     def completions(self, pods: Integers, station: int) -> Floats:
         """How many open orders each pod would complete, alone with the stock left, shape (N,)."""
-        need, lines, starts = self._needs(station)
-        if not lines.size or not pods.size:
-            return np.zeros(pods.size)
-        done = np.logical_and.reduceat(self._enough(pods, lines, need[lines]), starts, axis=0)
-        count: Floats = done.sum(axis=0, dtype=np.float64)
-        return count
+        offers, need = self._offers, self._needs(station)
+        lacking = need > 0
+        # An order is complete if the pod has enough of as many lines as it lacks.
+        met = lacking[offers.line] & (offers.units >= need[offers.line])
+        self.scored += met.size
+        served = np.bincount(offers.match, met, minlength=offers.match_order.size)
+        lines = np.bincount(self.data.line_order, lacking, minlength=self.data.orders)
+        done = (served > 0) & (served == lines[offers.match_order])
+        count = np.bincount(offers.match_pod, done, minlength=self.data.pods)
+        completed: Floats = count[pods].astype(np.float64)
+        return completed
+
+    def easing(self, pods: Integers, station: int) -> Integers:
+        """Units of a station's shortage that each pod could ease, shape (N,)."""
+        skus = np.flatnonzero(self.shortage[station])
+        stock = self.data.stock[pods[:, None], skus]
+        eased: Integers = np.minimum(stock, self.shortage[station, skus]).sum(axis=1)
+        return eased
 
     def best_call(self, station: int) -> Call | None:
         """The call with the greatest gain at a station: one pod, or the set for one order.
@@ -146,7 +189,7 @@ class Draft:
         weights, cost = self.data.weights, self.call_costs(pods, station)
         done = self.completions(pods, station) if self.slots[station] else np.zeros(pods.size)
         filled = np.minimum(done, self.slots[station])
-        eased = np.minimum(self.data.stock[pods], self.shortage[station]).sum(axis=1)
+        eased = self.easing(pods, station)
         rewarded = done if weights.prospects else filled
         gain = weights.empty_slot * filled + weights.complete * rewarded
         gain = gain + weights.open_unit * eased - cost
@@ -167,7 +210,7 @@ class Draft:
         """
         pods = self.free_pods(station)
         if self._spare_order(station) < 0:
-            pods = pods[self._serves(pods, station).any(axis=1)]
+            pods = pods[self._useful(station)[pods]]
         if not pods.size or not self.data.weights.prospects:
             return None
         gain = self.data.weights.complete * self.completions(pods, station)
@@ -180,7 +223,7 @@ class Draft:
         station, pods = call.station, np.array(call.pods)
         new = np.flatnonzero(self.prospect < 0)
         self.reserve(station)
-        if self._serves(pods, station).any(axis=1).all():
+        if self._useful(station)[pods].all():
             return
         spare = self._spare_order(station)
         new = new[self.prospect[new] == station]
@@ -201,9 +244,12 @@ class Draft:
         self.stock_left[call.station] -= self.data.stock[pods].sum(axis=0)
         self.pod_station[pods] = -1
 
-    def _serves(self, pods: Integers, station: int) -> Flags:
-        """Whether each pod holds a SKU of each order placed at a station, shape (pods, placed)."""
-        return self._holds(pods, np.flatnonzero(self.order_station == station))
+    def _useful(self, station: int) -> Flags:
+        """Whether each pod holds a SKU of an order placed at a station, shape (P,)."""
+        placed = (self.order_station == station)[self._offers.match_order]
+        useful = np.zeros(self.data.pods, dtype=np.bool_)
+        useful[self._offers.match_pod[placed]] = True
+        return useful
 
     def _holds(self, pods: Integers, orders: Integers) -> Flags:
         """Whether each pod holds a SKU of each order."""
@@ -225,43 +271,40 @@ class Draft:
 
     def _best_set(self, pods: Integers, cost: Floats, station: int) -> Call | None:
         """The open order whose missing lines are cheapest to bring, one pod per line."""
-        need, lines, starts = self._needs(station)
-        if not lines.size:
+        data, offers, need = self.data, self._offers, self._needs(station)
+        lacking = need > 0
+        if not lacking.any():
             return None
-        price = np.where(self._enough(pods, lines, need[lines]), cost, np.inf)
-        total = np.add.reduceat(price.min(axis=1), starts)
-        best = int(total.argmin())
-        if not np.isfinite(total[best]):
+        cost_of = np.full(data.pods, np.inf)
+        cost_of[pods] = cost
+        price = np.where(offers.units >= need[offers.line], cost_of[offers.pod], np.inf)
+        self.scored += price.size
+        dearest = np.full(data.lines, np.inf)
+        np.minimum.at(dearest, offers.line, price)
+        total = np.bincount(data.line_order[lacking], dearest[lacking], minlength=data.orders)
+        total[np.bincount(data.line_order, lacking, minlength=data.orders) == 0] = np.inf
+        order = int(total.argmin())
+        if not np.isfinite(total[order]):
             return None
-        end = starts[best + 1] if best + 1 < starts.size else lines.size
-        chosen = np.unique(pods[price[starts[best] : end].argmin(axis=1)])
-        if np.count_nonzero(self.data.needs_robot[chosen]) > self.robots.size and (
-            self.data.fetch is not None
-        ):
+        chosen = []
+        for line in range(data.first_line[order], data.first_line[order + 1]):
+            if lacking[line]:
+                own = np.flatnonzero(offers.line == line)
+                chosen.append(int(offers.pod[own[price[own].argmin()]]))
+        together = np.unique(chosen)
+        if data.fetch is not None and data.needs_robot[together].sum() > self.robots.size:
             return None
-        weights = self.data.weights
-        order = int(self.data.line_order[lines[starts[best]]])
-        gain = weights.empty_slot + weights.complete + self.data.order_worth[order] - total[best]
-        return Call(float(gain), station, tuple(int(pod) for pod in chosen))
+        weights = data.weights
+        gain = weights.empty_slot + weights.complete + data.order_worth[order] - total[order]
+        return Call(float(gain), station, tuple(together.tolist()))
 
-    def _enough(self, pods: Integers, lines: Integers, need: Integers) -> Flags:
-        """Whether each pod alone holds what each line needs, shape (lines, pods)."""
-        self.scored += lines.size * pods.size
-        # Lines first: their flags are then combined order by order over contiguous rows.
-        enough: Flags = self._stock_of[np.ix_(self.data.line_sku[lines], pods)] >= need[:, None]
-        return enough
-
-    def _needs(self, station: int) -> tuple[Integers, Integers, Integers]:
-        """Units each line lacks at a station; the lacking lines of open orders; their starts.
-
-        Lines that the stock left covers are dropped, so that only what is missing is compared.
-        """
+    def _needs(self, station: int) -> Integers:
+        """Units that lines of open orders lack at a station, 0 for other lines, shape (L,)."""
         data = self.data
-        need = data.line_units - self.stock_left[station, data.line_sku]
         waiting = self.open_orders & self.candidates.places[:, station]
-        lines = np.flatnonzero((need > 0) & waiting[data.line_order])
-        starts = np.flatnonzero(np.diff(data.line_order[lines], prepend=-1))
-        return need, lines, starts
+        lacks = np.maximum(data.line_units - self.stock_left[station, data.line_sku], 0)
+        need: Integers = np.where(waiting[data.line_order], lacks, 0)
+        return need
 
     def _send_robot(self, pod: int) -> None:
         """Take the nearest free robot out of the draft's fleet."""

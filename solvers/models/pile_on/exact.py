@@ -77,8 +77,9 @@ def solve_with(
         lambda values: objective(data, values),
         build_s=time.perf_counter() - began - outcome.wall_s,
     )
-    if candidates is not None:
-        solution = replace(solution, bound=-math.inf)
+    if candidates is not None and solution.found:
+        # The best of the pruned pairs proves nothing about the others.
+        solution = replace(solution, bound=-math.inf, status=Status.FEASIBLE)
     worth = objective(data, fallback)
     if not solution.found or solution.objective > worth:
         solution = replace(

@@ -101,11 +101,11 @@ def _stations(data: PileOn) -> list[int]:
 
 def _next_call(draft: Draft, station: int, rng: np.random.Generator) -> Call | None:
     """The pod of least K that completes an order or eases a shortage; else a sampled set."""
-    data, weights = draft.data, draft.data.weights
+    weights = draft.data.weights
     pods = draft.free_pods(station)
     if not pods.size:
         return None
-    eased = np.minimum(data.stock[pods], draft.shortage[station]).sum(axis=1)
+    eased = draft.easing(pods, station)
     done = draft.completions(pods, station) if draft.slots[station] else np.zeros(pods.size)
     k = draft.call_costs(pods, station) - weights.complete * done - weights.open_unit * eased
     k[(done == 0) & (eased == 0)] = np.inf

@@ -18,7 +18,7 @@ from solvers.models.pile_on.candidates import Candidates, everything
 from solvers.models.pile_on.data import Integers, PileOn
 from solvers.models.pile_on.draft import assign_robots
 from solvers.models.pile_on.restrict import compact, part
-from solvers.models.pile_on.values import Assignment, nothing, objective
+from solvers.models.pile_on.values import Assignment, nothing, objective, violations
 from solvers.models.solution import Limits, Solution, Status
 
 NAME = "neighbourhood"
@@ -61,7 +61,7 @@ def solve(
     values = nothing(data) if start is None else start
     pairs = everything(data) if candidates is None else candidates
     groups = station_groups(data)
-    if len(groups) <= 1 or data.variant.many_stations:
+    if len(groups) <= 1:
         return cp_sat.solve(data, bounds, seed=seed, start=start, candidates=candidates)
     began = time.perf_counter()
     small = compact(data, pairs.including(values))
@@ -87,7 +87,9 @@ def solve(
         work += found.work
         build_s += found.build_s
         if found.objective < objective(stage.data, before):
-            current, idle = stage.merge(found.required), 0
+            merged = stage.merge(found.required)
+            if not data.variant.many_stations or not violations(small.data, merged):
+                current, idle = merged, 0
     current = replace(current, pod_robot=assign_robots(small.data, current.pod_station))
     result = small.expand(current)
     return Solution(

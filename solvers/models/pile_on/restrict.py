@@ -157,10 +157,14 @@ def part(
 ) -> Part | None:
     """Free the decisions of a few stations.
 
+    An order that also has a slot elsewhere stays as it is: its slots here are taken, and its lines
+    here become open demand. `merge` may then leave such a line without stock (at the price of open
+    demand), which `violations` finds.
+
     Parameters
     ----------
     data
-        The input; orders go to one station each.
+        The input.
     candidates
         The pairs to use.
     values
@@ -193,16 +197,24 @@ def part(
     )
     station_of = np.full(data.stations + 1, -1)
     station_of[stations] = np.arange(stations.size)
+    slots, open_units = data.slots[stations], data.open_units[stations]
+    if data.variant.many_stations:
+        slots = slots - values.slot[np.ix_(taken, stations)].sum(axis=0)
+        fixed = np.flatnonzero(taken[data.line_order] & (values.line_station >= 0))
+        fixed = fixed[~elsewhere[values.line_station[fixed]]]
+        open_units = open_units.copy()
+        at = station_of[values.line_station[fixed]]
+        np.add.at(open_units, (at, data.line_sku[fixed]), data.line_units[fixed])
     small = replace(
         data,
-        slots=data.slots[stations],
+        slots=slots,
         line_order=np.searchsorted(orders, data.line_order[lines]),
         line_sku=data.line_sku[lines],
         line_units=data.line_units[lines],
         travel=data.travel[:, stations],
         available=data.available & ~called,
         inbound=station_of[data.inbound],
-        open_units=data.open_units[stations],
+        open_units=open_units,
         fetch=None if data.fetch is None else data.fetch[robots],
         robot_pod=None if data.robot_pod is None else data.robot_pod[robots],
         worth=None if data.worth is None else data.worth[orders],

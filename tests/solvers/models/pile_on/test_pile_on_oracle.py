@@ -5,7 +5,7 @@ import pytest
 from pile_on_oracle import optimum, small_site, tiny
 
 from solvers.models import Limits, Status
-from solvers.models.pile_on import cp_sat, greedy, hadgs, highs, joint, neighbourhood
+from solvers.models.pile_on import cp_sat, greedy, hadgs, highs, joint, neighbourhood, prices
 from solvers.models.pile_on.values import nothing, objective, violations
 from solvers.models.pile_on.variant import Variant
 
@@ -74,7 +74,38 @@ def test_the_joint_decision_is_no_worse_than_its_rules_and_its_start() -> None:
         assert violations(data, solution.required) == []
         assert solution.objective <= exact.objective
         assert solution.objective <= joint.solve(data, limits).objective
-        assert joint.solve(data, limits).objective <= greedy.solve(data).objective + 40
+        assert joint.solve(data, limits).objective <= greedy.solve(data).objective
+
+
+@pytest.mark.parametrize("variant", Variant)
+def test_prices_bound_every_decision_wherever_they_aim(variant: Variant) -> None:
+    met = []
+    for seed in range(200, 300):
+        data = tiny(seed, variant, fractions=bool(seed % 2))
+        best = optimum(data)
+        for upper in (best, objective(data, nothing(data)) + 1e4):
+            for steps in (0, 50):
+                assert prices.bound(data, upper, steps) <= best + 1e-9, seed
+        met.append(prices.bound(data, best, 50) == pytest.approx(best, rel=1e-4, abs=1e-4))
+    assert np.mean(met) > 0.4
+
+
+def test_prices_bound_well_where_no_prospects_are_rewarded() -> None:
+    for seed in range(5):
+        data = small_site(seed, prospects=False)
+        best = highs.solve(data).objective
+        scale = data.weights.empty_slot * data.slots.sum()
+        assert best - 0.01 * scale <= prices.bound(data, best, 100) <= best
+
+
+@pytest.mark.parametrize("variant", Variant)
+def test_the_joint_decision_has_a_bound_of_the_whole_problem(variant: Variant) -> None:
+    for seed in range(300, 340):
+        data = tiny(seed, variant)
+        solution = joint.solve(data)
+        assert solution.bound <= optimum(data) + 1e-9
+        if solution.status is Status.OPTIMAL:
+            assert solution.objective == pytest.approx(optimum(data))
 
 
 def test_deciding_nothing_is_always_allowed() -> None:

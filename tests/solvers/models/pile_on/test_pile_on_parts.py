@@ -11,6 +11,7 @@ from solvers.models.pile_on import (
     PileOn,
     Pruning,
     Variant,
+    Weights,
     attribute,
     cp_sat,
     everything,
@@ -26,6 +27,7 @@ from solvers.models.pile_on import (
 from solvers.models.pile_on.program import formulate
 from solvers.models.pile_on.relaxation import PileOnRelaxation, bound
 from solvers.models.pile_on.restrict import compact, part
+from solvers.models.pile_on.sample import Size, snapshot
 from solvers.models.pile_on.values import called_supply, demand, uncovered
 
 
@@ -91,6 +93,31 @@ def test_a_part_starts_where_the_whole_stands_and_merges_into_it() -> None:
         assert violations(data, merged) == []
         gained = objective(stage.data, start) - better.objective
         assert objective(data, values) - objective(data, merged) == pytest.approx(gained)
+
+
+def test_a_part_leaves_orders_that_are_split_beyond_it_as_they_are() -> None:
+    split = 0
+    for seed in range(8):
+        # Fewer orders than slots: what fills the slots is splitting.
+        size = Size(stations=3, slots=3, pods=15, skus=12, orders=5, robots=9, skus_per_pod=3)
+        weights = Weights(part=0.0, prospects=False)
+        data = snapshot(size, seed, variant=Variant.SPLIT_BOTH, weights=weights)
+        values = cp_sat.solve(data, Limits(deterministic_s=0.3)).required
+        stations = np.array([0, 1])
+        inside, beyond = values.slot[:, :2].any(axis=1), values.slot[:, 2]
+        split += np.count_nonzero(inside & beyond)
+        stage = part(data, everything(data), values, stations)
+        if stage is None:
+            continue
+        start = stage.start()
+        assert violations(stage.data, start) == []
+        better = highs.solve(stage.data, candidates=stage.candidates, start=start)
+        merged = stage.merge(better.required)
+        assert violations(data, merged) == []
+        assert np.array_equal(merged.slot[beyond], values.slot[beyond])
+        gained = objective(stage.data, start) - better.objective
+        assert objective(data, values) - objective(data, merged) == pytest.approx(gained)
+    assert split > 3
 
 
 @pytest.mark.parametrize("variant", Variant)
