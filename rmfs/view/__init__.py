@@ -1,4 +1,4 @@
-"""The browser viewer: replays of recorded runs, live attachment, and single files to send.
+"""The browser viewer: replays of recorded runs, and single files to send.
 
 `scene` turns a run into the arrays a page draws, `container` is how they travel, `server` serves
 them on loopback, `export` writes one file. The page is written in TypeScript (`web`); its tracked

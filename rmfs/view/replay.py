@@ -19,7 +19,7 @@ def replay_server(runs: Sequence[RunFolder], port: int = 0) -> Server:
     A run is read each time it is asked for, so that a page loaded anew shows what is there now;
     one that cannot be read is answered with the reason.
     """
-    session = {"runs": len(runs), "live": False}
+    session = {"runs": len(runs)}
     paths = {f"/runs/{number}": _scene(run) for number, run in enumerate(runs)}
     return Server({"/session": lambda _: Answer.json(session), **paths}, port=port)
 

@@ -73,7 +73,6 @@ def head(
     end_s: float,
     title: str,
     details: list[str],
-    live: bool = False,
 ) -> dict[str, Any]:
     """Return the header of a scene: what is told in words and single numbers.
 
@@ -81,8 +80,6 @@ def head(
     ----------
     details
         The texts that the column `detail` of the events points at.
-    live
-        Whether more is to come.
     """
     return {
         "title": title,
@@ -90,7 +87,6 @@ def head(
         "seed": seed,
         "warmup_s": warmup_s,
         "end_s": end_s,
-        "live": live,
         "tiers": [asdict(tier) for tier in layout.tiers],
         "stations": [
             {

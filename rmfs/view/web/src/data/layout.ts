@@ -27,7 +27,6 @@ export interface Header {
   seed: number;
   warmup_s: number;
   end_s: number;
-  live: boolean;
   tiers: Tier[];
   stations: Station[];
   elevators: number[][];

@@ -61,38 +61,6 @@ export class Track {
     this.cursor = Math.max(countUpTo(this.start, time_us, this.count) - 1, 0);
     return this.cursor;
   }
-
-  /** Puts rows in place of what was known from the first of them on. */
-  extend(news: Track): void {
-    if (news.count === 0) return;
-    const kept = this.count === 0 ? 0 : countUpTo(this.start, news.start[0] - 0.5, this.count);
-    const count = kept + news.count;
-    if (count > this.start.length) this.grow(Math.max(2 * count, 64));
-    for (const name of COLUMNS) this[name].set(news[name].subarray(0, news.count), kept);
-    this.count = count;
-    this.end = news.end;
-    this.cursor = Math.min(this.cursor, count - 1);
-  }
-
-  private grow(capacity: number): void {
-    this.start = grown(this.start, new Float64Array(capacity));
-    this.kind = grown(this.kind, new Uint8Array(capacity));
-    this.from = grown(this.from, new Int32Array(capacity));
-    this.to = grown(this.to, new Int32Array(capacity));
-    this.heading0 = grown(this.heading0, new Float32Array(capacity));
-    this.heading1 = grown(this.heading1, new Float32Array(capacity));
-    this.pod = grown(this.pod, new Int32Array(capacity));
-  }
-}
-
-const COLUMNS = ["start", "kind", "from", "to", "heading0", "heading1", "pod"] as const;
-
-function grown<A extends Float64Array | Float32Array | Int32Array | Uint8Array>(
-  old: A,
-  fresh: A,
-): A {
-  fresh.set(old);
-  return fresh;
 }
 
 /** Reads the rows of all robots from a container; they share its memory. */

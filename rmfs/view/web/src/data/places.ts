@@ -29,10 +29,7 @@ export class PodPlaces {
     });
     moves.sort((a, b) => a[0] - b[0]);
     for (const [time, pod, where] of moves) {
-      const steps = this.of[pod];
-      // a motion in progress is told again until it ends
-      const known = steps.times.length > 0 && steps.times[steps.times.length - 1] >= time;
-      if (!known) steps.push(time, where);
+      this.of[pod].push(time, where);
     }
   }
 }

@@ -1,6 +1,6 @@
 /** A run as the page knows it: everything that can be asked of it at any time. */
 
-import { type Container, decode } from "./container";
+import { decode } from "./container";
 import { Events } from "./events";
 import { type Course, course } from "./figures";
 import { type Header, type Layout, readLayout } from "./layout";
@@ -21,8 +21,8 @@ export class Run {
   readonly stations: Stations;
   readonly passages: Passages;
   /** Until when the run is known, in microseconds. */
-  known_us: number;
-  private drawn: { end_us: number; course: Course } | undefined;
+  readonly known_us: number;
+  private drawn: Course | undefined;
 
   constructor(buffer: ArrayBuffer) {
     const container = decode<Header>(buffer);
@@ -36,30 +36,16 @@ export class Run {
     this.stock = new Stock(this.layout, this.events);
     this.stations = new Stations(this.layout, this.events);
     this.passages = new Passages(this.layout, this.motion, this.robots);
-    this.known_us = header.live ? 0 : header.end_s * 1e6;
+    this.known_us = header.end_s * 1e6;
   }
 
   get header(): Header {
     return this.layout.header;
   }
 
-  /** Adds what a live run has done since. */
-  extend(container: Container<{ now_us: number; details: string[] }>): void {
-    const news = readTracks(container);
-    this.motion.tracks.forEach((track, robot) => {
-      track.extend(news[robot]);
-    });
-    this.places.extend(news);
-    this.events.extend(container, container.header.details);
-    this.known_us = container.header.now_us;
-  }
-
-  /** Returns the courses for the charts, worked out anew when a minute more is known. */
+  /** Returns the courses for the charts, worked out when they are first asked for. */
   course(): Course {
-    if (this.drawn === undefined || this.known_us - this.drawn.end_us > 60e6) {
-      const end_us = this.known_us;
-      this.drawn = { end_us, course: course(this.events, this.robots, end_us) };
-    }
-    return this.drawn.course;
+    this.drawn ??= course(this.events, this.robots, this.known_us);
+    return this.drawn;
   }
 }

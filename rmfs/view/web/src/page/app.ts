@@ -58,11 +58,6 @@ export class App {
     return Math.max(...this.runs.map(({ known_us }) => known_us)) / 1e6;
   }
 
-  /** Takes note that a run has grown. */
-  grown(): void {
-    this.dirty = true;
-  }
-
   /** Shows a short message for some seconds. */
   say(text: string): void {
     this.notice.textContent = text;
@@ -146,7 +141,7 @@ export class App {
     const { state } = this.store;
     if (state.playing) {
       const time_s = Math.min(state.time_s + passed_s * state.speed, this.end_s);
-      this.store.set({ time_s, playing: time_s < this.end_s || this.runs[0].header.live });
+      this.store.set({ time_s, playing: time_s < this.end_s });
     }
     if (this.dirty) this.draw(now_ms);
     requestAnimationFrame((next_ms) => this.frame(next_ms));

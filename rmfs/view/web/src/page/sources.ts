@@ -2,7 +2,6 @@
 
 export interface Session {
   runs: number;
-  live: boolean;
 }
 
 /** Returns the scenes inside an exported page; none if it is served. */
