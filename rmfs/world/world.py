@@ -223,8 +223,9 @@ class World:
                 return order
             if not target.active or target.free_slots <= 0:
                 raise ValueError(f"station {station} takes no order now")
+            now_s = self.now_s
             part = Order(
-                order.index, order.created_s, order.due_s, (), 0, 0, station, self.now_s, whole=order
+                order.index, order.created_s, order.due_s, (), 0, 0, station, now_s, whole=order
             )
             order.parts.append(part)
             order.slots_taken += 1
