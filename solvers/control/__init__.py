@@ -1,5 +1,1 @@
-"""Controllers that decide by models: snapshot of the world, question, answer, decisions.
-
-Each has a rule as its heuristic, which answers while the optimiser has nothing (docs: optimisers in
-the loop). They are found by name (`rmfs.control.registry`).
-"""
+"""The side of models that knows the warehouse: solutions as answers to the simulation."""

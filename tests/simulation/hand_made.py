@@ -9,6 +9,7 @@ from ledger import Ledger
 
 from rmfs.control.problems import Trigger
 from rmfs.measure.observer import Observer
+from rmfs.simulation.pacing import PacingSettings
 from rmfs.simulation.simulation import Simulation
 from rmfs.world import Bundle, Order
 
@@ -56,6 +57,7 @@ class HandMade:
         scenario: dict[str, Any] | None = None,
         observers: tuple[Observer, ...] = (),
         move_up_s: float = 0.0,
+        pacing: PacingSettings | None = None,
         **problems: Any,
     ) -> None:
         plan = small_layout(**(layout or {}))
@@ -67,6 +69,7 @@ class HandMade:
             rules(**problems),
             observers=[self.diary, self.ledger, *observers],
             traffic=self.traffic,
+            pacing=pacing,
         )
         self.world = self.simulation.world
 
