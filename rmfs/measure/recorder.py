@@ -253,8 +253,8 @@ def order_row(order: Order) -> tuple[Any, ...]:
     return (
         order.index,
         order.station,
-        len(order.all_lines),
-        sum(line.units for line in order.all_lines),
+        len(order.lines),
+        sum(line.units for line in order.lines),
         order.created_s,
         order.due_s,
         order.assigned_s,
