@@ -1,7 +1,7 @@
 """How long decisions take, rule by rule, in runs of a large warehouse.
 
 `python -m experiments.decision_times` writes the page docs/decision-times.md. Every rule works in
-a run of its own for a quarter of an hour, beside the default rules: on the layout of the
+a run of its own for five minutes, beside the default rules: on the layout of the
 path-planning study with 128 robots and 1,965 pods, 12 pick and 20 replenishment stations, 1,000
 SKUs, and always 200 orders and 200 bundles waiting. A call lasts from the question to the last
 answer; the time in which other controllers were consulted is left out.
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 PAGE = Path("docs") / "decision-times.md"
 LAYOUT = {"pod_capacity": 500.0, "replenishment_station_capacity": 1000.0}
-DURATION_S, LONG_S = 900.0, 7200.0
+DURATION_S, LONG_S = 300.0, 3600.0
 LIMIT_MS = 1.0
 
 HEAD = """\
@@ -109,7 +109,7 @@ def _exchanges(name: str) -> dict[str, Any]:
     if name == "random":
         return {"name": name, "period_s": 60.0}
     entries = [
-        {"at_s": 60.0 * n, "psa": {"name": ("random", "nearest")[n % 2]}} for n in range(6, 15)
+        {"at_s": 60.0 * n, "psa": {"name": ("random", "nearest")[n % 2]}} for n in range(1, 5)
     ]
     return {"name": name, "exchanges": entries}
 
@@ -170,7 +170,7 @@ def times(case: Case, seed: int = 0) -> dict[str, Any]:
 
 
 def shares(runs: int = 3) -> dict[str, float]:
-    """Return the shares of a run's time with the default rules, two hours: medians over seeds."""
+    """Return the shares of a run's time with the default rules, an hour: medians over seeds."""
     found: dict[str, list[float]] = {"decisions": [], "planning": []}
     for seed in range(runs):
         run = simulate({}, LONG_S, seed)
@@ -185,7 +185,7 @@ def page(frame: pd.DataFrame, share: Mapping[str, float]) -> str:
     lines = [
         HEAD,
         f"With the default rules, decisions take {share['decisions']:.0%} of the time of such a "
-        f"run (two hours), planning of ways {share['planning']:.0%}, all else {rest:.0%}.\n",
+        f"run (an hour), planning of ways {share['planning']:.0%}, all else {rest:.0%}.\n",
         "| problem | rule | calls | decisions | median, decision | mean, call | 95 % | max |",
         "|---|---|---:|---:|---:|---:|---:|---:|",
     ]

@@ -130,7 +130,7 @@ def picture(study: Study, series: pd.DataFrame) -> Path:
             ax.axvline(middle_h, color="black", linewidth=0.8, linestyle=":")
             ax.set_ylabel(label)
             ax.label_outer()
-        axes[0].legend(fontsize=8, title="pod storage assignment", loc=(0.22, 0.03))
+        axes[0].legend(fontsize=8, title="pod storage assignment", loc=(0.13, 0.03))
         seeds = study.frame["replication"].nunique()
         axes[0].set_title(
             f"Pod storage rule exchanged after {middle_h:g} h; mean of {seeds} seeds with 95 % "
