@@ -5,25 +5,14 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import replace
-from typing import Protocol
 
-from solvers.models.backends.outcome import Outcome
+from solvers.models.backends.backend import Backend
 from solvers.models.checks import require
 from solvers.models.pile_on.candidates import Candidates, everything
-from solvers.models.pile_on.data import Floats, PileOn
+from solvers.models.pile_on.data import PileOn
 from solvers.models.pile_on.program import formulate
 from solvers.models.pile_on.values import Assignment, nothing, objective, violations
-from solvers.models.program import LinearProgram
 from solvers.models.solution import Limits, Solution, Status
-
-
-class Backend(Protocol):
-    """The signature of `solvers.models.backends.*.solve`."""
-
-    def __call__(
-        self, program: LinearProgram, limits: Limits, *, seed: int, start: Floats | None
-    ) -> Outcome:
-        """Solve a program."""
 
 
 def solve_with(

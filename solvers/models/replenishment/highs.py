@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from solvers.models.backends import highs
-from solvers.models.replenishment.backend import solve_by
-from solvers.models.replenishment.data import Replenishment, Stocking
+from solvers.models.backends.backend import solve_by, with_relaxed_bound
+from solvers.models.replenishment.data import Replenishment, Stocking, objective, violations
+from solvers.models.replenishment.program import formulate
 from solvers.models.solution import NO_LIMITS, Limits, Solution
 
 
@@ -30,11 +31,19 @@ def solve(
 
     Returns
     -------
-    Where bundles and pods go.
+    Where bundles and pods go. The bound is at least that of the relaxation.
 
     Raises
     ------
     ModelError
         If the start is not feasible.
     """
-    return solve_by(highs.solve, data, limits, seed, start, whole=False)
+    return solve_by(
+        with_relaxed_bound(highs.solve),
+        lambda: formulate(data, whole=False),
+        limits,
+        seed=seed,
+        start=start,
+        objective=lambda values: objective(data, values),
+        violations=lambda values: violations(data, values),
+    )

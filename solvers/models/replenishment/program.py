@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.models.backends.backend import Formulation
 from solvers.models.program import LinearProgram, ProgramBuilder
 from solvers.models.replenishment.data import LEFT, PARTS, Replenishment, Stocking
 
@@ -152,3 +153,21 @@ def stocking_of(data: Replenishment, columns: Columns, x: NDArray[np.float64]) -
     empty[pod[pod != LEFT]] = False
     station[empty] = LEFT
     return Stocking(pod, station)
+
+
+def formulate(data: Replenishment, *, whole: bool) -> Formulation[Stocking]:
+    """State the problem as an integer programme.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    whole
+        Whether the solver wants whole columns only.
+    """
+    columns = Columns.of(data)
+    return Formulation(
+        program(data, columns, whole=whole),
+        lambda stocking: columns_of(data, columns, stocking),
+        lambda x: stocking_of(data, columns, x),
+    )

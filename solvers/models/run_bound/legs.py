@@ -21,8 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import number
-from solvers.models.tasks.network import costs
+from solvers.models.checks import costs, number
 
 
 class Legs(NamedTuple):

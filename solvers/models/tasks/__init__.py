@@ -3,6 +3,5 @@
 - `matching`: every robot gets at most one task, by travel time (linear assignment);
 - `balance`: the same with balanced stations and due times (minimum-cost flow);
 - `sequence`: several tasks in a row per robot, the return of one pod combined with the fetch of
-  the next (routing with time windows, CP-SAT);
-- `network`: assignment and flow with proofs of optimality, which the storage models use too.
+  the next (routing with time windows, CP-SAT).
 """

@@ -8,10 +8,9 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.models.backends.assignment import Solver, assign
 from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 from solvers.models.storage.placement.data import Placement, objective
-from solvers.models.tasks.network import assign
-from solvers.models.tasks.network.assignment import Solver
 
 
 def solve(

@@ -17,8 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import reals
-from solvers.models.tasks.network import costs
+from solvers.models.checks import costs, reals
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.models.backends import cp_sat
+from solvers.models.backends.backend import solve_by
 from solvers.models.solution import NO_LIMITS, Limits, Solution
-from solvers.models.storage.stays.backend import solve_by
-from solvers.models.storage.stays.data import Stays
+from solvers.models.storage.stays.data import Stays, objective, violations
+from solvers.models.storage.stays.program import formulate
 
 
 def solve(
@@ -40,4 +41,12 @@ def solve(
     ModelError
         If the start is not feasible.
     """
-    return solve_by(cp_sat.solve, data, limits, seed, start, whole=True)
+    return solve_by(
+        cp_sat.solve,
+        lambda: formulate(data, whole=True),
+        limits,
+        seed=seed,
+        start=start,
+        objective=lambda values: objective(data, values),
+        violations=lambda values: violations(data, values),
+    )

@@ -20,8 +20,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import integers, reals, require
-from solvers.models.tasks.network import costs
+from solvers.models.checks import costs, integers, reals, require
 
 
 @dataclass(frozen=True)

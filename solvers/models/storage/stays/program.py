@@ -15,6 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.models.backends.backend import Formulation
 from solvers.models.program import LinearProgram, ProgramBuilder
 from solvers.models.storage.stays.data import Stays
 
@@ -85,3 +86,20 @@ def zones_of(data: Stays, x: NDArray[np.float64]) -> NDArray[np.int64]:
     chosen = x[: data.cost_s.size].reshape(data.cost_s.shape)
     zone: NDArray[np.int64] = chosen.argmax(axis=1)
     return zone
+
+
+def formulate(data: Stays, *, whole: bool) -> Formulation[NDArray[np.int64]]:
+    """State the problem as an integer programme.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    whole
+        Whether the solver wants whole columns only.
+    """
+    return Formulation(
+        program(data, whole=whole),
+        lambda zone: columns_of(data, zone),
+        lambda x: zones_of(data, x),
+    )

@@ -19,7 +19,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.tasks.network import assign
+from solvers.models.backends.assignment import assign
 from solvers.models.tasks.sequence.candidates import shortest_over_places
 from solvers.models.tasks.sequence.data import SLACK_S, Sequence
 

@@ -17,8 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import flags, integers, reals
-from solvers.models.tasks.network import costs
+from solvers.models.checks import costs, flags, integers, reals
 
 NONE = -1
 """The place of a pod that is not moved."""

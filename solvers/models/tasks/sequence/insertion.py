@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.models.backends.assignment import assign
 from solvers.models.checks import require
 from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
-from solvers.models.tasks.network import assign
 from solvers.models.tasks.sequence.bound import relaxed_bound
 from solvers.models.tasks.sequence.data import NONE, Routes, Sequence
 from solvers.models.tasks.sequence.schedule import (

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from solvers.models.tasks.network.flow import Network, min_cost_flow
+from solvers.models.backends.flow import Network, min_cost_flow
 
 Solver = Literal["scipy", "min_cost_flow"]
 """Shortest augmenting paths on real costs (SciPy), or cost scaling on whole ones (OR-Tools)."""

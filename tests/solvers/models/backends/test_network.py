@@ -9,15 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solvers.models import ModelError
-from solvers.models.tasks.network import (
-    Network,
-    assign,
-    assignment_bound,
-    costs,
-    flow_bound,
-    greedy_assign,
-    min_cost_flow,
-)
+from solvers.models.backends.assignment import assign, assignment_bound, greedy_assign
+from solvers.models.backends.flow import Network, flow_bound, min_cost_flow
+from solvers.models.checks import costs
 
 
 def random_network(seed: int) -> Network:

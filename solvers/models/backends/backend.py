@@ -1,0 +1,142 @@
+"""From a model to a solver of integer programmes and back, the same way for every model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from time import perf_counter
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.backends import highs
+from solvers.models.backends.outcome import Outcome
+from solvers.models.checks import require
+from solvers.models.program import LinearProgram
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+
+V = TypeVar("V")
+
+
+class Backend(Protocol):
+    """A solver of integer programmes: the signature of `highs.solve` and `cp_sat.solve`."""
+
+    def __call__(
+        self,
+        program: LinearProgram,
+        limits: Limits,
+        *,
+        seed: int,
+        start: NDArray[np.float64] | None,
+    ) -> Outcome:
+        """Solve a programme."""
+
+
+@dataclass(frozen=True)
+class Formulation(Generic[V]):
+    """A problem as an integer programme.
+
+    Attributes
+    ----------
+    program
+        The programme.
+    encode
+        Writes values as columns of the programme.
+    decode
+        Reads values off the columns.
+    """
+
+    program: LinearProgram
+    encode: Callable[[V], NDArray[np.float64]]
+    decode: Callable[[NDArray[np.float64]], V]
+
+
+def solve_by(
+    backend: Backend,
+    formulate: Callable[[], Formulation[V]],
+    limits: Limits,
+    *,
+    seed: int,
+    start: V | None,
+    objective: Callable[[V], float],
+    violations: Callable[[V], list[str]],
+) -> Solution[V]:
+    """Check the start, state the programme, hand it over, and read the answer.
+
+    Parameters
+    ----------
+    backend
+        The solver.
+    formulate
+        States the programme; its time counts as building.
+    limits, seed
+        As the back ends say.
+    start
+        Values to start from, or None.
+    objective, violations
+        The model's own: the objective is recomputed, and the start has to be feasible.
+
+    Returns
+    -------
+    What the solver found.
+
+    Raises
+    ------
+    ModelError
+        If the start is not feasible.
+    """
+    begin = perf_counter()
+    if start is not None:
+        broken = violations(start)
+        require(not broken, "start", "; ".join(broken))
+    formulation = formulate()
+    point = None if start is None else formulation.encode(start)
+    built_s = perf_counter() - begin
+    outcome = backend(formulation.program, limits, seed=seed, start=point)
+    return outcome.solution(formulation.decode, objective, build_s=built_s)
+
+
+def relax(program: LinearProgram, limits: Limits = NO_LIMITS, *, seed: int = 0) -> Outcome:
+    """Solve a programme without whole numbers by HiGHS; its bound is one for the programme.
+
+    Parameters
+    ----------
+    program
+        The programme.
+    limits
+        `iterations` of the simplex. Default: none.
+    seed
+        Seed of the solver. Default 0.
+    """
+    relaxed = replace(program, integer=np.zeros(program.columns, bool))
+    return highs.solve(relaxed, limits, seed=seed)
+
+
+def with_relaxed_bound(backend: Backend) -> Backend:
+    """Give searches that their limit ended the bound of the relaxation, if that is better.
+
+    Parameters
+    ----------
+    backend
+        The solver. The simplex iterations of the relaxation do not count as work of its search.
+    """
+
+    def solve(
+        program: LinearProgram,
+        limits: Limits,
+        *,
+        seed: int,
+        start: NDArray[np.float64] | None,
+    ) -> Outcome:
+        outcome = backend(program, limits, seed=seed, start=start)
+        if outcome.status not in (Status.FEASIBLE, Status.LIMIT):
+            return outcome
+        relaxed = relax(program)
+        return replace(
+            outcome,
+            bound=max(outcome.bound, relaxed.bound),
+            wall_s=outcome.wall_s + relaxed.wall_s,
+        )
+
+    return solve
