@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import fcntl
 import json
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -123,7 +123,7 @@ class Store:
             return
         for start in range(0, len(single), MANY):
             chunk = single[start : start + MANY]
-            table = _together([pq.read_table(path) for path in chunk])
+            table = _together([_read(path) for path in chunk])
             self._write(self.folder / RUNS / f"{MERGED}{chunk[0].stem}.parquet", table)
             # a reader that comes now meets some rows twice and drops the doubles
             for path in chunk:
@@ -147,16 +147,19 @@ class Store:
         ----------
         columns
             What to read beside `run`. Default everything.
+
+        Raises
+        ------
+        InputError
+            If a file is corrupted.
         """
         wanted = None if columns is None else list(dict.fromkeys(["run", *columns]))
         for _ in range(_ATTEMPTS):
             try:
-                tables = [pq.read_table(path, columns=wanted) for path in sorted(self._files())]
+                tables = [_read(path, wanted) for path in sorted(self._files())]
                 break
             except FileNotFoundError:
                 continue  # merged in between
-            except (OSError, pa.ArrowException) as error:
-                raise InputError(f"{self.folder / RUNS}: corrupted ({error})") from None
         else:
             raise InputError(f"{self.folder / RUNS}: files vanish while they are read")
         if not tables:
@@ -177,25 +180,83 @@ class Store:
         Raises
         ------
         InputError
-            If it was not kept.
+            If it was not kept, or a file of it is corrupted.
         """
         if not (self.folder / name).is_dir():
             raise InputError(f'{self.folder}: table {name} was not kept; set keep = ["{name}"]')
         paths = [self.folder / name / f"{key}.parquet" for key in keys]
-        tables = [pq.read_table(path) for path in paths if path.is_file()]
+        tables = [_read(path) for path in paths if path.is_file()]
         return _together(tables).to_pandas() if tables else pd.DataFrame({"run": []})
 
     def failures(self) -> pd.DataFrame:
-        """Return the runs that failed, a row each."""
+        """Return the runs that failed, a row each.
+
+        Raises
+        ------
+        InputError
+            If a file is corrupted.
+        """
+        columns = ["run", "arm", "replication", "seed", "error", "traceback", "design_hash"]
         found = []
         for path in sorted((self.folder / FAILURES).glob("*.json")):
-            found.append({"run": path.stem, **json.loads(path.read_text(encoding="utf-8"))})
-        columns = ["run", "arm", "replication", "seed", "error", "traceback", "design_hash"]
+            # one that has vanished was made good in between
+            with suppress(FileNotFoundError):
+                found.append({"run": path.stem, **_read_failure(path, columns[1:])})
         return pd.DataFrame(found, columns=pd.Index(columns))
 
     def _files(self) -> list[Path]:
         # hidden ones are being written
         return [p for p in (self.folder / RUNS).glob("*.parquet") if not p.name.startswith(".")]
+
+
+def _read(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
+    """Read a stored table.
+
+    Raises
+    ------
+    InputError
+        If it is corrupted.
+    FileNotFoundError
+        If it is not there.
+    """
+    try:
+        # of one file: no dataset of the folder, which costs more than the reading
+        with pq.ParquetFile(path) as file:
+            table = file.read(columns=None if columns is None else list(columns))
+    except FileNotFoundError:
+        raise
+    except (OSError, pa.ArrowException) as error:
+        raise _corrupted(path, str(error)) from None
+    if "run" not in table.column_names:
+        raise _corrupted(path, "no column run")
+    return table
+
+
+def _read_failure(path: Path, keys: Sequence[str]) -> dict[str, Any]:
+    """Read what is told of a failed run.
+
+    Raises
+    ------
+    InputError
+        If it is corrupted.
+    FileNotFoundError
+        If it is not there.
+    """
+    try:
+        told = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise _corrupted(path, str(error)) from None
+    lacking = [key for key in keys if key not in told] if isinstance(told, dict) else keys
+    if lacking:
+        raise _corrupted(path, f"no {', '.join(lacking)}")
+    return dict(told)
+
+
+def _corrupted(path: Path, why: str) -> InputError:
+    return InputError(
+        f"{path}: corrupted ({' '.join(why.split())}); remove it and run the experiment again: "
+        "only what it held is repeated"
+    )
 
 
 def _together(tables: list[pa.Table]) -> pa.Table:

@@ -75,12 +75,16 @@ class Level:
         Its part of the arm's name.
     raw
         Per column the values by which exclusions may name it.
+    of_grid
+        Whether it is a level of a grid: arms tell it with its factor. An arm of a list goes by its
+        name alone.
     """
 
     shown: dict[str, Any]
     settings: dict[str, Any]
     name: str
     raw: dict[str, list[Any]] = field(default_factory=dict)
+    of_grid: bool = True
 
 
 def arms(design: DesignFile, folder: Path) -> tuple[list[Arm], list[str]]:
@@ -190,7 +194,9 @@ def _listed(design: DesignFile, folder: Path, problems: list[str]) -> list[Level
         short = factor_names(table)
         spoken = ",".join(f"{short[key]}={_compact(shown[key])}" for key in table)
         raw = {key: [value, shown[key]] for key, value in table.items()}
-        made.append(Level(shown, table, str(name) if name is not None else spoken, raw))
+        made.append(
+            Level(shown, table, str(name) if name is not None else spoken, raw, of_grid=False)
+        )
     return made
 
 
@@ -357,10 +363,8 @@ def _arm_name(combination: tuple[Level, ...], keys: list[str]) -> str:
     short = factor_names(keys)
     parts = []
     for level in combination:
-        (key, *more) = level.shown or ("",)
-        # an arm of a list carries its name, a level of the grid is told with its factor
-        named = more or level.name != _compact(level.shown.get(key))
-        parts.append(level.name if named else f"{short[key]}={level.name}")
+        told = [f"{short[key]}={level.name}" for key in level.shown] if level.of_grid else []
+        parts.append(told[0] if told else level.name)
     return ",".join(parts) or "base"
 
 

@@ -214,12 +214,15 @@ def load(folder: Path) -> Plan:
         raise InputError(f"{path}: cannot be read ({error})") from None
     if not isinstance(told, dict) or told.get("format") != FORMAT:
         raise InputError(f"{path}: expected format {FORMAT!r}")
-    design = config.validate(DesignFile, told["design"], str(path))
-    made = [
-        Arm(**(arm | {"overrides": [(list(keys), value) for keys, value in arm["overrides"]]}))
-        for arm in told["arms"]
-    ]
-    return Plan(design, told["design"], made, told["files"], source=told["source"])
+    try:
+        design = config.validate(DesignFile, told["design"], str(path))
+        made = [
+            Arm(**(arm | {"overrides": [(list(keys), value) for keys, value in arm["overrides"]]}))
+            for arm in told["arms"]
+        ]
+        return Plan(design, told["design"], made, told["files"], source=told["source"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(f"{path}: corrupted ({error!r})") from None
 
 
 def _absolute(given: str) -> str:

@@ -63,6 +63,18 @@ def test_arms_of_a_list_are_combined_with_the_grid(design):
                            "robots=16,psa=random"]  # fmt: skip
 
 
+def test_a_named_arm_keeps_its_name_whatever_its_level_is_called(design):
+    arms = [
+        {"name": "random", "controllers.psa": "random"},
+        {"name": "8", "layout.robots": 8},
+        {"name": "as it is"},
+    ]
+    path = design(arms=arms, factors=None)
+    assert names(path) == ["random", "8", "as it is"]
+    path = design(arms=arms[:1], factors={"layout.robots": [8, 16]})
+    assert names(path) == ["random,robots=8", "random,robots=16"]
+
+
 @pytest.mark.parametrize(
     ("file", "text"),
     [

@@ -18,6 +18,7 @@ from experiments.running.driver import Silent, drive, progress_of
 from experiments.running.job import Outcome
 from experiments.running.local import LocalProcesses
 from experiments.store import Store
+from rmfs.cli import main
 from rmfs.errors import InputError
 from rmfs.instances import ROOT
 
@@ -293,3 +294,51 @@ def test_nothing_is_there_before_the_first_run(design, store):
     assert isinstance(experiments.load(store.folder), pd.DataFrame)
     with pytest.raises(InputError, match="holds no experiment"):
         experiments.load(store.folder / "elsewhere")
+
+
+@pytest.mark.parametrize("broken", [b"", b"PAR1 and no more", None])
+def test_a_corrupted_file_of_results_is_one_clear_line(design, store, capsys, broken):
+    """Of runs, of a kept table: which file, and what to do about it."""
+    path = design(keep=["series"])
+    drive(experiments.plan(path), store, Inline())
+    (run, *_) = sorted((store.folder / "series").glob("*.parquet"))
+    whole = run.read_bytes()
+    for file in (run, store.folder / "runs" / run.name):
+        if broken is None:
+            pd.DataFrame({"other": [1.0]}).to_parquet(file)
+        else:
+            file.write_bytes(broken)
+        with pytest.raises(InputError, match=f"{file}: corrupted .*; remove it and run"):
+            experiments.load(store.folder, table="series")
+        file.write_bytes(whole)
+        if file == run:
+            assert len(experiments.load(store.folder, table="series")) == 48
+        else:
+            file.unlink()
+    assert main(["experiment", "status", str(path), "--out", str(store.folder)]) == 0
+    assert "11 of 12 runs finished" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("broken", ["", "{", "[]", '{"arm": "a"}'])
+def test_a_corrupted_failure_is_one_clear_line(design, store, capsys, broken):
+    path = design()
+    drive(experiments.plan(path), store, Inline(do=work_that_fails_for_random))
+    (failure, *_) = sorted((store.folder / "failures").glob("*.json"))
+    failure.write_text(broken)
+    assert main(["experiment", "status", str(path), "--out", str(store.folder)]) == 2
+    told = capsys.readouterr().err
+    assert str(failure) in told.replace("\n", "") and "corrupted" in told
+    assert "Traceback" not in told
+    failure.unlink()
+    drive(experiments.plan(path), store, Inline())
+    assert len(experiments.load(store.folder)) == 12
+
+
+def test_a_corrupted_plan_is_one_clear_line(design, store):
+    drive(experiments.plan(design()), store, Inline())
+    told = json.loads((store.folder / "plan.json").read_text())
+    for key in ("arms", "files", "design"):
+        less = {name: value for name, value in told.items() if name != key}
+        (store.folder / "plan.json").write_text(json.dumps(less))
+        with pytest.raises(InputError, match=r"plan\.json: corrupted"):
+            experiments.load(store.folder)
