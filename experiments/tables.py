@@ -305,5 +305,7 @@ def _latex_header(columns: list[tuple[str, str]]) -> pd.MultiIndex:
 
 
 def _escaped(text: str) -> str:
-    signs = {"_": r"\_", "%": r"\%", "&": r"\&", "#": r"\#", "$": r"\$", "±": r"$\pm$"}
+    signs = {sign: f"\\{sign}" for sign in "_%&#${}"}
+    signs |= {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}
+    signs |= {"±": r"$\pm$", "<": r"$<$", ">": r"$>$"}
     return "".join(signs.get(sign, sign) for sign in text)

@@ -1,0 +1,111 @@
+"""The reproduced experiments: what they compute, by hand, and that they run as commands."""
+
+from __future__ import annotations
+
+import json
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from experiments.papers import demonstrator, figure_5b
+from experiments.papers.study import WRONG_INPUT, command
+
+
+def warehouse() -> SimpleNamespace:
+    """A row of six waypoints: a queue place, hall, storage, aisle, storage, hall."""
+    return SimpleNamespace(
+        waypoints=6,
+        x_m=np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0]),
+        y_m=np.zeros(6),
+        is_storage=np.array([False, False, True, False, True, False]),
+        is_queue=np.array([True, False, False, False, False, False]),
+    )
+
+
+def counted(replication: int, visits: list[int], waiting_s: list[float]) -> pd.DataFrame:
+    return pd.DataFrame(
+        {
+            "replication": replication,
+            "waypoint": range(6),
+            "tier": 0,
+            "x_m": range(6),
+            "y_m": 0.0,
+            "visits": visits,
+            "waiting_s": waiting_s,
+        }
+    )
+
+
+HEAT = pd.concat(
+    [
+        counted(1, [40, 20, 5, 20, 5, 10], [90.0, 0.0, 5.0, 0.0, 5.0, 0.0]),
+        counted(2, [60, 10, 10, 10, 0, 10], [60.0, 20.0, 0.0, 10.0, 0.0, 10.0]),
+    ]
+)
+
+
+def test_areas_of_a_layout():
+    halls, storage = "halls and ring road", "storage places"
+    assert list(figure_5b.areas(warehouse())) == [
+        "queues of stations", halls, storage, "aisles", storage, halls,
+    ]  # fmt: skip
+
+
+def test_visits_and_waiting_are_spread_over_the_areas():
+    spread = figure_5b.spread(HEAT, figure_5b.areas(warehouse())).set_index(["replication", "area"])
+    first = spread.loc[1]
+    assert first["waypoints"].to_dict() == {
+        "aisles": 1, "halls and ring road": 2, "queues of stations": 1, "storage places": 2,
+    }  # fmt: skip
+    assert list(first["visits per waypoint"]) == [20.0, 15.0, 40.0, 5.0]
+    assert list(first["share of visits %"]) == [20.0, 30.0, 40.0, 10.0]
+    assert list(first["share of waiting %"]) == [0.0, 0.0, 90.0, 10.0]
+    assert list(spread.loc[2]["share of waiting %"]) == [10.0, 30.0, 60.0, 0.0]
+
+
+def test_the_busiest_area_comes_first_and_seeds_are_averaged():
+    table = figure_5b.as_table(figure_5b.spread(HEAT, figure_5b.areas(warehouse())))
+    assert table.frame.index[0] == "queues of stations"
+    assert table.frame.loc["queues of stations", ("visits per waypoint", "mean")] == 50.0
+    mean = figure_5b.together(HEAT)
+    assert list(mean["visits"]) == [50.0, 15.0, 7.5, 15.0, 2.5, 10.0]
+
+
+def test_the_demonstrator_is_run_and_published(design, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = design(
+        keep=["heat"],
+        check=True,
+        seeds=[1, 2],
+        base={
+            "layout": "demonstrator",
+            "scenario": "demonstrator",
+            "controllers": "default",
+            "scenario.warmup_s": 0,
+            "scenario.duration_s": 600,
+        },
+        factors={"layout.robots": [1, 4]},
+    )
+    given = ["--design", str(path), "--out", "runs", "--published", "out", "--jobs", "2"]
+    assert command(demonstrator.main, given) == 0
+    rows = pd.read_csv("out/demonstrator.csv", index_col=0)
+    # four robots of this speed do more than one, and none touches another
+    units = rows["units_per_h mean"]
+    assert units.iloc[1] > 1.5 * units.iloc[0]
+    assert list(rows["collisions mean"]) == [0.0, 0.0]
+    for name in ("demonstrator.tex", "demonstrator-heat.png", "demonstrator-layout.png"):
+        told = json.loads((tmp_path / "out" / f"{name}.provenance.json").read_text())
+        assert told["file"] == name and told["rows"]["count"] == 4
+
+
+def test_a_folder_without_the_layout_is_refused(tmp_path, capsys):
+    assert command(demonstrator.main, ["--reference", str(tmp_path)]) == WRONG_INPUT
+    assert "office-4bot.xinst is not there" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("study", [demonstrator, figure_5b])
+def test_a_missing_design_lists_the_shipped_ones(study, capsys):
+    assert command(study.main, ["--design", "nothing"]) == WRONG_INPUT
+    assert "shipped: demonstrator" in capsys.readouterr().err
