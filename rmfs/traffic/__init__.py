@@ -274,25 +274,26 @@ class Traffic:
         return self._core.delay(robot, by_us, begun)
 
     def clearance(self, robot: int) -> list[int]:
-        """Waypoints of the robot's present or next run that it may drive to at once, in order.
+        """Waypoints of the robot's present or next run, not passed, that it may drive to at once.
 
-        Those that were to use them before have left them.
+        In order; whoever was to use them before has left them.
         """
         return self._core.clearance(robot)
 
-    def regroup(self, rests: Sequence[tuple[int, float, int]]) -> None:
-        """Give up all plans, put the robots where they really are, and plan their programs anew.
+    def regroup(self, rests: Sequence[tuple[int, float, int] | None]) -> None:
+        """Give up plans, put the robots where they really are, and plan their programs anew.
 
         Parameters
         ----------
         rests
             For each robot the waypoint at which it stands or will stop, its heading in radians
-            (that of an edge), and the time it stands there, in microseconds.
+            (that of an edge), and the time it stands there, in microseconds. None for a robot that
+            keeps the run it is in the middle of, as far as the way is clear.
 
         Raises
         ------
         ValueError
-            If two robots share a waypoint, or a heading or waypoint does not exist; nothing has
+            If two robots would have one waypoint, or a heading or waypoint does not exist; nothing has
             changed then.
         """
         self._core.regroup(list(rests))

@@ -132,6 +132,37 @@ def test_regrouping_from_everywhere():
 def test_regrouping_refuses_two_robots_at_one_waypoint(two):
     _layout, traffic = two
     at = traffic.rest_waypoint(0)
-    with pytest.raises(ValueError, match="robots 0 and 1 both stand"):
+    with pytest.raises(ValueError, match="robots 0 and 1 cannot both have"):
         traffic.regroup([(at, 0.0, 0), (at, 0.0, 0)])
     assert traffic.rest_waypoint(1) != at
+
+
+def test_others_are_planned_around_a_robot_that_stands_still():
+    """One robot stops on its way for an hour: the others do their tasks, and nobody meets it."""
+    layout = load("default", [(["robots"], 12)])
+    tasks = RandomTasks(layout, 2, record_trace=False).run(40)
+    traffic = tasks.traffic
+    stuck = next(
+        robot
+        for robot in range(12)
+        if (moves := traffic.plan(robot))
+        and moves[0].start_us < traffic.now_us
+        and moves[0].to_waypoint not in layout.pick_stations[0].queue
+    )
+    assert traffic.delay(stuck, 3600 * SECOND, begun=True)
+    rests = []
+    for robot in range(12):
+        moves = traffic.plan(robot)
+        begun = [move for move in moves[:1] if move.start_us < traffic.now_us]
+        if robot == stuck:
+            rests.append(None)
+        elif begun:
+            reachable = [begun[0].from_waypoint, *traffic.clearance(robot)][-1]
+            rests.append((reachable, begun[0].heading_rad, traffic.now_us + 5 * SECOND))
+        else:
+            at = moves[0].from_waypoint if moves else traffic.rest_waypoint(robot)
+            rests.append((at, 0.0, 0))
+    traffic.regroup(rests)
+    tasks.run(640)
+    assert not any(robot == stuck for _, robot in tasks.visits)
+    assert {robot for _, robot in tasks.visits} >= set(range(12)) - {stuck}

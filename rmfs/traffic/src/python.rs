@@ -386,15 +386,16 @@ impl Core {
     }
 
     /// Puts robots at rest at `(waypoint, heading in radians, time)` and plans anew.
-    fn regroup(&mut self, rests: Vec<(u32, f64, Us)>) -> PyResult<()> {
+    fn regroup(&mut self, rests: Vec<Option<(u32, f64, Us)>>) -> PyResult<()> {
         let headings = &self.fleet.network.headings;
-        let rest = |&(waypoint, angle, time): &(u32, f64, Us)| {
+        let rest = |given: &Option<(u32, f64, Us)>| {
+            let Some((waypoint, angle, time)) = *given else { return Ok(None) };
             let heading = headings.binary_search(&from_radians(angle)).map_err(|_| {
                 PyValueError::new_err(format!("no edge has the heading {angle} rad"))
             })?;
-            Ok(Rest { waypoint, heading: heading as u8, time })
+            Ok(Some(Rest { waypoint, heading: heading as u8, time }))
         };
-        let rests = rests.iter().map(rest).collect::<PyResult<Vec<Rest>>>()?;
+        let rests = rests.iter().map(rest).collect::<PyResult<Vec<Option<Rest>>>>()?;
         self.fleet.regroup(&rests).map_err(PyValueError::new_err)
     }
 

@@ -87,17 +87,23 @@ impl Fleet {
         }
     }
 
-    /// The waypoints of the robot's present run, or of its next one, that it may drive to at once:
-    /// whoever was to use them before has left them.
+    /// The waypoints of the robot's present run, or of its next one, that it has not passed and may
+    /// drive to at once: whoever was to use them before has left them.
     pub fn clearance(&mut self, robot: u32) -> Vec<u32> {
         self.settle(robot);
-        let Some(step) = self.robots[robot as usize].moves.front() else { return Vec::new() };
+        let state = &self.robots[robot as usize];
+        let Some(step) = state.moves.front() else { return Vec::new() };
+        let own = |node: u32| {
+            let row = self.table.row(self.network.resource[node as usize]);
+            row.iter().find(|use_| use_.end > self.now).is_some_and(|use_| use_.robot == robot)
+        };
+        // what it occupies begins with where the run begins
+        let uses = state.occupation(&self.network, &self.kinds[state.kind as usize]);
         let line = self.network.line(step.from, step.to, step.heading);
-        line.map(|(node, _)| node)
-            .take_while(|&node| {
-                let row = self.table.row(self.network.resource[node as usize]);
-                row.iter().find(|use_| use_.end > self.now).is_some_and(|use_| use_.robot == robot)
-            })
+        line.zip(&uses[1..])
+            .skip_while(|(_, held)| held.end <= self.now)
+            .map(|((node, _), _)| node)
+            .take_while(|&node| own(node))
             .collect()
     }
 }

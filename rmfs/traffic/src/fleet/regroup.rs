@@ -3,9 +3,9 @@
 //! When a robot is somewhere it should not be, plans are worth nothing: everybody stops at the last
 //! waypoint it may use, and all are planned anew from there.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use crate::robot::Phase;
+use crate::robot::{Phase, Robot};
 use crate::units::Us;
 
 use super::Fleet;
@@ -20,24 +20,24 @@ pub struct Rest {
 }
 
 impl Fleet {
-    /// Puts every robot at rest where it really is and plans the programs anew.
+    /// Puts robots at rest where they really are and plans their programs anew. A robot without a
+    /// rest keeps the run it is in the middle of, as far as the way is clear.
     ///
     /// # Errors
-    /// If there is not one rest per robot, or two share a waypoint; nothing has changed then.
-    pub fn regroup(&mut self, rests: &[Rest]) -> Result<(), String> {
-        self.check_rests(rests)?;
+    /// If there is not one entry per robot, or two would have one waypoint; nothing has changed
+    /// then.
+    pub fn regroup(&mut self, rests: &[Option<Rest>]) -> Result<(), String> {
+        if rests.len() != self.robots.len() {
+            return Err(format!("{} rests for {} robots", rests.len(), self.robots.len()));
+        }
         self.settle_all();
+        let robots: Vec<Robot> =
+            rests.iter().enumerate().map(|(robot, rest)| self.moved(robot, *rest)).collect();
+        self.check_apart(&robots)?;
         for robot in 0..self.robots.len() as u32 {
             self.forget(robot);
         }
-        for (robot, rest) in rests.iter().enumerate() {
-            let now = self.now;
-            let state = &mut self.robots[robot];
-            state.moves.clear();
-            state.version += 1;
-            (state.anchor, state.heading) = (rest.waypoint, rest.heading);
-            (state.anchored, state.rested) = (now, rest.time.max(now));
-        }
+        self.robots = robots;
         for robot in 0..self.robots.len() as u32 {
             self.occupy(robot);
         }
@@ -45,20 +45,45 @@ impl Fleet {
         Ok(())
     }
 
-    fn check_rests(&self, rests: &[Rest]) -> Result<(), String> {
-        if rests.len() != self.robots.len() {
-            return Err(format!("{} rests for {} robots", rests.len(), self.robots.len()));
+    /// The robot at its rest, or with nothing but the clear part of its present run.
+    fn moved(&mut self, robot: usize, rest: Option<Rest>) -> Robot {
+        let clear = self.clearance(robot as u32).last().copied();
+        let mut state = self.robots[robot].clone();
+        state.version += 1;
+        if let Some(rest) = rest {
+            state.moves.clear();
+            (state.anchor, state.heading) = (rest.waypoint, rest.heading);
+            (state.anchored, state.rested) = (self.now, rest.time.max(self.now));
+            return state;
         }
+        let kind = &self.kinds[state.kind as usize];
+        let begun = state.committed(&self.network, kind, self.now);
+        state.moves.truncate(if clear.is_some() { begun } else { 0 });
+        if let (Some(step), Some(clear)) = (state.moves.front_mut(), clear) {
+            step.to = clear;
+        }
+        state
+    }
+
+    fn check_apart(&self, robots: &[Robot]) -> Result<(), String> {
         let mut holders = HashMap::new();
-        for (robot, rest) in rests.iter().enumerate() {
-            let Some(&resource) = self.network.resource.get(rest.waypoint as usize) else {
-                return Err(format!("no waypoint {}", rest.waypoint));
-            };
-            if let Some(other) = holders.insert(resource, robot) {
-                return Err(format!(
-                    "robots {other} and {robot} both stand at waypoint {}",
-                    rest.waypoint
-                ));
+        for (robot, state) in robots.iter().enumerate() {
+            let (end, ..) = state.destination();
+            if end as usize >= self.network.nodes {
+                return Err(format!("no waypoint {end}"));
+            }
+            let used: HashSet<u32> = state
+                .occupation(&self.network, &self.kinds[state.kind as usize])
+                .iter()
+                .filter(|held| held.end > self.now)
+                .map(|held| held.resource)
+                .collect();
+            for resource in used {
+                if let Some(other) = holders.insert(resource, robot) {
+                    return Err(format!(
+                        "robots {other} and {robot} cannot both have waypoint {resource}"
+                    ));
+                }
             }
         }
         Ok(())
