@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "TIME_WINDOWS",
+    "CutOff",
     "EventKind",
     "Motion",
     "Piece",
@@ -110,6 +111,22 @@ class PlannedMove(NamedTuple):
     start_us: int
     end_us: int
     is_ride: bool
+
+
+class CutOff(NamedTuple):
+    """What cannot be served while waypoints are closed.
+
+    Attributes
+    ----------
+    storage
+        Storage places (waypoints) that are closed, or from or to which no pod can be carried to or
+        from one of the stations left.
+    stations
+        Stations (numbers) that are closed or that no pod can reach or leave.
+    """
+
+    storage: list[int]
+    stations: list[int]
 
 
 class PlannerSettings(NamedTuple):
@@ -293,10 +310,55 @@ class Traffic:
         Raises
         ------
         ValueError
-            If two robots would have one waypoint, or a heading or waypoint does not exist; nothing has
-            changed then.
+            If two robots would have one waypoint, or a heading or waypoint does not exist; nothing
+            has changed then.
         """
         self._core.regroup(list(rests))
+
+    def close(self, waypoints: Sequence[int]) -> list[int]:
+        """Close waypoints from now on: nobody enters them until they are opened again.
+
+        Who is on one, or can no longer stop before it, goes on and leaves; whose plan leads there
+        later gets another, or stops before it and waits. A robot that stands there without anything
+        to do stays. Close all waypoints of an elevator to put it out of service.
+
+        Parameters
+        ----------
+        waypoints
+            Which; may be closed already.
+
+        Returns
+        -------
+        Robots that still drive through one: they cannot stop, or every place where they could is
+        needed by others.
+
+        Raises
+        ------
+        ValueError
+            If a waypoint does not exist; nothing has changed then.
+        """
+        still = self._core.close(list(waypoints))
+        self._forget_times()
+        return still
+
+    def reopen(self, waypoints: Sequence[int]) -> None:
+        """Open closed waypoints again.
+
+        Raises
+        ------
+        ValueError
+            If a waypoint does not exist; nothing has changed then.
+        """
+        self._core.reopen(list(waypoints))
+        self._forget_times()
+
+    def cut_off(self) -> CutOff:
+        """Say what cannot be served with what is closed: robots bound there would wait."""
+        return CutOff(*self._core.cut_off())
+
+    def _forget_times(self) -> None:
+        self._from_cache.clear()
+        self._to_cache.clear()
 
     def motion(self) -> dict[str, NDArray[Any]]:
         """Totals per robot since the last reset, up to now, each of shape (R,).

@@ -199,6 +199,11 @@ impl Cache {
         table
     }
 
+    /// Drops all tables: the network has changed.
+    pub fn forget(&mut self) {
+        self.tables.clear();
+    }
+
     /// Times from rest at `source` to rest at every waypoint.
     pub fn away_from(&self, network: &Network, source: u32, kind: u8, loaded: bool) -> Vec<u32> {
         self.models[kind as usize].away_from(network, source, loaded)

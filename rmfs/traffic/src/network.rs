@@ -5,6 +5,9 @@ use crate::units::{MicroTurn, Us, heading_of};
 /// "No waypoint", "no zone".
 pub const NONE: u32 = u32::MAX;
 
+/// The zone of waypoints that are closed: nobody wants to go there.
+const CLOSED: u32 = u32::MAX - 1;
+
 /// One directed way between tiers.
 #[derive(Clone, Debug)]
 pub struct Lift {
@@ -48,6 +51,8 @@ pub struct Network {
     pub storage: Vec<bool>,
     /// Station whose private queue zone the waypoint belongs to, or `NONE`.
     pub zone: Vec<u32>,
+    /// The same, with what is closed as a zone of its own: who may enter a waypoint.
+    access: Vec<u32>,
     /// What a robot at the waypoint occupies: the waypoint, or the shaft of its elevator.
     pub resource: Vec<u32>,
     pub resources: usize,
@@ -119,6 +124,7 @@ impl Network {
             before_start,
             before,
             storage: plan.storage,
+            access: zone.clone(),
             zone,
             resource,
             resources,
@@ -168,25 +174,45 @@ impl Network {
         &self.before[self.before_start[index] as usize..self.before_start[index + 1] as usize]
     }
 
-    /// Elevator rides that start at `node`.
-    pub fn lifts_from(&self, node: u32) -> &[Lift] {
-        &self.lifts_from[node as usize]
+    /// Whether a waypoint is a stop of an elevator.
+    pub fn is_lift(&self, node: u32) -> bool {
+        !self.lifts_from[node as usize].is_empty()
+    }
+
+    /// Elevator rides that start at `node`; to a closed waypoint only from a closed one.
+    pub fn lifts_from(&self, node: u32) -> impl Iterator<Item = &Lift> {
+        self.lifts_from[node as usize].iter().filter(|lift| self.may_ride(lift))
     }
 
     /// Elevator rides that end at `node`.
-    pub fn lifts_to(&self, node: u32) -> &[Lift] {
-        &self.lifts_to[node as usize]
+    pub fn lifts_to(&self, node: u32) -> impl Iterator<Item = &Lift> {
+        self.lifts_to[node as usize].iter().filter(|lift| self.may_ride(lift))
+    }
+
+    fn may_ride(&self, lift: &Lift) -> bool {
+        !self.is_closed(lift.to) || self.is_closed(lift.from)
     }
 
     /// Whether a robot on its way to `goal` may drive from `from` onto `to`: queue zones are for
     /// those who want to the station, storage places for empty robots and for the goal itself.
+    /// Closed waypoints are only for who is on one.
     pub fn may_enter(&self, from: u32, to: u32, goal: u32, loaded: bool) -> bool {
-        let zone = self.zone[to as usize];
+        let zone = self.access[to as usize];
         let private = zone != NONE
-            && zone != self.zone[from as usize]
-            && (goal == NONE || zone != self.zone[goal as usize]);
+            && zone != self.access[from as usize]
+            && (goal == NONE || zone == CLOSED || zone != self.access[goal as usize]);
         let blocked = loaded && self.storage[to as usize] && to != goal;
         !private && !blocked
+    }
+
+    /// Whether nobody may enter a waypoint.
+    pub fn is_closed(&self, node: u32) -> bool {
+        self.access[node as usize] == CLOSED
+    }
+
+    /// Closes a waypoint, or opens it again.
+    pub fn set_closed(&mut self, node: u32, closed: bool) {
+        self.access[node as usize] = if closed { CLOSED } else { self.zone[node as usize] };
     }
 
     /// Walks the straight line from `from` (exclusive) to `to` (inclusive) with the distance covered.

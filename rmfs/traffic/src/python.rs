@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::costs;
-use crate::fleet::{Fleet, Rest, Shift};
+use crate::fleet::{CutOff, Fleet, Rest, Shift};
 use crate::heat::Passages;
 use crate::kinematics::{Kind, Profile};
 use crate::network::{Lift, Network, Plan};
@@ -397,6 +397,20 @@ impl Core {
         };
         let rests = rests.iter().map(rest).collect::<PyResult<Vec<Option<Rest>>>>()?;
         self.fleet.regroup(&rests).map_err(PyValueError::new_err)
+    }
+
+    fn close(&mut self, waypoints: Vec<u32>) -> PyResult<Vec<u32>> {
+        self.fleet.close(&waypoints).map_err(PyValueError::new_err)
+    }
+
+    fn reopen(&mut self, waypoints: Vec<u32>) -> PyResult<()> {
+        self.fleet.reopen(&waypoints).map_err(PyValueError::new_err)
+    }
+
+    /// Storage places and stations that cannot be served with what is closed.
+    fn cut_off(&mut self) -> (Vec<u32>, Vec<u32>) {
+        let CutOff { storage, stations } = self.fleet.cut_off();
+        (storage, stations)
     }
 
     fn reset_statistics(&mut self) {

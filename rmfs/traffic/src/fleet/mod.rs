@@ -5,6 +5,7 @@
 //! nothing can collide.
 
 mod blocked;
+mod closing;
 mod late;
 mod planning;
 mod programs;
@@ -13,6 +14,7 @@ mod queues;
 mod regroup;
 mod rolling;
 
+pub use closing::CutOff;
 pub use late::Shift;
 pub use regroup::Rest;
 

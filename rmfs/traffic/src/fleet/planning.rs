@@ -35,39 +35,25 @@ impl Effort {
 
 impl Fleet {
     /// Plans from the first rest that can still be chosen to `goal` and, if that works, makes it
-    /// the robot's plan. `keep` says which of the moves not yet begun stay as they are.
-    pub(super) fn plan(
-        &mut self,
-        robot: u32,
-        goal: u32,
-        effort: Effort,
-        keep: impl Fn(&Network, &Move) -> bool,
-    ) -> bool {
+    /// the robot's plan. The first `keep` moves stay as they are, and those that have begun.
+    pub(super) fn plan(&mut self, robot: u32, goal: u32, effort: Effort, keep: usize) -> bool {
         let begun = Instant::now();
         let planned = self.plan_untimed(robot, goal, effort, keep);
         self.counters.planning += begun.elapsed();
         planned
     }
 
-    fn plan_untimed(
-        &mut self,
-        robot: u32,
-        goal: u32,
-        effort: Effort,
-        keep: impl Fn(&Network, &Move) -> bool,
-    ) -> bool {
+    fn plan_untimed(&mut self, robot: u32, goal: u32, effort: Effort, keep: usize) -> bool {
         self.settle(robot);
         let Fleet { network, kinds, robots, table, pathfinder, costs, per_leg, .. } = self;
         let state = &robots[robot as usize];
         let kind = &kinds[state.kind as usize];
-        if table.final_holder(network.resource[goal as usize]).is_some_and(|holder| holder != robot)
-        {
+        let holder = table.final_holder(network.resource[goal as usize]);
+        if network.is_closed(goal) || holder.is_some_and(|holder| holder != robot) {
             self.counters.failures += 1;
             return false;
         }
-        let kept = state
-            .committed(network, kind, self.now)
-            .max(state.moves.iter().take_while(|step| keep(network, step)).count());
+        let kept = state.committed(network, kind, self.now).max(keep);
         let (start, heading, rested) = match kept.checked_sub(1) {
             Some(last) => (state.moves[last].to, state.moves[last].heading, state.moves[last].end),
             None => (state.anchor, state.heading, state.rested),

@@ -48,7 +48,7 @@ impl Fleet {
 
     pub(super) fn plan_drive(&mut self, robot: u32, goal: u32) -> bool {
         let left_place = self.robots[robot as usize].place;
-        if !self.plan(robot, goal, Effort::Full, |_, _| false) {
+        if !self.plan(robot, goal, Effort::Full, 0) {
             return false;
         }
         if let Some((station, _)) = left_place {

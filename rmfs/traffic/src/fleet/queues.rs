@@ -5,7 +5,6 @@
 //! are ordered by place, never by when they were told to come: with short cuts a later robot may
 //! pass, and a chain ordered otherwise would freeze.
 
-use crate::network::Network;
 use crate::robot::Phase;
 use crate::search::Move;
 use crate::units::Us;
@@ -100,7 +99,7 @@ impl Fleet {
         let Some(&goal) = self.network.stations[station as usize].get(place) else { return false };
         let effort =
             if rank < self.queues[station as usize].len() { Effort::Try } else { Effort::Full };
-        if taken || !self.plan(robot, goal, effort, |_, _| false) {
+        if taken || !self.plan(robot, goal, effort, 0) {
             return false;
         }
         self.queues[station as usize].insert(rank, robot);
@@ -110,13 +109,15 @@ impl Fleet {
 
     /// Replans the last part of a robot's way to another place of the queue it is bound for.
     pub(super) fn change_place(&mut self, robot: u32, station: u32, place: usize) -> bool {
+        self.settle(robot);
         let goal = self.network.stations[station as usize][place];
-        let outside = |network: &Network, step: &Move| {
-            network.zone[step.to as usize] != station
-                && !network.stations[station as usize].contains(&step.to)
+        let outside = |step: &&Move| {
+            self.network.zone[step.to as usize] != station
+                && !self.network.stations[station as usize].contains(&step.to)
         };
-        let phase = self.robots[robot as usize].phase;
-        let changed = self.plan(robot, goal, Effort::Try, outside);
+        let state = &self.robots[robot as usize];
+        let (phase, kept) = (state.phase, state.moves.iter().take_while(outside).count());
+        let changed = self.plan(robot, goal, Effort::Try, kept);
         if changed {
             self.robots[robot as usize].place = Some((station, place));
         }

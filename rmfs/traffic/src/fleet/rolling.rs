@@ -172,7 +172,7 @@ impl Fleet {
             step.start += late;
             step.end += late;
         }
-        let outside = |at: &usize| self.network.lifts_from(wish[*at].to).is_empty();
+        let outside = |at: &usize| !self.network.is_lift(wish[*at].to);
         let ends: Vec<usize> = (0..wish.len()).filter(outside).take(rolling.runs).collect();
         let most = ends.last().map_or(0, |last| last + 1);
         let moves: Vec<Move> = wish.range(..most).cloned().collect();
@@ -222,6 +222,18 @@ impl Fleet {
     fn drop_wish(&mut self, robot: u32) {
         self.rolling.as_mut().expect("a rolling planner").replace(robot, Vec::new());
         self.need_plan(robot);
+    }
+
+    /// The network has changed: nobody's wish counts any more.
+    pub(super) fn forget_wishes(&mut self) {
+        if self.rolling.is_none() {
+            return;
+        }
+        for robot in 0..self.robots.len() as u32 {
+            if matches!(self.robots[robot as usize].phase, Phase::Driving | Phase::Blocked) {
+                self.drop_wish(robot);
+            }
+        }
     }
 
     fn need_plan(&mut self, robot: u32) {

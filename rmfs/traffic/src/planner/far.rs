@@ -170,7 +170,7 @@ impl Far {
 /// stay (a run onto an elevator with the ride and the run off it); or what blocks its first edge.
 fn first_hop(scene: &Scene, agent: &Agent, way: &[Move]) -> Result<Vec<Move>, Clash> {
     let network = scene.network;
-    let outside = way.iter().position(|step| network.lifts_from(step.to).is_empty());
+    let outside = way.iter().position(|step| !network.is_lift(step.to));
     let whole = &way[..=outside.unwrap_or(0)];
     let line: Vec<(u32, f64)> = network.line(way[0].from, way[0].to, way[0].heading).collect();
     let Some(blocked) = draft::clash(scene, scene.table, agent, whole) else {

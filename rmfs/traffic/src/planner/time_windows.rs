@@ -29,9 +29,15 @@ impl TimeWindows {
         let mut outcome = pathfinder.search(network, table, &query);
         if outcome == Outcome::OutOfBudget && agent.effort == u64::MAX {
             // with every planned motion over, the search is an ordinary shortest path
+            let stays = table.gap_at(network.resource[agent.start as usize], agent.ready);
             query.ready = query.ready.max(table.horizon());
             query.budget = u64::MAX;
-            outcome = pathfinder.search(network, table, &query);
+            outcome = match stays {
+                Some((_, until)) if until > query.ready => {
+                    pathfinder.search(network, table, &query)
+                }
+                _ => Outcome::NoWay,
+            };
         }
         match outcome {
             Outcome::Found(moves) => Some(moves),

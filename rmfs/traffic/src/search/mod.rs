@@ -258,7 +258,7 @@ impl<'a> Search<'a> {
 
     /// Whether a window may end with the robot here: not in an elevator.
     fn may_rest(&self, node: u32) -> bool {
-        self.network.lifts_from(node).is_empty()
+        !self.network.is_lift(node)
     }
 
     /// When waiting at a label is an end of its own: the window closes while the robot stands there.

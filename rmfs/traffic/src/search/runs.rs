@@ -49,7 +49,8 @@ impl Search<'_> {
     }
 
     fn may_enter(&self, from: u32, to: u32) -> bool {
-        self.network.may_enter(from, to, self.query.goal, self.query.loaded) || self.is_goal(to)
+        self.network.may_enter(from, to, self.query.goal, self.query.loaded)
+            || (self.is_goal(to) && !self.network.is_closed(to))
     }
 
     /// Whether stopping at a waypoint can pay: it is the goal, it lets the robot turn towards
@@ -66,7 +67,7 @@ impl Search<'_> {
             }
         };
         self.is_goal(node)
-            || !network.lifts_from(node).is_empty()
+            || network.is_lift(node)
             || (0..network.heading_count() as u8).any(leads_on)
     }
 

@@ -1,0 +1,171 @@
+//! Waypoints that are closed for a while, or for good: an elevator out of service, a spill.
+//!
+//! From then on nobody enters them. Whoever is on one, or can no longer stop before it, goes on and
+//! leaves; whose way leads there later is planned anew. Without another way it stops earlier, where
+//! that hinders nobody, and waits; if there is no such place either it still drives through, for a
+//! plan that others rely on is only given up for one that is as safe.
+
+use crate::robot::{Phase, Robot};
+use crate::search::Move;
+
+use super::Fleet;
+use super::planning::Effort;
+
+/// Storage places and stations that cannot be served while waypoints are closed.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct CutOff {
+    /// Waypoints between which and some station that is not cut off no pod can be carried.
+    pub storage: Vec<u32>,
+    /// Stations to which and from which no pod can be carried.
+    pub stations: Vec<u32>,
+}
+
+impl Fleet {
+    /// Closes waypoints. Returns the robots that still drive through one.
+    ///
+    /// # Errors
+    /// If there is no such waypoint; nothing has changed then.
+    pub fn close(&mut self, waypoints: &[u32]) -> Result<Vec<u32>, String> {
+        self.set_closed(waypoints, true)?;
+        let mut still = Vec::new();
+        for robot in 0..self.robots.len() as u32 {
+            let state = &self.robots[robot as usize];
+            let Some(first) = self.first_closed(state) else { continue };
+            let kind = &self.kinds[state.kind as usize];
+            let begun = state.committed(&self.network, kind, self.now);
+            if first < begun || !self.keeps_off(robot, begun, first) {
+                still.push(robot);
+            }
+        }
+        self.forget_wishes();
+        self.retry(|_, _| true);
+        Ok(still)
+    }
+
+    /// Opens waypoints again.
+    ///
+    /// # Errors
+    /// If there is no such waypoint; nothing has changed then.
+    pub fn reopen(&mut self, waypoints: &[u32]) -> Result<(), String> {
+        self.set_closed(waypoints, false)?;
+        self.forget_wishes();
+        self.retry(|_, _| true);
+        Ok(())
+    }
+
+    fn set_closed(&mut self, waypoints: &[u32], closed: bool) -> Result<(), String> {
+        if let Some(waypoint) = waypoints.iter().find(|&&v| v as usize >= self.network.nodes) {
+            return Err(format!("no waypoint {waypoint}"));
+        }
+        self.settle_all();
+        for &waypoint in waypoints {
+            self.network.set_closed(waypoint, closed);
+        }
+        self.costs.forget();
+        Ok(())
+    }
+
+    /// The first move of a robot's plan that enters a closed waypoint from an open one.
+    fn first_closed(&self, state: &Robot) -> Option<usize> {
+        state.moves.iter().position(|step| self.enters_closed(step))
+    }
+
+    fn enters_closed(&self, step: &Move) -> bool {
+        let network = &self.network;
+        if step.ride {
+            return network.is_closed(step.to) && !network.is_closed(step.from);
+        }
+        let mut from = step.from;
+        network.line(step.from, step.to, step.heading).any(|(to, _)| {
+            let enters = network.is_closed(to) && !network.is_closed(from);
+            from = to;
+            enters
+        })
+    }
+
+    /// Changes a plan that would enter a closed waypoint with its move `first`, and of which the
+    /// moves up to `begun` cannot be changed. Returns whether that worked.
+    fn keeps_off(&mut self, robot: u32, begun: usize, first: usize) -> bool {
+        let state = &self.robots[robot as usize];
+        let (phase, goal) = (state.phase, state.destination().0);
+        let replanned = self.rolling.is_none() && self.plan(robot, goal, Effort::Full, begun);
+        if replanned {
+            // also who has not set off yet, or has given up its goal, has a plan to be changed
+            self.robots[robot as usize].phase = phase;
+            return true;
+        }
+        let Some(kept) = (begun..=first).rev().find(|&kept| self.can_stay_after(robot, kept))
+        else {
+            return false;
+        };
+        self.stop_after(robot, kept);
+        true
+    }
+
+    /// Whether a robot can stay for good where its first `kept` moves end.
+    fn can_stay_after(&self, robot: u32, kept: usize) -> bool {
+        let state = &self.robots[robot as usize];
+        let (node, since) = match kept.checked_sub(1) {
+            Some(last) => (state.moves[last].to, state.moves[last].end),
+            None => (state.anchor, self.now),
+        };
+        let row = self.table.row(self.network.resource[node as usize]);
+        let others = row.iter().filter(|used| used.robot != robot);
+        !self.network.is_lift(node) && others.clone().all(|used| used.end <= since)
+    }
+
+    /// Gives up what a robot has planned after its first moves; it stays there and tries again.
+    fn stop_after(&mut self, robot: u32, kept: usize) {
+        self.forget(robot);
+        let state = &self.robots[robot as usize];
+        let (phase, place) = (state.phase, state.place);
+        self.adopt(robot, kept, Vec::new());
+        let stop = self.robots[robot as usize].destination().0;
+        if let Some((station, _)) = place {
+            let places = &self.network.stations[station as usize];
+            if let Some(at) = places.iter().position(|&node| node == stop) {
+                // it stays in the queue and moves up from there
+                self.robots[robot as usize].place = Some((station, at));
+                return;
+            }
+            self.leave_queue(robot, station);
+        }
+        if self.rolling.is_none() {
+            let waits = phase == Phase::Driving;
+            self.robots[robot as usize].phase = if waits { Phase::Blocked } else { phase };
+            if waits {
+                self.blocked.push(robot);
+            }
+        }
+    }
+
+    /// What cannot be served with what is closed.
+    pub fn cut_off(&mut self) -> CutOff {
+        let (carried, mut result) = (true, CutOff::default());
+        let kinds = 0..self.kinds.len() as u8;
+        let storage: Vec<u32> =
+            (0..self.network.nodes as u32).filter(|&v| self.network.storage[v as usize]).collect();
+        let mut reached = vec![true; self.network.nodes];
+        for (station, places) in self.network.stations.clone().into_iter().enumerate() {
+            let head = places[0];
+            let mut serves = vec![true; self.network.nodes];
+            for kind in kinds.clone() {
+                let to = self.costs.towards(&self.network, head, kind, carried);
+                let from = self.costs.away_from(&self.network, head, kind, carried);
+                let count = self.network.heading_count();
+                for (node, times) in to.chunks(count).enumerate() {
+                    let arrives = times.iter().any(|&time| crate::costs::time(time).is_some());
+                    serves[node] &= arrives && crate::costs::time(from[node]).is_some();
+                }
+            }
+            if self.network.is_closed(head) || !storage.iter().any(|&v| serves[v as usize]) {
+                result.stations.push(station as u32);
+                continue;
+            }
+            reached.iter_mut().zip(serves).for_each(|(all, one)| *all &= one);
+        }
+        let lost = |&v: &u32| self.network.is_closed(v) || !reached[v as usize];
+        result.storage = storage.into_iter().filter(lost).collect();
+        result
+    }
+}
