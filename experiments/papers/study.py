@@ -121,13 +121,17 @@ def parser(
     return made
 
 
-def done(given: argparse.Namespace) -> Study:
+def done(given: argparse.Namespace, *, layout: str | None = None, part: str = "") -> Study:
     """Run what is not finished of a study's design and return the results.
 
     Parameters
     ----------
     given
         Options of `parser`.
+    layout
+        Takes the place of the design's, unless one of the reference does.
+    part
+        Name of the runs' folder, if the study has several.
 
     Raises
     ------
@@ -137,8 +141,11 @@ def done(given: argparse.Namespace) -> Study:
         If runs failed: a study with gaps is not published.
     """
     base, suffix = _reference(given)
+    if base is None and layout is not None:
+        base = {"layout": layout}
     made = plan(given.design, base=base)
     folder = given.out if given.out is not None else RESULTS / f"{made.design.name}{suffix}"
+    folder = folder / part
     with watching(made.design.name) as watcher:
         tally = run(made, folder, processes=given.jobs, dask=given.dask, watcher=watcher)
     if tally.failed:

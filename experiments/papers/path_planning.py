@@ -1,0 +1,173 @@
+"""All methods of path planning beside each other (Merschformann, Xie, Erdmann 2017).
+
+Three layouts of the size of that study's instances: 32 robots, 128 robots, and 96 on three tiers
+with elevators. The work is constant, all other decisions are random, an hour is simulated. A method
+that plans better lets the same robots complete more orders.
+
+With `--reference DIR` (the public instances of RAWSim-O) the layouts of the study itself are taken
+instead of their twins, and RAWSim-O's own figures stand beside ours.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from experiments.papers.study import command, done, parser
+from experiments.statistics import against, interval
+from experiments.tables import HALF, Table
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from experiments.papers.study import Study
+
+Rows = dict[tuple[str, str], dict[tuple[str, str], float]]
+"""Per layout and method the cells of the table."""
+
+OURS = "time-windows"
+METHOD = "controllers.pp"
+
+
+@dataclass(frozen=True)
+class Instance:
+    """A layout of the study.
+
+    Attributes
+    ----------
+    twin
+        A shipped layout of the same size.
+    reference
+        The layout itself, in the folder of public instances.
+    theirs
+        RAWSim-O's orders per hour and km per hour, measured over the simulated time of the third
+        number in s, seed 0, for the methods that have been run there.
+    """
+
+    twin: str
+    reference: str
+    theirs: dict[str, tuple[float, float, int]]
+
+    @property
+    def stem(self) -> str:
+        """Name of the layout itself."""
+        return self.reference.removeprefix("pp/").removesuffix(".xinst")
+
+
+EVADING = "far, evading to a neighbour"
+INSTANCES = [
+    Instance(
+        "study-32",
+        "pp/1-4-4-32-550.xinst",
+        {
+            "far": (458.5, 69.0, 7200),
+            EVADING: (439.0, 68.55, 7200),
+            "whca-n": (456.5, 69.1, 7200),
+            "whca-v": (498.5, 72.3, 7200),
+            "od-id": (472.5, 68.05, 7200),
+            "cbs": (482.0, 71.4, 1800),
+            "bcp": (396.0, 74.4, 300),
+        },
+    ),
+    Instance(
+        "study-128",
+        "pp/1-12-20-128-1965.xinst",
+        {
+            "far": (1211.0, 360.5, 3600),
+            "whca-n": (1172.0, 344.8, 900),
+            "whca-v": (1248.0, 372.4, 900),
+        },
+    ),
+    Instance(
+        "study-tiers",
+        "pp/3-12-12-96-1650.xinst",
+        {"far": (1347.0, 234.2, 3600), "whca-n": (1342.0, 231.5, 3600)},
+    ),
+]
+"""The less time they were simulated, the more the start counts, when all robots are free."""
+
+CAPTION = (
+    "Path planning methods over an hour of constant work: means over seeds with 95% confidence "
+    "intervals (Student's t); planning is wall time per simulated hour, failures are searches "
+    "that found no way yet. The difference in orders is to time-windows, seed by seed."
+)
+
+
+def row(runs: pd.DataFrame, difference: Mapping[Any, float] | None) -> dict[tuple[str, str], float]:
+    """Return what the table says of one method on one layout.
+
+    Parameters
+    ----------
+    runs
+        Its runs, a row each.
+    difference
+        As `experiments.statistics.against` gives it; None for the method of comparison.
+    """
+    cells = {("seeds", ""): float(len(runs))}
+    hours = runs["duration_s"] / 3600.0
+    for name, values in (
+        ("orders/h", runs["orders_per_h"]),
+        ("km/h", runs["distance_m"] / 1000.0 / hours),
+        ("planning s/h", runs["planning_wall_s"] / hours),
+    ):
+        found = interval(values)
+        cells[name, "mean"], cells[name, HALF] = found.mean, found.half_width
+    if difference is not None:
+        cells["difference", "mean"] = difference["difference"]
+        cells["difference", HALF] = (difference["high"] - difference["low"]) / 2.0
+    else:
+        cells["difference", "mean"] = cells["difference", HALF] = float("nan")
+    cells["failures/h", ""] = float((runs["plan_failures"] / hours).mean())
+    cells["collisions", ""] = float(runs["collisions"].sum())
+    return cells
+
+
+def rows(study: Study, instance: Instance, name: str) -> Rows:
+    """Return the rows of one layout: the methods by their orders, and beside them RAWSim-O's."""
+    frame = study.frame
+    differences = against(frame, "orders_per_h", OURS, by=METHOD)
+    made: Rows = {}
+    for planner, runs in frame.groupby(METHOD, sort=False):
+        other = None if planner == OURS else differences.loc[[planner]].iloc[0].to_dict()
+        cells = row(runs, other)
+        if study.suffix:
+            orders, km, over = instance.theirs.get(str(planner), (float("nan"),) * 3)
+            cells["RAWSim-O", "orders/h"], cells["RAWSim-O", "km/h"] = orders, km
+            cells["RAWSim-O", "over s"] = over
+        made[name, str(planner)] = cells
+    return dict(sorted(made.items(), key=lambda item: -item[1]["orders/h", "mean"]))
+
+
+def as_table(made: Rows) -> Table:
+    """Return all rows as a table to publish."""
+    columns = pd.MultiIndex.from_tuples(list(next(iter(made.values()))))
+    index = pd.MultiIndex.from_tuples(list(made), names=["layout", "method"])
+    cells = [[one[column] for column in columns] for one in made.values()]
+    decimals = dict.fromkeys(columns, 1)
+    decimals |= {("seeds", ""): 0, ("collisions", ""): 0, ("failures/h", ""): 0}
+    decimals |= {("planning s/h", "mean"): 2, ("planning s/h", HALF): 2}
+    if ("RAWSim-O", "over s") in decimals:
+        decimals["RAWSim-O", "over s"] = 0
+    return Table(pd.DataFrame(cells, index=index, columns=columns), decimals, CAPTION)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the study on all three layouts and publish one table."""
+    options = parser("path-planning", __doc__, reference="pp/*.xinst")
+    given = options.parse_args(arguments)
+    made: Rows = {}
+    for instance in INSTANCES:
+        given.reference_layout = instance.reference
+        study = done(given, layout=instance.twin, part=instance.twin)
+        name = instance.stem if study.suffix else instance.twin
+        made |= rows(study, instance, name)
+    study.publish(
+        as_table(made), "path-planning", ["orders_per_h", "distance_m", "planning_wall_s"]
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(command(main))
