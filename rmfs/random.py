@@ -25,6 +25,8 @@ class Stream(IntEnum):
     TIE_BREAKS = 8
     CONTROLLERS = 9
     PACING = 10
+    TRIPS = 11
+    DISTURBANCES = 12
 
 
 def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:

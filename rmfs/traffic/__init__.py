@@ -446,6 +446,13 @@ class Traffic:
         counts["planning_s"] = counts.pop("planning_ns") / 1e9
         return counts
 
+    def call_times_s(self) -> NDArray[np.float64]:
+        """Wall time of each call of the planner since the last reset, in seconds.
+
+        A planner per leg is called for one robot, a rolling one for all that drive.
+        """
+        return self._core.call_times() / 1e9
+
     def reset_statistics(self) -> None:
         """Forget totals, heat, trips and counters; the trace stays whole."""
         self._core.reset_statistics()

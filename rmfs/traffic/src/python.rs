@@ -362,6 +362,11 @@ impl Core {
         ])
     }
 
+    /// Wall time of each call of the planner since the last reset, in nanoseconds.
+    fn call_times<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        self.fleet.counters.calls.clone().into_pyarray(py).into_any()
+    }
+
     /// The moves of a robot's plan that have not ended: from, to, heading (radians), start, end and
     /// whether it is an elevator ride.
     fn plan(&mut self, robot: u32) -> PyResult<Vec<PlannedMove>> {

@@ -79,6 +79,16 @@ pub struct Counters {
     pub refusals: u64,
     /// Wall time spent planning.
     pub planning: Duration,
+    /// Wall time of each call of the planner, in nanoseconds.
+    pub calls: Vec<u64>,
+}
+
+impl Counters {
+    /// Counts a call of the planner.
+    fn called(&mut self, took: Duration) {
+        self.planning += took;
+        self.calls.push(took.as_nanos() as u64);
+    }
 }
 
 /// What a robot's current leg is, for the table of trips.

@@ -39,7 +39,7 @@ impl Fleet {
     pub(super) fn plan(&mut self, robot: u32, goal: u32, effort: Effort, keep: usize) -> bool {
         let begun = Instant::now();
         let planned = self.plan_untimed(robot, goal, effort, keep);
-        self.counters.planning += begun.elapsed();
+        self.counters.called(begun.elapsed());
         planned
     }
 

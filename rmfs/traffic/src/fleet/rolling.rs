@@ -255,7 +255,7 @@ impl Fleet {
         rolling.last_call = self.now;
         let mut scene = Scene { now: self.now, network, kinds, robots, table, pathfinder, costs };
         let answers = rolling.planner.plan(&mut scene, &agents);
-        self.counters.planning += begun.elapsed();
+        self.counters.called(begun.elapsed());
         let mut resting = Vec::new();
         for (agent, answer) in agents.iter().zip(answers) {
             let changed = self.take_answer(agent.robot, answer);

@@ -1,0 +1,135 @@
+"""`rmfs traffic`: planners alone."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from experiments.traffic import duel as duels
+from rmfs import layout as layouts
+from rmfs.config import parse_override
+from rmfs.trips import drive, random_trips
+
+if TYPE_CHECKING:
+    from rmfs.layout.model import Layout
+    from rmfs.trips import TripRun
+
+app = typer.Typer(
+    help="Path planners alone: random trips, duels, growth, random cases.", no_args_is_help=True
+)
+
+UNSAFE = 1
+"""Exit code where the checker finds a trace unsafe, or nothing can move any more."""
+
+LayoutArgument = Annotated[
+    str, typer.Argument(metavar="LAYOUT", help="Name of a shipped layout, or a file.")
+]
+Robots = Annotated[
+    int | None, typer.Option(min=1, help="Robots per tier. [default: those of the layout]")
+]
+Seed = Annotated[int, typer.Option(min=0, help="Of the trips and of the planner.")]
+Duration = Annotated[float, typer.Option(min=1.0, help="Simulated seconds that are measured.")]
+Warmup = Annotated[float, typer.Option(min=0.0, help="Simulated seconds before that.")]
+Check = Annotated[bool, typer.Option("--check", help="Prove the motion safe.")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Override a parameter of the layout."),
+]
+Allow = Annotated[
+    bool,
+    typer.Option(
+        "--allow-not-well-formed", help="Drive on a layout in which robots may block each other."
+    ),
+]
+Out = Annotated[
+    Path | None, typer.Option(help="A .csv or .md file for the table.", show_default=False)
+]
+PLANNER_HELP = "Name, or NAME:KEY=VALUE,KEY=VALUE with parameters"
+
+
+@app.command()
+def bench(
+    layout: LayoutArgument,
+    robots: Robots = None,
+    planner: Annotated[str, typer.Option(help=f"{PLANNER_HELP}.")] = "time-windows",
+    seed: Seed = 0,
+    duration: Duration = 3600.0,
+    warmup: Warmup = 0.0,
+    check: Check = False,
+    set_: Settings = None,
+    allow_not_well_formed: Allow = False,
+    out: Out = None,
+) -> None:
+    """Drive random trips, without orders, by one planner."""
+    duel(layout, robots, [planner], seed, duration, warmup, check, set_, allow_not_well_formed, out)
+
+
+@app.command()
+def duel(
+    layout: LayoutArgument,
+    robots: Robots = None,
+    planner: Annotated[
+        list[str] | None,
+        typer.Option(help=f"{PLANNER_HELP}; may be repeated. [default: all]", show_default=False),
+    ] = None,
+    seed: Seed = 0,
+    duration: Duration = 3600.0,
+    warmup: Warmup = 0.0,
+    check: Check = False,
+    set_: Settings = None,
+    allow_not_well_formed: Allow = False,
+    out: Out = None,
+) -> None:
+    """Drive the same random trips by several planners."""
+    names = planner or duels.all_planners()
+    duels.check_planners(names)
+    loaded = _loaded(layout, robots, set_, allow_not_well_formed=allow_not_well_formed)
+    rows, unsafe = {}, []
+    for name in names:
+        _tell(f"{layout}, {loaded.robots} robots: {name}")
+        run = drive(
+            loaded,
+            random_trips(loaded, seed),
+            duels.settings(name, seed),
+            duration_s=duration,
+            warmup_s=warmup,
+            proven=check,
+        )
+        rows[name] = duels.row(run)
+        unsafe += _complaints(name, run)
+    frame = duels.table(rows)
+    typer.echo(duels.markdown(frame))
+    if out is not None:
+        duels.save(frame, out)
+    for complaint in unsafe:
+        print(f"rmfs: {complaint}", file=sys.stderr)
+    if unsafe:
+        raise typer.Exit(UNSAFE)
+
+
+def _loaded(
+    layout: str, robots: int | None, set_: list[str] | None, *, allow_not_well_formed: bool
+) -> Layout:
+    overrides: list[tuple[list[str], Any]] = [] if robots is None else [(["robots"], robots)]
+    for text in set_ or []:
+        path, value = parse_override(text)
+        overrides.append((path[1:] if path[0] == "layout" else path, value))
+    loaded = layouts.load(layout, overrides)
+    layouts.refuse(loaded, layout, allow_not_well_formed=allow_not_well_formed)
+    return loaded
+
+
+def _complaints(name: str, run: TripRun) -> list[str]:
+    found = []
+    if run.report is not None and not run.report.ok:
+        found.append(f"{name}: {run.report.summary()}")
+    if run.stalled:
+        found.append(f"{name}: nothing moves any more at {run.end_s:.0f} s\n{run.stalled}")
+    return found
+
+
+def _tell(text: str) -> None:
+    print(f"rmfs: {text}", file=sys.stderr, flush=True)

@@ -1,0 +1,8 @@
+"""Traffic alone: streams of trips without orders, stock or decisions, to try path planners on."""
+
+from __future__ import annotations
+
+from rmfs.trips.driving import TripRun, drive
+from rmfs.trips.streams import PodTrips, PointTrips, TripStream, random_trips
+
+__all__ = ["PodTrips", "PointTrips", "TripRun", "TripStream", "drive", "random_trips"]

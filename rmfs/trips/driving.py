@@ -1,0 +1,169 @@
+"""Driving a stream of trips and measuring how it went."""
+
+from __future__ import annotations
+
+import heapq
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.measure.checker import check
+from rmfs.traffic import COST_TABLE_BYTES, TIME_WINDOWS, PlannerSettings, Traffic
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+    from rmfs.measure.checker import CheckReport
+    from rmfs.trips.streams import Command, TripStream
+
+STALL_S = 1800.0
+"""So long nothing may happen while robots wait for a way before driving is given up."""
+
+
+@dataclass(frozen=True)
+class TripRun:
+    """What became of a stream of trips.
+
+    Attributes
+    ----------
+    warmup_s, end_s
+        Simulated before anything is counted, and when it ended.
+    wall_s
+        Wall time after the warm-up.
+    stalled
+        Empty, or where every robot is if nothing could move any more.
+    report
+        The verdict of the checker, if it was asked for.
+    """
+
+    layout: Layout
+    planner: PlannerSettings
+    traffic: Traffic
+    warmup_s: float
+    end_s: float
+    wall_s: float
+    stalled: str
+    report: CheckReport | None
+
+    @property
+    def trips_per_h(self) -> float:
+        """Trips finished per hour: to a pod, to a station, to a storage place, to a point."""
+        return len(self.delays_s) / (self.end_s - self.warmup_s) * 3600.0
+
+    @property
+    def delays_s(self) -> NDArray[np.float64]:
+        """How much longer each trip took than if nobody else had been there."""
+        trips = self.traffic.trips()
+        taken: NDArray[np.float64] = (trips["t1_us"] - trips["t0_us"]) / 1e6
+        unhindered: NDArray[np.float64] = trips["unhindered_s"]
+        return taken - unhindered
+
+    @property
+    def idle_robots(self) -> int:
+        """How many robots finished no trip at all."""
+        return self.layout.robots - len(np.unique(self.traffic.trips()["robot"]))
+
+    @property
+    def distance_m(self) -> float:
+        """Metres driven by all robots."""
+        return float(self.traffic.motion()["distance_m"].sum())
+
+
+def drive(
+    layout: Layout,
+    stream: TripStream,
+    planner: PlannerSettings = TIME_WINDOWS,
+    *,
+    duration_s: float,
+    warmup_s: float = 0.0,
+    proven: bool = False,
+    stall_s: float = STALL_S,
+    cost_table_bytes: int = COST_TABLE_BYTES,
+    each: Callable[[Traffic], None] | None = None,
+) -> TripRun:
+    """Drive a stream of trips.
+
+    Parameters
+    ----------
+    duration_s, warmup_s
+        Simulated time that is measured, and before it.
+    proven
+        Whether the independent checker is to prove the motion safe; it needs the trace.
+    stall_s
+        So long nothing may happen while robots wait for a way.
+    cost_table_bytes
+        Memory for tables of unhindered times.
+    each
+        Called after every instant at which something happened.
+    """
+    traffic = Traffic(
+        layout, record_trace=proven, planner=planner, cost_table_bytes=cost_table_bytes
+    )
+    loop = _Loop(traffic, stream, stall_s, each)
+    loop.until(warmup_s)
+    traffic.reset_statistics()
+    begun = time.perf_counter()
+    loop.until(warmup_s + duration_s)
+    wall_s = time.perf_counter() - begun
+    end_us = traffic.now_us
+    report = check(layout, traffic.trace(), until_us=end_us) if proven else None
+    return TripRun(layout, planner, traffic, warmup_s, end_us / 1e6, wall_s, loop.stalled, report)
+
+
+class _Loop:
+    """Hands commands to traffic and events to the stream."""
+
+    def __init__(
+        self,
+        traffic: Traffic,
+        stream: TripStream,
+        stall_s: float,
+        each: Callable[[Traffic], None] | None,
+    ) -> None:
+        self.traffic, self.stream, self.each = traffic, stream, each
+        self.stalled = ""
+        self._stall_us = round(stall_s * 1e6)
+        self._moved_us = 0
+        self._later: list[tuple[int, int, Command]] = []
+        self._serial = 0
+        self._take(stream.begin())
+
+    def until(self, end_s: float) -> None:
+        """Go on until a time, or until nothing can move any more."""
+        traffic, stream, end_us = self.traffic, self.stream, round(end_s * 1e6)
+        while not self.stalled and traffic.now_us < end_us:
+            due_us = self._later[0][0] if self._later else end_us
+            events = traffic.advance(min(due_us, end_us, self._moved_us + self._stall_us))
+            for event in events:
+                self._moved_us = event[0]
+                self._take(stream.follow(*event))
+            self._give()
+            if self.each is not None:
+                self.each(traffic)
+            if traffic.now_us >= self._moved_us + self._stall_us:
+                self._look()
+
+    def _take(self, commands: Iterable[Command]) -> None:
+        for command in commands:
+            self._serial += 1
+            heapq.heappush(self._later, (command.at_us, self._serial, command))
+        self._give()
+
+    def _give(self) -> None:
+        """Hand over the commands that are due."""
+        while self._later and self._later[0][0] <= self.traffic.now_us:
+            _, _, command = heapq.heappop(self._later)
+            self._moved_us = self.traffic.now_us
+            self.traffic.command(command.robot, command.program)
+            self._take(self.stream.given(command))
+
+    def _look(self) -> None:
+        """Nothing happened for long: it is over if robots wait for a way and no command is due."""
+        self._moved_us = self.traffic.now_us
+        if self.traffic.blocked() and not self._later:
+            self.stalled = self.traffic.state_report()

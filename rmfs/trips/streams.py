@@ -1,0 +1,213 @@
+"""Streams of trips: what robots are told to do one after another.
+
+What a robot is told depends on the seed and on how many trips it has done, never on how long they
+took: different planners drive the same trips.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.random import Stream, generator
+from rmfs.traffic import EventKind, Step
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from rmfs.layout.model import Layout
+
+SERVICE_S = 5.0
+"""Mean time of a pod at a station: short, so that stations do not hide what planners do."""
+
+
+class Command(NamedTuple):
+    """What a robot is told.
+
+    Attributes
+    ----------
+    at_us
+        When, in microseconds.
+    program
+        Steps as `Traffic.command` takes them.
+    """
+
+    at_us: int
+    robot: int
+    program: list[tuple[int, int]]
+
+
+class TripStream(Protocol):
+    """Tells robots what to do."""
+
+    def begin(self) -> Iterable[Command]:
+        """Return what robots are told at time zero."""
+
+    def follow(self, time_us: int, kind: int, robot: int, value: int) -> Iterable[Command]:
+        """Return what robots are told after an event of traffic."""
+
+    def given(self, command: Command) -> Iterable[Command]:
+        """Return what robots are told because another one has been told something."""
+
+
+class PodTrips:
+    """Robots fetch pods, bring them to stations and store them again.
+
+    The pods and the free storage places are dealt out to the robots, so that what one of them does
+    leaves the others their choice. No more robots are sent to a station than its queue holds but
+    one; whoever comes next waits where it is (condition W3 of `docs/safety.md`).
+
+    Parameters
+    ----------
+    seed
+        Of pods, stations, places and times of service, 0 or greater.
+    service_s
+        Mean time a pod spends at a station; drawn evenly from half of it to one and a half.
+
+    Raises
+    ------
+    InputError
+        If there are fewer pods than robots, or no stations.
+    """
+
+    def __init__(self, layout: Layout, seed: int, *, service_s: float = SERVICE_S) -> None:
+        if not layout.stations or layout.pods < layout.robots:
+            raise InputError(
+                f"layout {layout.name}: trips of pods need stations and a pod per robot (it has "
+                f"{len(layout.stations)} stations, {layout.pods} pods, {layout.robots} robots)"
+            )
+        self._service_us = service_s * 1e6
+        self._random = [generator(seed, Stream.TRIPS, robot) for robot in range(layout.robots)]
+        shuffled = generator(seed, Stream.TRIPS).permutation
+        taken = set(layout.pod_waypoint.tolist())
+        free = [int(v) for v in np.flatnonzero(layout.is_storage) if int(v) not in taken]
+        self._pods = _dealt(shuffled(layout.pods).tolist(), layout.robots)
+        self._places = _dealt([free[k] for k in shuffled(len(free))], layout.robots)
+        self._place_of = layout.pod_waypoint.tolist()
+        self._carried = [-1] * layout.robots
+        self._station = [-1] * layout.robots
+        self._room = [max(1, len(station.queue) - 1) for station in layout.stations]
+        self._waiting: list[deque[int]] = [deque() for _ in layout.stations]
+
+    def begin(self) -> Iterator[Command]:
+        """Send every robot for its first pod."""
+        for robot in range(len(self._pods)):
+            yield from self._next(0, robot)
+
+    def follow(self, time_us: int, kind: int, robot: int, _value: int) -> Iterator[Command]:
+        """Go on when a robot has reached a station or is done."""
+        if kind == EventKind.AT_HEAD:
+            yield self._store(time_us, robot)
+        elif kind == EventKind.IDLE and robot not in self._waiting[self._station[robot]]:
+            self._pods[robot].append(self._carried[robot])
+            yield from self._next(time_us, robot)
+
+    def given(self, command: Command) -> Iterator[Command]:
+        """Let the next one come to the station that a robot leaves."""
+        station = self._station[command.robot]
+        if command.program[-1][0] != Step.SET_DOWN:
+            return
+        self._room[station] += 1
+        if self._waiting[station]:
+            yield self._fetch(command.at_us, self._waiting[station].popleft())
+
+    def _next(self, time_us: int, robot: int) -> Iterator[Command]:
+        """Choose the next pod and station; without room there, wait beneath the pod."""
+        draw = self._random[robot]
+        pods = self._pods[robot]
+        pod = self._carried[robot] = pods.pop(int(draw.integers(len(pods))))
+        station = self._station[robot] = int(draw.integers(len(self._room)))
+        if self._room[station]:
+            yield self._fetch(time_us, robot)
+        else:
+            self._waiting[station].append(robot)
+            yield Command(time_us, robot, [(int(Step.DRIVE), self._place_of[pod])])
+
+    def _fetch(self, time_us: int, robot: int) -> Command:
+        pod, station = self._carried[robot], self._station[robot]
+        self._room[station] -= 1
+        place = self._place_of[pod]
+        program = [(Step.DRIVE, place), (Step.LIFT, pod), (Step.STATION, station)]
+        return Command(time_us, robot, [(int(step), value) for step, value in program])
+
+    def _store(self, time_us: int, robot: int) -> Command:
+        """Take the pod away after its service, to its old place or a free one."""
+        draw = self._random[robot]
+        served_us = time_us + round(self._service_us * (0.5 + draw.random()))
+        pod, places = self._carried[robot], self._places[robot]
+        places.append(self._place_of[pod])
+        place = self._place_of[pod] = places.pop(int(draw.integers(len(places))))
+        return Command(served_us, robot, [(int(Step.DRIVE), place), (int(Step.SET_DOWN), pod)])
+
+
+class PointTrips:
+    """Robots drive from point to point, without pods.
+
+    Parameters
+    ----------
+    goals
+        Per robot the waypoints it drives to one after another.
+    shared
+        Goals handed out in this order to whoever has none of its own left.
+    """
+
+    def __init__(self, goals: Sequence[Iterable[int]], shared: Iterable[int] = ()) -> None:
+        self._goals = [iter(own) for own in goals]
+        self._shared = iter(shared)
+
+    def begin(self) -> Iterator[Command]:
+        """Send every robot to its first goal."""
+        for robot in range(len(self._goals)):
+            yield from self._next(0, robot)
+
+    def follow(self, time_us: int, kind: int, robot: int, _value: int) -> Iterator[Command]:
+        """Send a robot on that has arrived."""
+        if kind == EventKind.IDLE:
+            yield from self._next(time_us, robot)
+
+    def given(self, _command: Command) -> Iterator[Command]:
+        """Nobody waits for another."""
+        return iter(())
+
+    def _next(self, time_us: int, robot: int) -> Iterator[Command]:
+        goal = next(self._goals[robot], None)
+        if goal is None:
+            goal = next(self._shared, None)
+        if goal is not None:
+            yield Command(time_us, robot, [(int(Step.DRIVE), goal)])
+
+
+def random_goals(goals: Sequence[int], seed: int, robot: int) -> Iterator[int]:
+    """Draw goals without end; two in a row are different."""
+    draw = generator(seed, Stream.TRIPS, robot)
+    last = -1
+    while True:
+        goal = int(goals[int(draw.integers(len(goals)))])
+        if goal != last:
+            last = goal
+            yield goal
+
+
+def random_trips(layout: Layout, seed: int, *, service_s: float = SERVICE_S) -> TripStream:
+    """Return trips that suit a layout.
+
+    With stations and pods these are `PodTrips`; otherwise robots drive between storage places, or
+    where there are none, between any waypoints.
+    """
+    if layout.stations and layout.pods:
+        return PodTrips(layout, seed, service_s=service_s)
+    goals = np.flatnonzero(layout.is_storage)
+    if len(goals) < 2:
+        goals = np.arange(layout.waypoints)
+    if len(goals) < 2:
+        raise InputError(f"layout {layout.name}: trips need two waypoints")
+    named = goals.tolist()
+    return PointTrips([random_goals(named, seed, robot) for robot in range(layout.robots)])
+
+
+def _dealt(things: Sequence[int], hands: int) -> list[list[int]]:
+    """Deal things out one by one."""
+    return [list(things[hand::hands]) for hand in range(hands)]
