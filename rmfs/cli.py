@@ -34,7 +34,7 @@ SUB_COMMANDS = {
 """Module and help of each group of commands; its module is imported when it is called."""
 
 UNSAFE = 1
-"""Exit code where the checker finds a trace unsafe: a defect."""
+"""Exit code where the checker finds a trace unsafe, or a bound is exceeded: a defect."""
 
 GIVEN_UP = 1
 """Exit code where a run stops before its end: nothing can move any more (possible in layouts that
@@ -390,14 +390,18 @@ def proven(done: Run) -> CheckReport:
 
 
 def conclude(target: Path, report: CheckReport | None) -> None:
-    """Print the main figures; an unsafe trace is a defect and ends in exit code 1."""
+    """Print the main figures; an unsafe trace or a score above 1 is a defect: exit code 1."""
     from rich.console import Console
 
     from rmfs.measure import load_run
     from rmfs.measure.summary import summary
 
-    Console(highlight=False).print(summary(load_run(target).footprint))
+    footprint = load_run(target).footprint
+    Console(highlight=False).print(summary(footprint))
     print(target)
+    if footprint["units_score"] > 1.0:
+        print("rmfs: more units were picked than is possible: a defect", file=sys.stderr)
+        raise typer.Exit(UNSAFE)
     if report is not None and not report.ok:
         print(f"rmfs: {report.summary()}", file=sys.stderr)
         raise typer.Exit(UNSAFE)

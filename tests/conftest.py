@@ -1,1 +1,19 @@
-"""Makes `doubles` and `ledger`, beside this file, importable from the tests in all folders."""
+"""Makes what lies beside this file importable from the tests in all folders; bounds every run."""
+
+import pytest
+from bounds import Counter
+
+from rmfs.simulation.simulation import Simulation
+
+
+@pytest.fixture(autouse=True, scope="session")
+def no_run_exceeds_its_bound():
+    """Let every simulation of every test fail if it does more than is possible."""
+    build = Simulation.__init__
+
+    def bounded(self, *arguments, observers=(), **named):
+        build(self, *arguments, observers=[*observers, Counter()], **named)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Simulation, "__init__", bounded)
+        yield

@@ -148,7 +148,7 @@ class FreeTraffic:
     def robot_waypoint(self, robot: int) -> int:
         return self._at[robot]
 
-    def travel_times_to(self, waypoint: int, loaded: bool) -> np.ndarray:
+    def travel_times_to(self, waypoint: int, loaded: bool, robot: int = 0) -> np.ndarray:
         x, y = self._layout.x_m, self._layout.y_m
         return np.abs(x - x[waypoint]) + np.abs(y - y[waypoint])
 

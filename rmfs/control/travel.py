@@ -21,13 +21,15 @@ Metric = Literal["euclidean", "manhattan", "path", "time"]
 
 
 class TravelTimes(Protocol):
-    """The part of traffic that knows travel times."""
+    """The part of traffic that knows travel times; they depend on the kind of the robot."""
 
-    def travel_times_to(self, waypoint: int, loaded: bool) -> NDArray[np.float64]:
+    def travel_times_to(self, waypoint: int, loaded: bool, robot: int = ...) -> NDArray[np.float64]:
         """Unhindered times from all waypoints to one, shape (N,), s; inf if unreachable."""
         ...
 
-    def travel_times_from(self, waypoint: int, loaded: bool) -> NDArray[np.float64]:
+    def travel_times_from(
+        self, waypoint: int, loaded: bool, robot: int = ...
+    ) -> NDArray[np.float64]:
         """Unhindered times from one waypoint to all, shape (N,), s; inf if unreachable."""
         ...
 

@@ -81,7 +81,9 @@ STATIONS = (
     Column("busy_s", REAL, "s", "Time spent handling units or bundles"),
     Column("idle_share", REAL, "share", "1 - busy_s / duration"),
     Column("active_share", REAL, "share", "Time switched on / duration"),
-    Column("units_per_h_bound", REAL, "1/h", "See footprint; empty for replenishment stations"),
+    Column(
+        "units_per_h_at_pile_on", REAL, "1/h", "See footprint; empty for replenishment stations"
+    ),
     Column("units_per_visit", REAL, "units", "Pile-on: units_picked / visits"),
     Column("orders_per_visit", REAL, "orders", "orders_completed / visits"),
     Column("bundles_per_visit", REAL, "bundles", "bundles_stored / visits"),

@@ -60,10 +60,10 @@ FOOTPRINT = (
         "units_per_h_bound",
         REAL,
         "1/h",
-        "What the pick stations could pick at most with the pile-on of this run, if the next pod "
-        "always came as soon as motion allows (see measures): sum over stations",
+        "No run of this layout with these SKUs picks more in such a time, under any controllers, "
+        "demand or seed: proven (see bounds)",
     ),
-    Column("units_score", REAL, "share", "units_per_h / units_per_h_bound"),
+    Column("units_score", REAL, "share", "units_per_h / units_per_h_bound; at most 1"),
     Column(
         "pick_visits",
         INTEGER,
@@ -192,6 +192,13 @@ FOOTPRINT = (
             "stale": "of solutions that no longer held",
             "failed": "by the own rule because an optimiser failed or found nothing",
         }.items()
+    ),
+    Column(
+        "units_per_h_at_pile_on",
+        REAL,
+        "1/h",
+        "What the pick stations would pick with the pile-on of this run, never waiting for a pod "
+        "longer than motion needs (see measures): sum over stations",
     ),
     Column("orders_created", INTEGER, "orders", "Orders that arrived"),
     Column("order_redraws", INTEGER, "draws", "Drawn orders that the stock could not serve"),

@@ -51,10 +51,18 @@ def picture(run: RunFolder, what: str) -> Figure:
     FigureCanvasAgg(figure)
     for place, tier in enumerate(tiers, start=1):
         ax = figure.add_subplot(len(tiers), 1, place)
-        extra: dict[str, Any] = {"tier": tier} if what == "heat" else {}
-        draw(frame, ax, **extra)
+        draw(frame, ax, **_more(run, what, tier))
         ax.set_title(title if len(tiers) == 1 else f"{title}, tier {tier}")
     return figure
+
+
+def _more(run: RunFolder, what: str, tier: int) -> dict[str, Any]:
+    """Return what a picture shows besides its table."""
+    if what == "heat":
+        return {"tier": tier}
+    if what == "progression":
+        return {"bound_per_h": float(run.footprint["units_per_h_bound"])}
+    return {}
 
 
 def save(run: RunFolder, what: str, path: Path) -> None:

@@ -182,8 +182,11 @@ def _rates() -> list[Mapped]:
     return [
         Mapped("BundleThroughputRate", "`bundles_per_h`"),
         Mapped("ItemThroughputRate", "`units_per_h`"),
-        Mapped("ItemThroughputRateUB", "`units_per_h_bound`, a true bound (see measures)"),
-        Mapped("ItemThroughputRateScore", "`units_score`"),
+        Mapped(
+            "ItemThroughputRateUB",
+            "`units_per_h_at_pile_on`, which is no bound",
+        ),
+        Mapped("ItemThroughputRateScore", "`units_per_h` / `units_per_h_at_pile_on`"),
         Mapped("LineThroughputRate", "`lines_per_h`"),
         Mapped("OrderThroughputRate", "`orders_per_h`"),
     ]

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Call
     from rmfs.layout.model import Layout
     from rmfs.simulation.simulation import Simulation
+    from rmfs.traffic import Traffic
     from rmfs.world.orders import Bundle, Order
     from rmfs.world.world import World
 
@@ -80,6 +81,7 @@ class Recorder(Observer):
     def __init__(self) -> None:
         self.layout: Layout
         self.world: World
+        self.traffic: Traffic
         self.start_s = 0.0
         self.end_s = nan
         self.units = Log(
@@ -126,7 +128,7 @@ class Recorder(Observer):
     def run_started(self, simulation: Simulation) -> None:
         """Keep hold of the world and the traffic."""
         self.layout, self.world = simulation.layout, simulation.world
-        self._traffic = simulation.traffic
+        self.traffic = simulation.traffic
         self.stored_space_start = simulation.world.inventory.stored_space
 
     def warmup_ended(self, time_s: float) -> None:
@@ -141,11 +143,11 @@ class Recorder(Observer):
         self.end_s = time_s
         if not self.samples or self.samples[-1][0] < time_s:
             self.sampled(time_s)
-        self.motion = self._traffic.motion()
-        self.heat = self._traffic.heat()
-        self.trips = self._traffic.trips()
-        self.edges = self._traffic.edges()
-        self.counters = self._traffic.counters()
+        self.motion = self.traffic.motion()
+        self.heat = self.traffic.heat()
+        self.trips = self.traffic.trips()
+        self.edges = self.traffic.edges()
+        self.counters = self.traffic.counters()
         for name, number in self._order_counts().items():
             self.counters[name] = number - self._before[name]
         for station, (since, pod, robot) in self._at_station.items():
@@ -158,7 +160,7 @@ class Recorder(Observer):
 
     def sampled(self, time_s: float) -> None:
         """Add up the robots' motion."""
-        totals = {name: float(values.sum()) for name, values in self._traffic.motion().items()}
+        totals = {name: float(values.sum()) for name, values in self.traffic.motion().items()}
         self.samples.append((time_s, totals))
 
     def order_created(self, order: Order) -> None:

@@ -13,7 +13,7 @@ FIGURES: tuple[tuple[str, str, str], ...] = (
     ("orders per hour", "orders_per_h", "{:,.1f}"),
     ("units picked", "units_picked", "{:,.0f}"),
     ("units per hour", "units_per_h", "{:,.1f}"),
-    ("score (share of the stations' bound)", "units_score", "{:.1%}"),
+    ("score (share of what is possible at most)", "units_score", "{:.1%}"),
     ("bundles stored", "bundles_stored", "{:,.0f}"),
     ("units per pod visit", "units_per_visit", "{:.2f}"),
     ("distance per unit, m", "distance_per_unit_m", "{:,.1f}"),

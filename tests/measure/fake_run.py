@@ -67,6 +67,11 @@ class FakeTraffic:
             "loaded_passages": np.array([2, 3]),
         }
 
+    def travel_times_to(self, waypoint: int, loaded: bool, robot: int = 0) -> np.ndarray:
+        return np.full(12, 5.0)
+
+    travel_times_from = travel_times_to
+
     def trips(self) -> dict[str, np.ndarray]:
         return {
             "robot": np.array([0, 1, 0]),

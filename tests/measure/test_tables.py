@@ -41,8 +41,9 @@ EXPECTED = {
     "units_per_h": 18.0,
     "lines_per_h": 18.0,
     "bundles_per_h": 9.0,
-    "units_per_h_bound": 720.0,  # two stations, 10 s a unit
-    "units_score": 18.0 / 720.0,
+    "units_per_h_bound": 2 * 41 * 9.0,  # two stations, 10 s a unit: 41 picks may start in 400 s
+    "units_score": 2 / 82,
+    "units_per_h_at_pile_on": 720.0,
     "pick_visits": 2,
     "replenishment_visits": 1,
     "units_per_visit": 1.0,
@@ -201,7 +202,7 @@ def test_stations(made):
     assert frame["visit_time_mean_s"].tolist()[:2] == [60.0, 30.0]
     assert frame["busy_s"].tolist() == pytest.approx([15.0, 10.0, 15.0])
     assert frame["active_share"].tolist() == [1.0, 0.5, 1.0]
-    assert frame["units_per_h_bound"].tolist()[:2] == [360.0, 360.0]
+    assert frame["units_per_h_at_pile_on"].tolist()[:2] == [360.0, 360.0]
 
 
 def test_orders(made):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import TYPE_CHECKING
 
 from rmfs.layout import colours
@@ -12,7 +13,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def progression(series: pd.DataFrame, ax: Axes, *, bin_s: float = 600.0) -> None:
+def progression(
+    series: pd.DataFrame, ax: Axes, *, bin_s: float = 600.0, bound_per_h: float | None = None
+) -> None:
     """Draw units per hour as a solid line, km per hour as a dashed one on an axis of its own.
 
     Parameters
@@ -21,6 +24,8 @@ def progression(series: pd.DataFrame, ax: Axes, *, bin_s: float = 600.0) -> None
         The table `series` of a run.
     bin_s
         Length of time that is summed up into one point.
+    bound_per_h
+        Units per hour that no run exceeds, drawn as a dotted line. Default none.
     """
     time_h, units = per_hour(series, "units_picked", bin_s)
     _, metres = per_hour(series, "distance_m", bin_s)
@@ -29,9 +34,13 @@ def progression(series: pd.DataFrame, ax: Axes, *, bin_s: float = 600.0) -> None
     (driven,) = right.plot(
         time_h, metres / 1000.0, color=colours.STORAGE, linestyle="--", label="distance"
     )
+    lines = [picked, driven]
+    if bound_per_h is not None and isfinite(bound_per_h):
+        label = "bound on units picked"
+        lines.append(ax.axhline(bound_per_h, color=colours.OUTLINE, linestyle=":", label=label))
     ax.set_ylim(0, 1.08 * ax.get_ylim()[1])
     right.set_ylim(0, 1.08 * right.get_ylim()[1])
     hours(ax)
     ax.set_ylabel("units picked (1/h)")
     right.set_ylabel("distance (km/h)")
-    ax.legend(handles=[picked, driven], loc="lower right")
+    ax.legend(handles=lines, loc="lower right")

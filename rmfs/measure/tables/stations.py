@@ -8,7 +8,7 @@ import numpy as np
 
 from rmfs.layout.model import PickStation
 from rmfs.measure.steps import Steps, covered
-from rmfs.measure.tables.bound import units_per_h
+from rmfs.measure.tables.at_pile_on import units_per_h
 from rmfs.measure.tables.logs import count
 from rmfs.measure.tables.tidy import tidy
 
@@ -54,8 +54,8 @@ def stations(logs: Logs) -> pd.DataFrame:
             "busy_s": busy,
             "idle_share": 1.0 - busy / logs.duration_s,
             "active_share": [_active_share(logs, one) for one in range(number)],
-            "units_per_h_bound": [
-                _bound(layout, station, piled)
+            "units_per_h_at_pile_on": [
+                _at_pile_on(layout, station, piled)
                 for station, piled in zip(layout.stations, pile_on, strict=True)
             ],
             "units_per_visit": pile_on,
@@ -74,8 +74,8 @@ def busy_until(logs: Logs, station: int, at_s: NDArray[np.float64]) -> NDArray[n
     return covered(own["begin_s"].to_numpy(), own["end_s"].to_numpy(), at_s)
 
 
-def _bound(layout: Layout, station: Station, units_per_visit: float) -> float:
-    """Return the bound of a pick station; without any visit as if pods never changed."""
+def _at_pile_on(layout: Layout, station: Station, units_per_visit: float) -> float:
+    """Return the rate of a pick station; without any visit as if pods never changed."""
     if not isinstance(station, PickStation):
         return float("nan")
     return units_per_h(layout, station, units_per_visit if units_per_visit > 0 else float("inf"))

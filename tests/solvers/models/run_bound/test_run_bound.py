@@ -1,7 +1,7 @@
 """The bound on whole runs: no run of a warehouse that keeps its rules may pass it."""
 
 import dataclasses
-from math import inf, nan
+from math import inf
 
 import numpy as np
 import pytest
@@ -17,7 +17,6 @@ from solvers.models.run_bound import (
     objective,
     single_bounds,
     solve,
-    units_per_h_at_pile_on,
     units_per_h_bound,
     violations,
     visit_legs,
@@ -261,15 +260,6 @@ def test_legs_share_ways_between_stations_in_halves() -> None:
     assert legs.outbound_s.tolist() == [12.0, 20.0]
     alone = visit_legs([20.0], [10.0], [[0.0]], 2.0)
     assert (alone.inbound_s[0], alone.outbound_s[0]) == (22.0, 12.0)
-
-
-def test_the_diagnostic_is_the_published_formula() -> None:
-    # 12 + 3 - 10 = 5 s of a change are not hidden
-    assert units_per_h_at_pile_on(2.0, [10.0], [3.0], [12.0]) == pytest.approx(7200 / 25)
-    assert units_per_h_at_pile_on(2.0, [10.0] * 2, [3.0] * 2, [5.0] * 2) == pytest.approx(720.0)
-    assert units_per_h_at_pile_on(nan, [10.0], [3.0], [5.0]) == 0.0
-    with pytest.raises(ModelError, match="pile_on"):
-        units_per_h_at_pile_on(-1.0, [10.0], [3.0], [5.0])
 
 
 def test_invalid_input_is_refused_by_field() -> None:

@@ -1,4 +1,4 @@
-"""What a pick station could pick at most: from the kinematics in front of it, and the pile-on."""
+"""What a pick station would pick at a given pile-on, if the next pod were always at hand."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) -> float:
-    """Return the largest rate at which a station can pick with a given pile-on.
+    """Return the rate at which a station picks with a given pile-on if it never waits.
 
     Of p units of a visit, all but the last keep robot and station for max(T, K), where T is
     `unit_transfer_s` and K is `unit_pick_s`. After the last the robot leaves when K is over, the
@@ -44,21 +44,26 @@ def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) ->
 def change_s(layout: Layout, waypoint: int) -> float:
     """Return the least time between a robot's leave to go and the next one's arrival, in s.
 
-    The robot turns to an edge that leads away and clears the waypoint when it reaches the next one;
-    only then may another enter the last edge before the waypoint. The fastest robot counts, and
-    runs that go on behind these two edges pass their ends at full speed.
+    The robot turns from the edge it came on to one that leads away, and clears the waypoint when it
+    reaches the next one; only then may another enter the last edge before the waypoint. The fastest
+    robot counts, and runs that go on behind these two edges pass their ends at full speed.
     """
-    return min(
-        (
-            _drive_s(length_out, kind.acceleration_m_s2, kind.top_speed_m_s)
-            + _turn_s(heading_in, heading_out, kind)
-            + _drive_s(length_in, kind.deceleration_m_s2, kind.top_speed_m_s)
-            for length_in, heading_in in _edges_in(layout, waypoint)
-            for length_out, heading_out in _edges_out(layout, waypoint)
-            for kind in layout.robot_kinds
-        ),
-        default=0.0,
+    inward, outward = list(_edges_in(layout, waypoint)), list(_edges_out(layout, waypoint))
+    if not inward or not outward:
+        return 0.0
+    kinds = layout.robot_kinds
+    leave_s = min(
+        _drive_s(length, kind.acceleration_m_s2, kind.top_speed_m_s) + _turn_s(came, heading, kind)
+        for _, came in inward
+        for length, heading in outward
+        for kind in kinds
     )
+    come_s = min(
+        _drive_s(length, kind.deceleration_m_s2, kind.top_speed_m_s)
+        for length, _ in inward
+        for kind in kinds
+    )
+    return leave_s + come_s
 
 
 def _drive_s(length_m: float, acceleration_m_s2: float, top_speed_m_s: float) -> float:

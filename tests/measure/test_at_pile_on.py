@@ -1,4 +1,4 @@
-"""The bound of a pick station against figures worked out on paper."""
+"""What a pick station does at a pile-on, against figures worked out on paper."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from scripted_trace import grid
 
 from rmfs.layout.model import PickStation
-from rmfs.measure.tables.bound import change_s, units_per_h
+from rmfs.measure.tables.at_pile_on import change_s, units_per_h
 
 
 def street(transfer_s, pick_s):
@@ -55,7 +55,7 @@ def test_the_change_of_robots():
         (0, 0, inf, inf),
     ],
 )
-def test_the_bound(transfer_s, pick_s, units, rate):
+def test_the_rate(transfer_s, pick_s, units, rate):
     layout, station = street(transfer_s, pick_s)
     kind = replace(
         layout.robot_kinds[0], acceleration_m_s2=0.5, deceleration_m_s2=0.5, top_speed_m_s=1.5

@@ -1,0 +1,53 @@
+"""The proven bound on a run, which the optimisation package works out.
+
+Nothing of `solvers` is imported here: the bound is found by its name, like the controllers that
+ask optimisers.
+"""
+
+from __future__ import annotations
+
+import importlib
+import warnings
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rmfs.control.travel import TravelTimes
+    from rmfs.layout.model import Layout
+    from rmfs.scenario import SkuSet
+
+BOUND = "solvers.run_bound:units_per_h_bound"
+"""Module and function that work it out."""
+
+
+class BoundExceededWarning(UserWarning):
+    """A run did more than is possible: a defect of the simulator or of the bound's proof."""
+
+
+def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration_s: float) -> float:
+    """Return the units per hour that no run of a warehouse exceeds (docs: bounds).
+
+    Parameters
+    ----------
+    times
+        Traffic, which knows how long ways take at least.
+    duration_s
+        Length of the window in which units are counted.
+    """
+    module, _, name = BOUND.partition(":")
+    bound: float = getattr(importlib.import_module(module), name)(layout, skus, times, duration_s)
+    return bound
+
+
+def warn_if_exceeded(units_per_h: float, bound: float) -> None:
+    """Warn of a run that picked more than any run can.
+
+    Parameters
+    ----------
+    units_per_h
+        What it picked.
+    bound
+        What is possible, end effects included; see `units_per_h_bound`.
+    """
+    if units_per_h > bound:
+        told = f"{units_per_h} units per hour were picked, and no run can pick more than {bound}"
+        warnings.warn(f"{told}: please report this defect", BoundExceededWarning, stacklevel=2)

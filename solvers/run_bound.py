@@ -1,0 +1,125 @@
+"""The proven bound on the runs of a warehouse: its layout and SKUs as the model's input.
+
+What is put in depends on nothing a controller, a demand or a seed can change: kinematics, handling
+times, and what fits into pods. So one number holds for all runs of a layout with a set of SKUs.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.measure.tables.at_pile_on import change_s
+from solvers.models.run_bound import (
+    Legs,
+    PickStations,
+    Refill,
+    RunBound,
+    Stock,
+    solve,
+    visit_legs,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.travel import TravelTimes
+    from rmfs.layout.model import Layout
+    from rmfs.scenario import SkuSet
+
+_SAFE = 1.0 - 1e-6
+"""Travel times are sums of rounded microseconds: they are taken a little shorter."""
+
+
+def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration_s: float) -> float:
+    """Return the units per hour that no run exceeds; infinite if some handling takes no time.
+
+    Parameters
+    ----------
+    layout, skus
+        The warehouse.
+    times
+        Unhindered travel times between its waypoints.
+    duration_s
+        Length of the window in which units are counted, in s.
+    """
+    data = run_bound(layout, skus, times, duration_s)
+    return math.inf if data is None else solve(data).bound
+
+
+def run_bound(
+    layout: Layout, skus: SkuSet, times: TravelTimes, duration_s: float
+) -> RunBound | None:
+    """Return the model's input; nothing where some handling takes no time: there is no bound.
+
+    Parameters
+    ----------
+    layout, skus, times, duration_s
+        As for `units_per_h_bound`.
+    """
+    picking, refilling = layout.pick_stations, layout.replenishment_stations
+    at_least_s = [
+        *(max(one.unit_transfer_s, one.unit_pick_s) for one in picking),
+        *(one.bundle_transfer_s for one in refilling),
+    ]
+    if not all(at_least_s):
+        return None
+    legs = _legs(layout, times)
+    number = len(picking)
+    fits = np.floor(layout.pod_capacity / skus.space_per_unit.min() * (1.0 + 1e-9)).astype(np.int64)
+    largest = max(int(fits.max(initial=0)), 1)
+    return RunBound(
+        duration_s,
+        layout.robots,
+        PickStations(
+            np.array([station.unit_transfer_s for station in picking]),
+            np.array([station.unit_pick_s for station in picking]),
+            np.array([change_s(layout, station.waypoint) for station in picking]) * _SAFE,
+            legs.inbound_s[:number],
+            legs.outbound_s[:number],
+            np.array([station.order_slots for station in picking], np.int64),
+        ),
+        # a bundle has a unit at least and must fit into a pod
+        Refill(
+            np.array([station.bundle_transfer_s for station in refilling]),
+            legs.inbound_s[number:],
+            legs.outbound_s[number:],
+            largest,
+            largest,
+        ),
+        Stock(fits, largest),
+    )
+
+
+def _legs(layout: Layout, times: TravelTimes) -> Legs:
+    """Return the least robot time of the ways of a visit, per station."""
+    waypoints = [station.waypoint for station in layout.stations]
+    to = np.array([_fastest(layout, times.travel_times_to, one) for one in waypoints])
+    away = np.array([_fastest(layout, times.travel_times_from, one) for one in waypoints])
+    shape = (len(waypoints), layout.waypoints)
+    to, away = to.reshape(shape), away.reshape(shape)
+    return visit_legs(
+        _finite(to[:, layout.is_storage].min(axis=1, initial=math.inf)),
+        _finite(away[:, layout.is_storage].min(axis=1, initial=math.inf)),
+        to[:, waypoints].T,
+        min((kind.pod_transfer_s for kind in layout.robot_kinds), default=0.0) * _SAFE,
+    )
+
+
+def _fastest(
+    layout: Layout, travel_times: Callable[..., NDArray[np.float64]], waypoint: int
+) -> NDArray[np.float64]:
+    """Return the times of the robot that is fastest on each way, with a pod."""
+    of_each_kind = np.unique(layout.robot_kind, return_index=True)[1]
+    tables = [travel_times(waypoint, True, int(robot)) for robot in of_each_kind]
+    fastest: NDArray[np.float64] = np.min(tables, axis=0, initial=math.inf) * _SAFE
+    return fastest
+
+
+def _finite(time_s: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Let a way that does not exist cost nothing, which is safe."""
+    return np.where(np.isfinite(time_s), time_s, 0.0)
