@@ -17,6 +17,18 @@ class AssignOrder(NamedTuple):
     station: int
 
 
+class AssignLines(NamedTuple):
+    """POA: put some lines of an order of the backlog on a pick station, those of these SKUs.
+
+    The order is split: the other lines stay in the backlog. Lines of an order that has a part at
+    the station already join it, so that it takes one slot there.
+    """
+
+    order: Order
+    station: int
+    skus: tuple[int, ...]
+
+
 class QueueOrder(NamedTuple):
     """POA: let an order of the backlog join the pool of a pick station.
 
@@ -119,6 +131,7 @@ class Exchange(NamedTuple):
 
 Decision = (
     AssignOrder
+    | AssignLines
     | QueueOrder
     | SendBundle
     | PromiseBundle

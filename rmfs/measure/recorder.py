@@ -255,8 +255,8 @@ def order_row(order: Order) -> tuple[Any, ...]:
     return (
         order.index,
         order.station,
-        len(order.lines),
-        sum(line.units for line in order.lines),
+        len(order.all_lines),
+        sum(line.units for line in order.all_lines),
         order.created_s,
         order.due_s,
         order.assigned_s,

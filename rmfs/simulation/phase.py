@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rmfs.control.choices import Choice
     from rmfs.control.settings import ControllerSettings
     from rmfs.simulation.simulation import Simulation
-    from rmfs.world.orders import Bundle
+    from rmfs.world.orders import Bundle, Order
 
 # the steps of the phase in their order; the earliest one that is due comes next
 _ANSWERS = 0
@@ -91,6 +91,7 @@ class DecisionPhase:
             say.ReleasePod: self._release_pod,
             say.SendBundle: self._send_bundle,
             say.AssignOrder: self._assign_order,
+            say.AssignLines: self._assign_lines,
             say.QueueOrder: self._queue_order,
             say.BringForPicks: dispatch.bring_for_picks,
             say.BringForBundles: dispatch.bring_for_bundles,
@@ -356,8 +357,13 @@ class DecisionPhase:
         self.signal(Trigger.BUNDLE_ASSIGNED, bundle)
 
     def _assign_order(self, decision: say.AssignOrder) -> None:
-        order = decision.order
-        self._world.assign_order(order, decision.station)
+        self._world.assign_order(decision.order, decision.station)
+        self._order_assigned(decision.order)
+
+    def _assign_lines(self, decision: say.AssignLines) -> None:
+        self._order_assigned(self._world.assign_lines(*decision))
+
+    def _order_assigned(self, order: Order) -> None:
         self._simulation.late_binding.order_assigned(order)
         self._simulation.observers.order_assigned(order)
         self.signal(Trigger.ORDER_ASSIGNED, order)

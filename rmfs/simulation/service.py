@@ -99,8 +99,11 @@ class PickService:
             self.go_on()
             return
         for order in self._finished:
-            simulation.world.complete_order(order)
-            simulation.observers.order_completed(order)
+            if order.unpicked_units:
+                continue  # lines have joined this part of an order meanwhile
+            complete = simulation.world.complete_order(order)
+            if complete is not None:
+                simulation.observers.order_completed(complete)
             simulation.phase.signal(Trigger.ORDER_COMPLETED, order)
         self._finished.clear()
         # an order that takes the free slot may still be added to the present task

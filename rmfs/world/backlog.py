@@ -113,6 +113,15 @@ class OrderBacklog:
         order = line.order
         self._units[self._row_of[order.index], order.lines.index(line)] = line.open_units
 
+    def lines_changed(self, order: Order) -> None:
+        """Take note that an order has lost lines."""
+        row = self._row_of[order.index]
+        self._sku[row] = 0
+        self._units[row] = 0
+        for column, line in enumerate(order.lines):
+            self._sku[row, column] = line.sku
+            self._units[row, column] = line.open_units
+
     def queue_changed(self, order: Order) -> None:
         """Take note that an order has joined or left a pool."""
         self._queued_at[self._row_of[order.index]] = order.queued_at

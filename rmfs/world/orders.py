@@ -5,7 +5,7 @@ Times are simulated seconds and nan until the event has happened; indices are -1
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import nan
 
 
@@ -38,6 +38,10 @@ class OrderLine:
 class Order:
     """A pick order: in the backlog, then on one pick station until it is complete.
 
+    An order may be split: then some of its lines go to a station as a *part*, an order of its own
+    that takes a slot there, while the others stay in the backlog or make further parts. Of the
+    parts of an order there is one at most at a station. It is complete when all its parts are.
+
     Attributes
     ----------
     index
@@ -50,6 +54,12 @@ class Order:
         The pick station, or -1 while in the backlog.
     queued_at
         The pick station in whose pool an order of the backlog is queued, or -1.
+    whole
+        The order this one is a part of; None if it is no part.
+    parts
+        Parts split off so far; their lines are no longer among those of the order.
+    slots_taken
+        Slots that the order and its parts have at present.
     """
 
     index: int
@@ -63,6 +73,25 @@ class Order:
     completed_s: float = nan
     queued_at: int = -1
     queued_s: float = nan
+    whole: Order | None = None
+    parts: list[Order] = field(default_factory=list)
+    slots_taken: int = 0
+
+    @property
+    def all_lines(self) -> tuple[OrderLine, ...]:
+        """Its lines as the customer ordered them, those of its parts included."""
+        return sum((part.lines for part in self.parts), self.lines)
+
+    def take_over(self, lines: tuple[OrderLine, ...]) -> None:
+        """Make lines of another order lines of this one; none of them is bound to a pod yet."""
+        giver = lines[0].order
+        giver.lines = tuple(line for line in giver.lines if line not in lines)
+        self.lines += lines
+        for line in lines:
+            line.order = self
+        for order, sign in ((giver, -1), (self, 1)):
+            order.open_units += sign * sum(line.open_units for line in lines)
+            order.unpicked_units += sign * sum(line.open_units for line in lines)
 
     @classmethod
     def of(

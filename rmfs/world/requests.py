@@ -6,6 +6,8 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -39,11 +41,15 @@ class OpenRequests:
 
     def add(self, order: Order) -> None:
         """Take in the requests of an order that are open."""
-        for line in order.lines:
+        self.add_lines(order.lines)
+
+    def add_lines(self, lines: Iterable[OrderLine]) -> None:
+        """Take in the requests of lines that are open."""
+        for line in lines:
             if line.open_units:
                 self.lines.setdefault(line.sku, deque()).append(line)
                 self._need[line.sku] += line.open_units
-        self.units += order.open_units
+                self.units += line.open_units
         self.version += 1
 
     def remove(self, order: Order) -> None:

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+from math import isnan
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rmfs.world.backlog import BundleBacklog, OrderBacklog
 from rmfs.world.inventory import Inventory, read_only
+from rmfs.world.orders import Order
 from rmfs.world.robots import Robot
 from rmfs.world.stations import PickStation, ReplenishmentStation
 from rmfs.world.storage import Storage
 from rmfs.world.tasks import Pick, Task, TaskKind
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from numpy.typing import NDArray
 
     from rmfs.layout.model import Layout
     from rmfs.scenario import SkuSet
-    from rmfs.world.orders import Bundle, Order
+    from rmfs.world.orders import Bundle, OrderLine
 
 
 class World:
@@ -181,6 +185,8 @@ class World:
         Requests of a queued order to which pods were bound meanwhile stay bound.
         """
         target = self.pick_stations[station]
+        if order.index in target.orders:
+            raise ValueError(f"order {order.index} has a part at station {station}")
         if not target.active or target.free_slots <= 0:
             raise ValueError(f"station {station} takes no order now")
         if order.queued_at >= 0:
@@ -189,11 +195,57 @@ class World:
             self._leave_pool(order)
         self.orders.remove(order)
         order.station = station
-        order.assigned_s = self.now_s
+        if isnan(order.assigned_s):
+            order.assigned_s = self.now_s
+        order.slots_taken += 1
         target.orders[order.index] = order
-        target.requests.add(order)
-        for line in order.lines:
-            self._lines[station, line.sku] += 1
+        self._open(target, order.lines)
+
+    def assign_lines(self, order: Order, station: int, skus: Collection[int]) -> Order:
+        """Put some lines of an order of the backlog on a pick station: the order is split.
+
+        They join the part of the order that is there, or become a part of their own, which takes
+        a slot. If they are all that is left and there is no such part, the order takes the slot.
+
+        Returns
+        -------
+        Order
+            What now is at the station: the part, or the order itself.
+        """
+        target = self.pick_stations[station]
+        lines = tuple(line for line in order.lines if line.sku in skus)
+        if not lines or order not in self.orders or order.queued_at >= 0:
+            raise ValueError(f"order {order.index} cannot give these lines")
+        part = target.orders.get(order.index)
+        if part is None:
+            if len(lines) == len(order.lines):
+                self.assign_order(order, station)
+                return order
+            if not target.active or target.free_slots <= 0:
+                raise ValueError(f"station {station} takes no order now")
+            now_s = self.now_s
+            part = Order(
+                order.index, order.created_s, order.due_s, (), 0, 0, station, now_s, whole=order
+            )
+            order.parts.append(part)
+            order.slots_taken += 1
+            target.orders[order.index] = part
+        if isnan(order.assigned_s):
+            order.assigned_s = self.now_s
+        part.take_over(lines)
+        if order.lines:
+            self.orders.lines_changed(order)
+        else:
+            self.orders.remove(order)
+            order.station = station
+        self._open(target, lines)
+        return part
+
+    def _open(self, station: PickStation, lines: tuple[OrderLine, ...]) -> None:
+        """Open the extract requests of lines that have just come to a station with their order."""
+        station.requests.add_lines(lines)
+        for line in lines:
+            self._lines[station.index, line.sku] += 1
             self.inventory.commit(line.sku, line.open_units)
 
     def _leave_pool(self, order: Order) -> None:
@@ -202,15 +254,28 @@ class World:
         station.queued_requests.remove(order)
         order.queued_at = -1
 
-    def complete_order(self, order: Order) -> None:
-        """Take an order whose units are all picked off its station."""
+    def complete_order(self, order: Order) -> Order | None:
+        """Take an order, or a part of one, whose units are all picked off its station.
+
+        Returns
+        -------
+        Order or None
+            The order that is complete now as the customer wants it; None if other lines of it are
+            still open.
+        """
         if order.unpicked_units:
             raise ValueError(f"order {order.index} lacks {order.unpicked_units} units")
         del self.pick_stations[order.station].orders[order.index]
         for line in order.lines:
             self._lines[order.station, line.sku] -= 1
         order.completed_s = self.now_s
+        whole = order if order.whole is None else order.whole
+        whole.slots_taken -= 1
+        if whole.slots_taken or whole in self.orders:
+            return None
+        whole.completed_s = self.now_s
         self.orders_completed += 1
+        return whole
 
     # --- bundles --------------------------------------------------------------------------------
 
