@@ -103,7 +103,9 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
     },
 }
 
-_SOLVER_BACKED: dict[Problem, dict[str, str]] = {}
+_SOLVER_BACKED: dict[Problem, dict[str, str]] = {
+    Problem.POA: {"pile-on": "solvers.control.pile_on:PileOnControl"},
+}
 """Controllers of the same distribution that ask optimisers."""
 
 

@@ -39,7 +39,10 @@ class PhaseConsult:
             target = self._world.pick_stations[station]
             return self._number(Problem.PPS, pps, lambda: pps.pick_pod(robot, target))
         other = self._world.replenishment_station(station)
-        return self._number(Problem.PPS, pps, lambda: pps.replenishment_pod(robot, other))
+        # RPS chose the pods of the bundles; which of them comes first is not left to a model
+        return self._number(
+            Problem.PPS, pps, lambda: pps.replenishment_pod(robot, other), modelled=False
+        )
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
         """Ask PPS for the next station of a carried pod."""
@@ -63,12 +66,17 @@ class PhaseConsult:
         return move
 
     def _number(
-        self, problem: Problem, controller: Controller[Any], question: Callable[[], int]
+        self,
+        problem: Problem,
+        controller: Controller[Any],
+        question: Callable[[], int],
+        modelled: bool = True,
     ) -> int:
         """Ask for a number; -1 is no decision."""
         former, controller.basis = controller.basis, None
         start = perf_counter_ns()
         number = question()
-        self._phase.consulted(problem, controller, perf_counter_ns() - start, number >= 0)
+        spent_ns = perf_counter_ns() - start
+        self._phase.consulted(problem, controller, spent_ns, number >= 0, modelled)
         controller.basis = former
         return number

@@ -240,12 +240,17 @@ class DecisionPhase:
             self._set_alarm(problem)
 
     def consulted(
-        self, problem: Problem, controller: Controller[Any], wall_ns: int, decided: bool
+        self,
+        problem: Problem,
+        controller: Controller[Any],
+        wall_ns: int,
+        decided: bool,
+        modelled: bool = True,
     ) -> None:
-        """Take note that TA asked another controller."""
+        """Take note that TA asked another controller; `modelled`: a choice that models take."""
         self._nested_ns += wall_ns
         self._record(problem, wall_ns, int(decided), int(decided and controller.basis is None))
-        if decided and controller.optimisers:
+        if decided and controller.optimisers and (modelled or controller.basis is not None):
             self.decided(problem, controller)
 
     def decided(self, problem: Problem, controller: Controller[Any]) -> None:
@@ -357,8 +362,7 @@ class DecisionPhase:
         self.signal(Trigger.BUNDLE_ASSIGNED, bundle)
 
     def _assign_order(self, decision: say.AssignOrder) -> None:
-        self._world.assign_order(decision.order, decision.station)
-        self._order_assigned(decision.order)
+        self._order_assigned(self._world.assign_order(*decision))
 
     def _assign_lines(self, decision: say.AssignLines) -> None:
         self._order_assigned(self._world.assign_lines(*decision))

@@ -179,14 +179,20 @@ class World:
         self._leave_pool(order)
         self.orders.queue_changed(order)
 
-    def assign_order(self, order: Order, station: int) -> None:
+    def assign_order(self, order: Order, station: int) -> Order:
         """Put an order of the backlog on a pick station and open its extract requests.
 
-        Requests of a queued order to which pods were bound meanwhile stay bound.
+        Requests of a queued order to which pods were bound meanwhile stay bound. What is left of a
+        split order joins its part at the station, if there is one.
+
+        Returns
+        -------
+        Order
+            What has the slot: the order, or its part.
         """
         target = self.pick_stations[station]
         if order.index in target.orders:
-            raise ValueError(f"order {order.index} has a part at station {station}")
+            return self.assign_lines(order, station, [line.sku for line in order.lines])
         if not target.active or target.free_slots <= 0:
             raise ValueError(f"station {station} takes no order now")
         if order.queued_at >= 0:
@@ -200,6 +206,7 @@ class World:
         order.slots_taken += 1
         target.orders[order.index] = order
         self._open(target, order.lines)
+        return order
 
     def assign_lines(self, order: Order, station: int, skus: Collection[int]) -> Order:
         """Put some lines of an order of the backlog on a pick station: the order is split.
@@ -219,8 +226,7 @@ class World:
         part = target.orders.get(order.index)
         if part is None:
             if len(lines) == len(order.lines):
-                self.assign_order(order, station)
-                return order
+                return self.assign_order(order, station)
             if not target.active or target.free_slots <= 0:
                 raise ValueError(f"station {station} takes no order now")
             now_s = self.now_s

@@ -92,10 +92,32 @@ class WorldMachine(RuleBasedStateMachine):
             if not self.world.pick_stations[order.queued_at].free_slots:
                 return
             station = order.queued_at
+        lines = order.lines
         self.world.assign_order(order, station)
-        for line in order.lines:
+        self.opened(station, lines)
+
+    def opened(self, station, lines) -> None:
+        for line in lines:
             self.naive.wanted_in_backlog[line.sku] -= line.open_units
             self.naive.open_at[station, line.sku] += line.open_units
+
+    @rule()
+    def assign_lines(self) -> None:
+        """One line of an order, or more, of which its part at the station may have others."""
+        order = self.any_of(order for order in self.world.orders if order.queued_at < 0)
+        station = self.any_of(self.world.pick_stations)
+        if order is None or not (station.free_slots or order.index in station.orders):
+            return
+        lines = tuple(line for line in order.lines if self.any_of([True, False]))
+        stock = self.world.inventory.free_stock
+        if not lines or any(stock[line.sku] < line.units for line in lines):
+            return
+        units = sum(line.units for line in order.all_lines)
+        part = self.world.assign_lines(order, station.index, [line.sku for line in lines])
+        assert set(lines) <= set(part.lines)
+        assert part is station.orders[order.index]
+        assert units == sum(line.units for line in order.all_lines)
+        self.opened(station.index, lines)
 
     @rule(station=st.integers(0, 1))
     def queue_order(self, station) -> None:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rmfs.control.asks import Ask
-    from rmfs.control.decisions import AssignOrder, QueueOrder
+    from rmfs.control.decisions import AssignLines, AssignOrder, QueueOrder
 
 P = TypeVar("P", bound=Parameters)
 
@@ -37,5 +37,5 @@ class PickOrderAssignment(Controller[P]):
     )
 
     @abstractmethod
-    def decide(self) -> Iterator[AssignOrder | QueueOrder | Ask[Any]]:
+    def decide(self) -> Iterator[AssignOrder | AssignLines | QueueOrder | Ask[Any]]:
         """Yield an order and a station, again and again, until nothing is to be assigned now."""

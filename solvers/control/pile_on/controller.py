@@ -1,0 +1,173 @@
+"""POA pile-on: orders and pods decided together by a model, with PPS as its dummy."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from rmfs.control.asks import Ask
+from rmfs.control.poa import PickOrderAssignment
+from rmfs.control.pps.lexicographic import Lexicographic
+from rmfs.control.problems import Problem, Trigger
+from solvers.control.pile_on import snapshot
+from solvers.control.pile_on.parameters import PileOnParameters
+from solvers.control.pile_on.plan import Plan, Planned
+from solvers.control.pile_on.question import Question, solve
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from rmfs.control.asks import Call
+    from rmfs.control.decisions import AssignLines, AssignOrder
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+    from rmfs.world.stations import PickStation, ReplenishmentStation
+    from solvers.control.pile_on.plan import Item
+
+    Decision = Ask[Question] | AssignOrder | AssignLines
+
+
+class PileOnControl(PickOrderAssignment[PileOnParameters]):
+    """Keeps a plan of orders for slots and pods for robots, and asks the model to go on with it.
+
+    The model is asked, at most once per `buffer_s`, when a station runs out of work within the
+    horizon, when a pod reaches a station, and when a slot is free for which nothing is planned. It
+    says which orders go where and which pods are called for them; *prospects* too, orders that the
+    same pods can serve as soon as slots are free. All this is kept in a plan, from which slots and
+    robots are served until something no longer holds.
+
+    Robots get the pods called for their station, the nearest first. The heuristics are pod match
+    if the optimiser fails, and PPS lexicographic, with its defaults, for open requests that no pod
+    called or under way can serve, and for replenishment.
+    """
+
+    parameters_model = PileOnParameters
+    decides: ClassVar[frozenset[Problem]] = frozenset({Problem.PPS})
+    subscriptions = frozenset({Trigger.POD_AT_STATION, Trigger.ROBOT_FREE})
+    hears = frozenset({Trigger.POD_AT_STATION})
+    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.pile_on.question",)
+
+    def __init__(self, parameters: PileOnParameters, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._heuristic = Lexicographic(Lexicographic.parameters_model(), view, rng)
+        self._plan = Plan(view, parameters.kept_slots)
+        self._asked_s = -inf
+        self._arrived = True
+        self._wants_to_ask = False
+
+    # --- orders ---------------------------------------------------------------------------------
+
+    def hear(self, trigger: Trigger, subject: Any) -> None:
+        """Take note of a pod that can be served: what it has left should be used."""
+        self._arrived = True
+
+    def next_event_s(self) -> float:
+        """When the optimiser may be asked again, if it is to be asked."""
+        return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
+
+    def decide(self) -> Iterator[Decision]:
+        """Fill slots by the plan, and ask if it has to be extended."""
+        yield from self._carry_out()
+        self._wants_to_ask = not self.in_flight and self._is_short()
+        if not self._wants_to_ask or self.view.now_s < self._asked_s + self.parameters.buffer_s:
+            return
+        self._asked_s = self.view.now_s
+        self._wants_to_ask = False
+        taken = snapshot.take(self.view, self._plan, self.parameters)
+        self._arrived = False
+        if taken is not None:
+            yield self._question(taken)
+
+    def answered(self, call: Call) -> Iterator[Decision]:
+        """Take what still holds of an answer into the plan, and carry it out as far as possible."""
+        taken: snapshot.Snapshot = call.ask.memo
+        if call.solution is not None:
+            self._extend(call.solution, taken.items, call)
+        else:
+            self.basis = None
+            question: Question = call.ask.question
+            rule = Question(
+                question.data, question.may_call, "greedy", question.limits, question.pruning
+            )
+            found = solve(rule).solution
+            assert found is not None
+            self._extend(found, taken.items, None)
+        yield from self._carry_out()
+
+    def _is_short(self) -> bool:
+        """Whether the plan should be extended."""
+        if self._arrived:
+            return True
+        given = self.parameters
+        for station in self.view.pick_stations:
+            if station.free_slots > 0 and not self._plan.items[station.index]:
+                return True
+            if given.when_needed and not self._plan.pods[station.index]:
+                units = sum(len(task.picks) for task in station.tasks.values())
+                seconds = self.view.layout.pick_stations[station.index].unit_transfer_s
+                if units * seconds < given.horizon_s:
+                    return True
+        return False
+
+    def _question(self, taken: snapshot.Snapshot) -> Ask[Question]:
+        given, data = self.parameters, taken.data
+        question = Question(data, taken.may_call, given.method, given.limits, given.pruning)
+        sizes = {
+            "stations": int((data.slots > 0).sum()),
+            "orders": data.orders,
+            "lines": data.lines,
+            "pods": int(data.available.sum()),
+            "skus": data.skus,
+        }
+        return Ask(solve, question, sizes, taken)
+
+    def _extend(
+        self, solution: Mapping[str, Any], items: Sequence[Item], call: Call | None
+    ) -> None:
+        """Add to the plan what can still be done."""
+        view, plan = self.view, self._plan
+        pod_station = np.asarray(solution["pod_station"])
+        for pod in np.flatnonzero(pod_station >= 0).tolist():
+            if view.storage.is_at_hand[pod] and not any(pod in pods for pods in plan.pods):
+                plan.pods[int(pod_station[pod])][pod] = call
+            elif call is not None:
+                call.stale += 1
+        known = plan.keys()
+        for station_of in (np.asarray(solution["station"]), np.asarray(solution["prospect"])):
+            for number in np.flatnonzero(station_of >= 0).tolist():
+                item = items[number]
+                if item.waits(view) and item.key not in known:
+                    plan.items[int(station_of[number])].append(Planned(item, call))
+                elif call is not None:
+                    call.stale += 1
+
+    def _carry_out(self) -> Iterator[Decision]:
+        """Put planned orders on free slots."""
+        for station in self.view.pick_stations:
+            for planned in self._plan.due(station):
+                self.basis = planned.call
+                yield planned.item.decision(station.index)
+
+    # --- pods -----------------------------------------------------------------------------------
+
+    def pick_pod(self, robot: Robot, station: PickStation) -> int:
+        """Give a robot the nearest of the pods called, or what the heuristic says if none is."""
+        called = self._plan.pods[station.index]
+        pods = [pod for pod in called if self._plan.useful(pod, station)]
+        if pods:
+            at = self.view.storage.pod_waypoint[pods]
+            pod = pods[int(self.view.travel.estimate_s(robot.waypoint, at).argmin())]
+            self.basis = called.pop(pod)
+            return pod
+        missing = self.view.need[station.index] > self.view.inventory.inbound[station.index]
+        return self._heuristic.pick_pod(robot, station) if missing.any() and not called else -1
+
+    def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
+        """Ask the heuristic."""
+        return self._heuristic.replenishment_pod(robot, station)
+
+    def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
+        """Ask the heuristic."""
+        return self._heuristic.next_station(robot, stations)

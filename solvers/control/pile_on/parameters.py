@@ -1,0 +1,55 @@
+"""What can be set of the joint control of orders and pods."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import pydantic
+
+from solvers.control.parameters import SearchParameters
+from solvers.models.pile_on import Pruning, Weights
+
+NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
+Count = Annotated[int, pydantic.Field(ge=1)]
+Method = Literal["joint", "greedy", "hadgs"]
+
+
+class PileOnParameters(SearchParameters):
+    """Parameters of POA pile-on."""
+
+    method: Method = "joint"
+    """Who decides: `joint` (pod match, improved by CP-SAT), or a heuristic alone: `greedy` (pod
+    match) or `hadgs` (Jiao et al. 2025)."""
+    split: bool = False
+    """Whether the lines of an order may go to different stations at different times."""
+    when_needed: bool = True
+    """Whether pods are called only for stations that run out of work within the horizon; otherwise
+    whenever a slot can be filled, as in M1G and HADGS."""
+    horizon_s: NotNegative = 90.0
+    """Seconds of work below which a station needs another pod."""
+    buffer_s: NotNegative = 3.0
+    """Seconds for which decisions are collected before the optimiser is asked again."""
+    work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.02
+    """Limit of the search in deterministic seconds of CP-SAT: about the same in wall time."""
+    reward_s: NotNegative = 15.0
+    """Seconds of a robot that one more order (if orders are split: line) of a visit is worth."""
+    visit_s: NotNegative = 60.0
+    """Seconds that a visit costs a robot besides the way to the station."""
+    age_reward: NotNegative = 0.005
+    """What a second of waiting adds to the worth of an order that gets a slot."""
+    kept_slots: Annotated[int, pydantic.Field(ge=0)] = 1
+    """Slots of each station kept for what the pod at its head can serve."""
+    pods_per_sku: Count = 4
+    """Candidate pods per wanted SKU and station that CP-SAT is given."""
+    orders_per_slot: Count = 16
+    """Candidate orders per free slot that CP-SAT is given."""
+
+    @property
+    def pruning(self) -> Pruning:
+        """How many candidates are kept."""
+        return Pruning(pods_per_sku=self.pods_per_sku, orders_per_slot=self.orders_per_slot)
+
+    @property
+    def weights(self) -> Weights:
+        """The objective, in seconds of a robot."""
+        return Weights(visit=self.visit_s, complete=self.reward_s)

@@ -1,0 +1,169 @@
+"""What has been decided and not yet done: orders that wait for a slot, pods for a robot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rmfs.control.decisions import AssignLines, AssignOrder
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.control.asks import Call
+    from rmfs.control.view import View
+    from rmfs.world.orders import Order, OrderLine
+    from rmfs.world.stations import PickStation
+
+
+@dataclass(frozen=True, eq=False)
+class Item:
+    """An order, or one line of an order that may be split.
+
+    Attributes
+    ----------
+    line
+        The line; None for the whole order.
+    """
+
+    order: Order
+    line: OrderLine | None = None
+
+    @property
+    def lines(self) -> tuple[OrderLine, ...]:
+        """The lines it stands for."""
+        return self.order.lines if self.line is None else (self.line,)
+
+    @property
+    def key(self) -> tuple[int, int]:
+        """Tells one from another: index of the order and SKU, or -1."""
+        return self.order.index, -1 if self.line is None else self.line.sku
+
+    def waits(self, view: View) -> bool:
+        """Whether it is still in the backlog."""
+        return self.order in view.orders and (self.line is None or self.line in self.order.lines)
+
+    def decision(self, station: int) -> AssignOrder | AssignLines:
+        """Put it on a station."""
+        if self.line is None:
+            return AssignOrder(self.order, station)
+        return AssignLines(self.order, station, (self.line.sku,))
+
+
+@dataclass(frozen=True, eq=False)
+class Planned:
+    """An item for a station, and the call that decided so (None: the heuristic)."""
+
+    item: Item
+    call: Call | None
+
+
+class Plan:
+    """Items that wait for a slot, and pods called that wait for a robot, per pick station.
+
+    A planned item keeps the stock it was planned with: later questions leave it out, and count its
+    units as demand of its station.
+
+    Attributes
+    ----------
+    items
+        Per station, in the order of the decisions.
+    pods
+        Per station, the call that decided so.
+    """
+
+    def __init__(self, view: View, kept_slots: int) -> None:
+        self._view = view
+        self._kept = [min(kept_slots, station.slots - 1) for station in view.pick_stations]
+        self.items: list[list[Planned]] = [[] for _ in view.pick_stations]
+        self.pods: list[dict[int, Call | None]] = [{} for _ in view.pick_stations]
+
+    def keys(self) -> set[tuple[int, int]]:
+        """Keys of all planned items."""
+        return {planned.item.key for items in self.items for planned in items}
+
+    def due(self, station: PickStation) -> Iterator[Planned]:
+        """Yield what can be put on a station now; each is put there before the next is asked for.
+
+        What the pod at the head can serve comes first, and may take the slots kept for that. What
+        no longer holds is dropped, and counted as stale: items that left the backlog, and items
+        whose stock has gone.
+        """
+        self._forget_pods(station)
+        waiting = self.items[station.index]
+        if not waiting or not station.active:
+            return
+        head = self._head(station)
+        if head >= 0:
+            waiting.sort(key=lambda planned: not self._serves(head, planned.item))
+        for planned in list(waiting):
+            item = planned.item
+            if not item.waits(self._view) or not self._covered(item, station):
+                waiting.remove(planned)
+                self._stale(planned.call)
+            elif self._has_slot(item, station, head):
+                waiting.remove(planned)
+                yield planned
+
+    def _has_slot(self, item: Item, station: PickStation, head: int) -> bool:
+        if item.order.index in station.orders:
+            return True
+        if station.free_slots > self._kept[station.index]:
+            return True
+        if station.free_slots <= 0:
+            return False
+        if head >= 0 and self._serves(head, item):
+            return True
+        skus = list(station.requests.lines)
+        return any(
+            self._serves(pod, item) and not self._view.inventory.serves(pod, skus)
+            for pod in self.pods[station.index]
+        )
+
+    def _head(self, station: PickStation) -> int:
+        """The pod at the head of the queue, if it is there for picks; or -1."""
+        if station.robot < 0:
+            return -1
+        pod = self._view.robots[station.robot].pod
+        return pod if pod in station.tasks else -1
+
+    def _serves(self, pod: int, item: Item) -> bool:
+        available = self._view.inventory.available.item
+        return all(available(line.sku, pod) >= line.units for line in item.lines)
+
+    def _covered(self, item: Item, station: PickStation) -> bool:
+        """Whether pods on their way and pods called still have the units to spare."""
+        inventory, index = self._view.inventory, station.index
+        available, need = inventory.available.item, self._view.need.item
+        for line in item.lines:
+            spare = inventory.inbound.item(index, line.sku) - need(index, line.sku)
+            spare += sum(available(line.sku, pod) for pod in self.pods[index])
+            if spare < line.units:
+                return False
+        return True
+
+    def _forget_pods(self, station: PickStation) -> None:
+        """Forget pods that somebody has taken, or that nothing here needs any more."""
+        pods = self.pods[station.index]
+        for pod in list(pods):
+            wanted = self.useful(pod, station) or self._is_planned_for(pod, station)
+            if not (wanted and self._view.storage.is_at_hand[pod]):
+                self._stale(pods.pop(pod))
+
+    def _is_planned_for(self, pod: int, station: PickStation) -> bool:
+        available = self._view.inventory.available.item
+        return any(
+            available(line.sku, pod)
+            for planned in self.items[station.index]
+            for line in planned.item.lines
+        )
+
+    def useful(self, pod: int, station: PickStation) -> bool:
+        """Whether a pod called can serve an open request of its station."""
+        inventory, at_hand = self._view.inventory, self._view.storage.is_at_hand.item
+        return bool(at_hand(pod)) and inventory.serves(pod, list(station.requests.lines))
+
+    @staticmethod
+    def _stale(call: Call | None) -> None:
+        if call is not None:
+            call.stale += 1

@@ -1,0 +1,110 @@
+"""The question for the worker: a snapshot, who decides, and for how long."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rmfs.control.asks import Answer
+from solvers.models.pile_on import (
+    Assignment,
+    Candidates,
+    PileOn,
+    Pruning,
+    everything,
+    greedy,
+    hadgs,
+    neighbourhood,
+    objective,
+    prune,
+)
+from solvers.models.solution import Limits, Solution
+
+SCORED_PER_S = 1e7
+"""Candidates that a rule scores in about a deterministic second."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is to be decided.
+
+    Attributes
+    ----------
+    data
+        The snapshot.
+    may_call
+        Stations to which pods may be called, shape (S,); the others only use what comes anyway.
+    method
+        `joint`, `greedy` or `hadgs`.
+    limits, pruning
+        Of CP-SAT.
+    """
+
+    data: PileOn
+    may_call: NDArray[np.bool_]
+    method: str
+    limits: Limits
+    pruning: Pruning
+
+
+def solve(question: Question) -> Answer:
+    """Decide: a rule first, then CP-SAT from there, a few stations at a time.
+
+    Parameters
+    ----------
+    question
+        What is to be decided.
+
+    Returns
+    -------
+    Answer
+        `station` and `prospect` of each order and `pod_station` of each pod, -1 for none.
+    """
+    began = time.perf_counter()
+    data = question.data
+    rule = hadgs if question.method == "hadgs" else greedy
+    found = rule.solve(data, candidates=_allowed(everything(data), question.may_call))
+    if question.method == "joint":
+        return _improved(question, found, began)
+    return _answer(found.required, found.objective, "rule", found.work, found.wall_s, 0.0)
+
+
+def _improved(question: Question, rule: Solution[Assignment], began: float) -> Answer:
+    data = question.data
+    candidates = _allowed(prune(data, question.pruning), question.may_call)
+    found = neighbourhood.solve(
+        data, question.limits, start=rule.required, candidates=candidates.including(rule.required)
+    )
+    values = found.required
+    work = found.work + rule.work / SCORED_PER_S
+    wall_s = time.perf_counter() - began
+    return _answer(values, objective(data, values), "cp_sat", work, wall_s, found.build_s)
+
+
+def _allowed(candidates: Candidates, may_call: NDArray[np.bool_]) -> Candidates:
+    """Leave out calls to stations that need no pod."""
+    return Candidates(candidates.calls & may_call, candidates.places, candidates.fetches)
+
+
+def _answer(
+    values: Assignment, cost: float, backend: str, work: float, wall_s: float, build_s: float
+) -> Answer:
+    station = np.where(values.slot.any(axis=1), values.slot.argmax(axis=1), -1)
+    solution = {
+        "station": station,
+        "prospect": values.prospect,
+        "pod_station": values.pod_station,
+    }
+    return Answer(
+        solution=solution,
+        objective=cost,
+        bound=float("-inf"),
+        status="feasible",
+        backend=backend,
+        work=work,
+        wall_s=wall_s,
+        build_s=build_s,
+    )

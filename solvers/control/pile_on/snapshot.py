@@ -1,0 +1,162 @@
+"""From the world to the arrays of the pile-on models."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solvers.control.pile_on.plan import Item
+from solvers.models.pile_on import Candidates, PileOn, everything
+from solvers.models.pile_on.draft import Draft
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+    from rmfs.world.stations import PickStation
+    from solvers.control.pile_on.parameters import PileOnParameters
+    from solvers.control.pile_on.plan import Plan
+
+UNREACHABLE_S = 1e5
+"""Time that stands for no way at all."""
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Arrays of one instant and what is behind their numbers.
+
+    Attributes
+    ----------
+    may_call
+        Stations that need a pod, shape (S,).
+    items
+        The order, or line, of each order number of the model.
+    """
+
+    data: PileOn
+    may_call: NDArray[np.bool_]
+    items: Sequence[Item]
+
+
+def take(view: View, plan: Plan, given: PileOnParameters) -> Snapshot | None:
+    """Collect what is to be decided now; None if there is nothing.
+
+    Orders that stock cannot serve are left out, and so is what is planned already: its units are
+    demand of its station, and pods called are on their way as far as the model is concerned. A
+    station gets a slot for each item that pods on their way cover to the full, and one more if it
+    needs a pod; `when_needed = false` gives it all its free slots.
+    """
+    items = _items(view, plan, given.split)
+    open_units = _open_units(view, plan)
+    if not items and not open_units.any():
+        return None
+    data = _arrays(view, plan, given, items, open_units)
+    may_call = np.array([_needs_pod(view, plan, given, s) for s in view.pick_stations])
+    may_call |= (data.shortage > 0).any(axis=1)
+    if given.when_needed:
+        slots = np.minimum(_coverable(data) + may_call, data.slots)
+    else:
+        free = [s.free_slots - len(plan.items[s.index]) for s in view.pick_stations]
+        slots = np.minimum(np.maximum(free, 0), data.slots)
+    if not slots.any() and not data.shortage.any():
+        return None
+    return Snapshot(replace(data, slots=slots), may_call, items)
+
+
+def _items(view: View, plan: Plan, split: bool) -> list[Item]:
+    """Orders, or lines, that wait and are not planned yet, in order of arrival."""
+    orders, stock = view.orders, view.inventory.free_stock
+    taken = plan.keys()
+    if split:
+        found = (Item(order, line) for order in orders for line in order.lines)
+        return [
+            i for i in found if i.lines[0].units <= stock[i.lines[0].sku] and i.key not in taken
+        ]
+    rows = orders.servable(stock).nonzero()[0]
+    rows = rows[np.argsort(orders.index[rows], kind="stable")]
+    found = (Item(orders.at_row[row]) for row in rows.tolist())
+    return [item for item in found if item.key not in taken]
+
+
+def _open_units(view: View, plan: Plan) -> NDArray[np.int64]:
+    """Units that orders at stations, and planned ones, wait for, shape (S, K)."""
+    open_units = view.need.astype(np.int64)
+    for station, planned in enumerate(plan.items):
+        for one in planned:
+            for line in one.item.lines:
+                open_units[station, line.sku] += line.units
+    return open_units
+
+
+def _arrays(
+    view: View,
+    plan: Plan,
+    given: PileOnParameters,
+    items: Sequence[Item],
+    open_units: NDArray[np.int64],
+) -> PileOn:
+    """Build the input; slots are what a station may plan ahead at most."""
+    rows = [
+        (number, line.sku, line.units)
+        for number, item in enumerate(items)
+        for line in sorted(item.lines, key=lambda line: line.sku)
+    ]
+    order, sku, units = np.array(rows, dtype=np.int64).reshape(-1, 3).T
+    asked = np.zeros(open_units.shape[1], dtype=np.bool_)
+    asked[sku] = True
+    wanted = np.flatnonzero(asked | open_units.any(axis=0))
+    pods = view.layout.pods
+    inbound = np.full(pods, -1)
+    for station in view.pick_stations:
+        inbound[list(station.tasks)] = station.index
+        inbound[list(plan.pods[station.index])] = station.index
+    slots = [(s.slots - len(plan.items[s.index])) * s.active for s in view.pick_stations]
+    waited = np.array([view.now_s - item.order.created_s for item in items])
+    return PileOn(
+        slots=np.maximum(slots, 0),
+        line_order=order,
+        line_sku=np.searchsorted(wanted, sku),
+        line_units=units,
+        stock=view.inventory.available[wanted].T.astype(np.int64),
+        travel=_travel(view),
+        available=view.storage.is_at_hand & (inbound < 0),
+        inbound=inbound,
+        open_units=open_units[:, wanted],
+        worth=given.age_reward * np.maximum(waited, 0.0),
+        weights=given.weights,
+    )
+
+
+def _travel(view: View) -> NDArray[np.float64]:
+    """Time of a loaded robot from each pod's place to each pick station, shape (P, S), s."""
+    at = view.storage.pod_waypoint
+    times = [view.travel.to(s.waypoint, loaded=True)[at] for s in view.pick_stations]
+    return np.minimum(np.stack(times, axis=1), UNREACHABLE_S)
+
+
+def _needs_pod(view: View, plan: Plan, given: PileOnParameters, station: PickStation) -> bool:
+    """Whether a station, with no pod called, has less work than the horizon asks for."""
+    if not station.active:
+        return False
+    if not given.when_needed:
+        return True
+    if plan.pods[station.index]:
+        return False
+    bound = sum(len(task.picks) for task in station.tasks.values())
+    planned = sum(line.units for one in plan.items[station.index] for line in one.item.lines)
+    seconds = view.layout.pick_stations[station.index].unit_transfer_s
+    return (bound + planned) * seconds < given.horizon_s
+
+
+def _coverable(data: PileOn) -> NDArray[np.int64]:
+    """How many orders each station can fill from pods on their way alone, shape (S,)."""
+    pairs = everything(data)
+    draft = Draft(data, Candidates(np.zeros_like(pairs.calls), pairs.places, pairs.fetches))
+    for station in np.argsort(data.slots, kind="stable").tolist():
+        draft.fill(station)
+    placed = draft.order_station[draft.order_station >= 0]
+    return np.bincount(placed, minlength=data.stations)
