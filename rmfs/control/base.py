@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 import pydantic
 
 from rmfs.config import Model
+from rmfs.control.decisions import Prepare
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -99,6 +100,13 @@ class Controller(Generic[P]):
         hold are to be counted in `call.stale`. Here: no decisions.
         """
         return iter(())
+
+    def is_modelled(self, decision: Any) -> bool:
+        """Whether a decision is of a kind that its optimisers take: only those are counted.
+
+        What is prepared ahead counts when it is done.
+        """
+        return not isinstance(decision, Prepare)
 
     def draw(self, count: int) -> int:
         """Draw a number from 0 to `count` - 1, all equally likely."""

@@ -105,6 +105,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
 
 _SOLVER_BACKED: dict[Problem, dict[str, str]] = {
     Problem.POA: {"pile-on": "solvers.control.pile_on:PileOnControl"},
+    Problem.TA: {"pile-on": "solvers.control.pile_on:PileOnTasks"},
 }
 """Controllers of the same distribution that ask optimisers."""
 

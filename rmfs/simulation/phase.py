@@ -204,8 +204,10 @@ class DecisionPhase:
         for robot in list(world.asking.values()):
             if robot.prepared:
                 self._simulation.dispatch.start_prepared(robot, self._consult)
-        if world.asking or world.resting or Problem.TA in self._overdue:
-            self._ask(Problem.TA, self._panel[Problem.TA].decide(self._consult))
+        rule = self._panel[Problem.TA]
+        orders_too = Problem.POA in rule.decides
+        if world.asking or world.resting or orders_too or Problem.TA in self._overdue:
+            self._ask(Problem.TA, rule.decide(self._consult))
         self._overdue.discard(Problem.REPOSITIONING)
         if Problem.REPOSITIONING in self._punctual:
             self._set_alarm(Problem.REPOSITIONING)
@@ -227,7 +229,7 @@ class DecisionPhase:
             else:
                 apply[type(decision)](decision)
                 count += 1
-                if controller.optimisers and type(decision) is not say.Prepare:
+                if controller.optimisers and controller.is_modelled(decision):
                     self.decided(problem, controller)
                 by_rule += controller.basis is None
             start = perf_counter_ns()

@@ -127,11 +127,13 @@ class Settings(pydantic.BaseModel):
 
 
 def order(index, created, lines, *, due=nan, station=-1, assigned=nan, completed=nan):
+    made = tuple(SimpleNamespace(sku=sku, units=units) for sku, units in lines)
     return SimpleNamespace(
         index=index,
         created_s=created,
         due_s=due,
-        lines=tuple(SimpleNamespace(sku=sku, units=units) for sku, units in lines),
+        lines=made,
+        all_lines=made,
         station=station,
         assigned_s=assigned,
         completed_s=completed,

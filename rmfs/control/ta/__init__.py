@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from rmfs.control.asks import Ask
-    from rmfs.control.decisions import Prepare, TaskDecision
+    from rmfs.control.decisions import AssignLines, AssignOrder, Prepare, TaskDecision
     from rmfs.control.repositioning import Move
     from rmfs.world.robots import Robot
 
@@ -62,8 +62,13 @@ class TaskAllocation(Controller[P]):
     subscriptions = WORK
 
     @abstractmethod
-    def decide(self, consult: Consult) -> Iterator[TaskDecision | Prepare | Ask[Any]]:
-        """Yield tasks for robots until nothing is to be given out now."""
+    def decide(
+        self, consult: Consult
+    ) -> Iterator[TaskDecision | Prepare | AssignOrder | AssignLines | Ask[Any]]:
+        """Yield tasks for robots until nothing is to be given out now.
+
+        A controller that decides POA as well yields orders too, and is also asked when no robot is.
+        """
 
     @abstractmethod
     def rest_place(self, robot: Robot) -> int:

@@ -1,3 +1,4 @@
-"""POA and PPS decided together: orders, or their lines, to stations and pods to stations."""
+"""POA and PPS, or POA, PPS and TA, decided together: orders, pods and robots by one model."""
 
 from solvers.control.pile_on.controller import PileOnControl as PileOnControl
+from solvers.control.pile_on.tasks import PileOnTasks as PileOnTasks

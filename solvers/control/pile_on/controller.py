@@ -5,26 +5,25 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
-
-from rmfs.control.asks import Ask
 from rmfs.control.poa import PickOrderAssignment
 from rmfs.control.pps.lexicographic import Lexicographic
 from rmfs.control.problems import Problem, Trigger
 from solvers.control.pile_on import snapshot
 from solvers.control.pile_on.parameters import PileOnParameters
-from solvers.control.pile_on.plan import Plan, Planned
-from solvers.control.pile_on.question import Question, solve
+from solvers.control.pile_on.plan import Plan
+from solvers.control.pile_on.question import by_rule
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
-    from rmfs.control.asks import Call
+    import numpy as np
+
+    from rmfs.control.asks import Ask, Call
     from rmfs.control.decisions import AssignLines, AssignOrder
     from rmfs.control.view import View
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation, ReplenishmentStation
-    from solvers.control.pile_on.plan import Item
+    from solvers.control.pile_on.question import Question
 
     Decision = Ask[Question] | AssignOrder | AssignLines
 
@@ -78,22 +77,17 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         taken = snapshot.take(self.view, self._plan, self.parameters)
         self._arrived = False
         if taken is not None:
-            yield self._question(taken)
+            yield taken.ask(self.parameters)
 
     def answered(self, call: Call) -> Iterator[Decision]:
         """Take what still holds of an answer into the plan, and carry it out as far as possible."""
         taken: snapshot.Snapshot = call.ask.memo
         if call.solution is not None:
-            self._extend(call.solution, taken.items, call)
+            self._plan.extend(call.solution, taken.items, call)
         else:
             self.basis = None
-            question: Question = call.ask.question
-            rule = Question(
-                question.data, question.may_call, "greedy", question.limits, question.pruning
-            )
-            found = solve(rule).solution
-            assert found is not None
-            self._extend(found, taken.items, None)
+            found = by_rule(call.ask.question)
+            self._plan.extend(found, taken.items, None)
         yield from self._carry_out()
 
     def _is_short(self) -> bool:
@@ -111,38 +105,6 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
                     return True
         return False
 
-    def _question(self, taken: snapshot.Snapshot) -> Ask[Question]:
-        given, data = self.parameters, taken.data
-        question = Question(data, taken.may_call, given.method, given.limits, given.pruning)
-        sizes = {
-            "stations": int((data.slots > 0).sum()),
-            "orders": data.orders,
-            "lines": data.lines,
-            "pods": int(data.available.sum()),
-            "skus": data.skus,
-        }
-        return Ask(solve, question, sizes, taken)
-
-    def _extend(
-        self, solution: Mapping[str, Any], items: Sequence[Item], call: Call | None
-    ) -> None:
-        """Add to the plan what can still be done."""
-        view, plan = self.view, self._plan
-        pod_station = np.asarray(solution["pod_station"])
-        for pod in np.flatnonzero(pod_station >= 0).tolist():
-            if view.storage.is_at_hand[pod] and not any(pod in pods for pods in plan.pods):
-                plan.pods[int(pod_station[pod])][pod] = call
-            elif call is not None:
-                call.stale += 1
-        known = plan.keys()
-        for station_of in (np.asarray(solution["station"]), np.asarray(solution["prospect"])):
-            for number in np.flatnonzero(station_of >= 0).tolist():
-                item = items[number]
-                if item.waits(view) and item.key not in known:
-                    plan.items[int(station_of[number])].append(Planned(item, call))
-                elif call is not None:
-                    call.stale += 1
-
     def _carry_out(self) -> Iterator[Decision]:
         """Put planned orders on free slots."""
         for station in self.view.pick_stations:
@@ -159,7 +121,7 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         if pods:
             at = self.view.storage.pod_waypoint[pods]
             pod = pods[int(self.view.travel.estimate_s(robot.waypoint, at).argmin())]
-            self.basis = called.pop(pod)
+            self.basis = called.pop(pod).call
             return pod
         missing = self.view.need[station.index] > self.view.inventory.inbound[station.index]
         return self._heuristic.pick_pod(robot, station) if missing.any() and not called else -1

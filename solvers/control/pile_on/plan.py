@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from rmfs.control.decisions import AssignLines, AssignOrder
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
 
     from rmfs.control.asks import Call
     from rmfs.control.view import View
@@ -58,6 +60,13 @@ class Planned:
     call: Call | None
 
 
+class Called(NamedTuple):
+    """Who called a pod (None: the heuristic), and the robot meant to fetch it (-1: any)."""
+
+    call: Call | None
+    robot: int = -1
+
+
 class Plan:
     """Items that wait for a slot, and pods called that wait for a robot, per pick station.
 
@@ -69,18 +78,45 @@ class Plan:
     items
         Per station, in the order of the decisions.
     pods
-        Per station, the call that decided so.
+        Per station, the pods called.
     """
 
     def __init__(self, view: View, kept_slots: int) -> None:
         self._view = view
         self._kept = [min(kept_slots, station.slots - 1) for station in view.pick_stations]
         self.items: list[list[Planned]] = [[] for _ in view.pick_stations]
-        self.pods: list[dict[int, Call | None]] = [{} for _ in view.pick_stations]
+        self.pods: list[dict[int, Called]] = [{} for _ in view.pick_stations]
 
     def keys(self) -> set[tuple[int, int]]:
         """Keys of all planned items."""
         return {planned.item.key for items in self.items for planned in items}
+
+    def extend(self, solution: Mapping[str, Any], items: Sequence[Item], call: Call | None) -> None:
+        """Take in what can still be done of a solution; count the rest as stale.
+
+        Parameters
+        ----------
+        solution
+            `pod_station`, `pod_robot`, and `station` and `prospect` of each item; -1 for none.
+        items
+            What is behind the numbers of the solution.
+        call
+            The call that brought it; None: the heuristic.
+        """
+        pod_station, pod_robot = (np.asarray(solution[k]) for k in ("pod_station", "pod_robot"))
+        for pod in np.flatnonzero(pod_station >= 0).tolist():
+            if self._view.storage.is_at_hand[pod] and not any(pod in pods for pods in self.pods):
+                self.pods[int(pod_station[pod])][pod] = Called(call, int(pod_robot[pod]))
+            else:
+                self._stale(call)
+        known = self.keys()
+        for station_of in (np.asarray(solution["station"]), np.asarray(solution["prospect"])):
+            for number in np.flatnonzero(station_of >= 0).tolist():
+                item = items[number]
+                if item.waits(self._view) and item.key not in known:
+                    self.items[int(station_of[number])].append(Planned(item, call))
+                else:
+                    self._stale(call)
 
     def due(self, station: PickStation) -> Iterator[Planned]:
         """Yield what can be put on a station now; each is put there before the next is asked for.
@@ -148,7 +184,7 @@ class Plan:
         for pod in list(pods):
             wanted = self.useful(pod, station) or self._is_planned_for(pod, station)
             if not (wanted and self._view.storage.is_at_hand[pod]):
-                self._stale(pods.pop(pod))
+                self._stale(pods.pop(pod).call)
 
     def _is_planned_for(self, pod: int, station: PickStation) -> bool:
         available = self._view.inventory.available.item

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,9 @@ from solvers.models.pile_on import (
     prune,
 )
 from solvers.models.solution import Limits, Solution
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 SCORED_PER_S = 1e7
 """Candidates that a rule scores in about a deterministic second."""
@@ -61,7 +65,8 @@ def solve(question: Question) -> Answer:
     Returns
     -------
     Answer
-        `station` and `prospect` of each order and `pod_station` of each pod, -1 for none.
+        `station` and `prospect` of each order, `pod_station` and `pod_robot` of each pod; -1 for
+        none.
     """
     began = time.perf_counter()
     data = question.data
@@ -70,6 +75,13 @@ def solve(question: Question) -> Answer:
     if question.method == "joint":
         return _improved(question, found, began)
     return _answer(found.required, found.objective, "rule", found.work, found.wall_s, 0.0)
+
+
+def by_rule(question: Question) -> Mapping[str, Any]:
+    """Decide by pod match alone, when the optimiser has failed; as `Answer.solution`."""
+    found = solve(replace(question, method="greedy")).solution
+    assert found is not None
+    return found
 
 
 def _improved(question: Question, rule: Solution[Assignment], began: float) -> Answer:
@@ -97,6 +109,7 @@ def _answer(
         "station": station,
         "prospect": values.prospect,
         "pod_station": values.pod_station,
+        "pod_robot": values.pod_robot,
     }
     return Answer(
         solution=solution,

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rmfs.control.asks import Ask
 from solvers.control.pile_on.plan import Item
+from solvers.control.pile_on.question import Question, solve
 from solvers.models.pile_on import Candidates, PileOn, everything
 from solvers.models.pile_on.draft import Draft
 
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rmfs.control.view import View
+    from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation
     from solvers.control.pile_on.parameters import PileOnParameters
     from solvers.control.pile_on.plan import Plan
@@ -35,15 +38,39 @@ class Snapshot:
         Stations that need a pod, shape (S,).
     items
         The order, or line, of each order number of the model.
+    robots
+        The robot of each robot number.
     """
 
     data: PileOn
     may_call: NDArray[np.bool_]
     items: Sequence[Item]
+    robots: Sequence[Robot] = ()
+
+    def ask(self, given: PileOnParameters) -> Ask[Question]:
+        """Make the question for the optimiser of it."""
+        data = self.data
+        sizes = {
+            "stations": int((data.slots > 0).sum()),
+            "orders": data.orders,
+            "lines": data.lines,
+            "pods": int(data.available.sum()),
+            "skus": data.skus,
+            "robots": data.robots,
+        }
+        question = Question(data, self.may_call, given.method, given.limits, given.pruning)
+        return Ask(solve, question, sizes, self)
 
 
-def take(view: View, plan: Plan, given: PileOnParameters) -> Snapshot | None:
+def take(
+    view: View, plan: Plan, given: PileOnParameters, robots: Sequence[Robot] | None = None
+) -> Snapshot | None:
     """Collect what is to be decided now; None if there is nothing.
+
+    Parameters
+    ----------
+    robots
+        Robots that are free to fetch pods; None if robots are not decided.
 
     Orders that stock cannot serve are left out, and so is what is planned already: its units are
     demand of its station, and pods called are on their way as far as the model is concerned. A
@@ -55,6 +82,8 @@ def take(view: View, plan: Plan, given: PileOnParameters) -> Snapshot | None:
     if not items and not open_units.any():
         return None
     data = _arrays(view, plan, given, items, open_units)
+    if robots is not None:
+        data = replace(data, fetch=_fetch(view, robots), robot_pod=np.full(len(robots), -1))
     may_call = np.array([_needs_pod(view, plan, given, s) for s in view.pick_stations])
     may_call |= (data.shortage > 0).any(axis=1)
     if given.when_needed:
@@ -64,7 +93,7 @@ def take(view: View, plan: Plan, given: PileOnParameters) -> Snapshot | None:
         slots = np.minimum(np.maximum(free, 0), data.slots)
     if not slots.any() and not data.shortage.any():
         return None
-    return Snapshot(replace(data, slots=slots), may_call, items)
+    return Snapshot(replace(data, slots=slots), may_call, items, robots or ())
 
 
 def _items(view: View, plan: Plan, split: bool) -> list[Item]:
@@ -136,6 +165,14 @@ def _travel(view: View) -> NDArray[np.float64]:
     at = view.storage.pod_waypoint
     times = [view.travel.to(s.waypoint, loaded=True)[at] for s in view.pick_stations]
     return np.minimum(np.stack(times, axis=1), UNREACHABLE_S)
+
+
+def _fetch(view: View, robots: Sequence[Robot]) -> NDArray[np.float64]:
+    """Estimated time of an empty robot to each pod's place, shape (R, P), s."""
+    at = view.storage.pod_waypoint
+    times = [view.travel.estimate_s(view.travel.robot_waypoint(r.index), at) for r in robots]
+    found = np.array(times).reshape(len(robots), len(at))
+    return np.minimum(np.where(np.isfinite(found), found, UNREACHABLE_S), UNREACHABLE_S)
 
 
 def _needs_pod(view: View, plan: Plan, given: PileOnParameters, station: PickStation) -> bool:

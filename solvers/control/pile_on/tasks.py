@@ -1,0 +1,257 @@
+"""TA pile-on: orders, pods and robots decided together by the model M1G of Jiao et al. (2025)."""
+
+from __future__ import annotations
+
+from math import ceil, inf
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+import numpy as np
+import pydantic
+
+from rmfs.control.decisions import (
+    AssignLines,
+    AssignOrder,
+    BringForBundles,
+    BringForPicks,
+    Park,
+    Rest,
+)
+from rmfs.control.pps.lexicographic import Lexicographic
+from rmfs.control.problems import Problem, Trigger
+from rmfs.control.ta import WORK, TaskAllocation
+from rmfs.control.ta.rest import RestPlaces, RestRule
+from rmfs.control.ta.stations import keeper_of
+from solvers.control.pile_on import snapshot
+from solvers.control.pile_on.parameters import PileOnParameters
+from solvers.control.pile_on.plan import Plan
+from solvers.control.pile_on.question import by_rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rmfs.control.asks import Ask, Call
+    from rmfs.control.decisions import TaskDecision
+    from rmfs.control.ta import Consult
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+    from rmfs.world.stations import PickStation, ReplenishmentStation
+    from solvers.control.pile_on.question import Question
+
+    Decision = Ask[Question] | AssignOrder | AssignLines | TaskDecision
+
+
+class PileOnTasksParameters(PileOnParameters):
+    """Parameters of the joint control of orders, pods and robots; defaults are those of M1G."""
+
+    when_needed: bool = False
+    """Whether pods are called only for stations that run out of work within the horizon; otherwise
+    whenever a slot can be filled, as in M1G."""
+    kept_slots: Annotated[int, pydantic.Field(ge=0)] = 0
+    """Slots of each station kept for what the pod at its head can serve."""
+    buffer_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
+    """Seconds for which decisions are collected before the optimiser is asked again."""
+    reward_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 40.0
+    """Seconds of a robot that one more order of a visit is worth."""
+    visit_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
+    """Seconds that a visit costs a robot besides the ways."""
+    age_reward: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
+    """What a second of waiting adds to the worth of an order that gets a slot."""
+    replenishment_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.34
+    """Share of the robots that may work for replenishment stations at a time, rounded up."""
+    rest: RestRule = "nearest"
+    """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
+    `random`."""
+
+
+class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
+    """Asks the model which orders take slots, which pods come, and which robots fetch them.
+
+    The model is asked when an order has come or gone, a pod has reached a station, or a robot is
+    free, as long as a slot is free for which nothing is planned. The robots it may send are those
+    without a task. What it says is kept as a plan and carried out as POA pile-on does; a pod
+    called whose robot has got another task meanwhile goes to the next robot that is free.
+
+    What M1G leaves open is decided by rules: a robot with a pod goes on while the pod can serve its
+    station, then parks it where PSA says; up to a share of the robots brings pods to replenishment
+    stations, the nearest with work first, pods by PPS lexicographic; the others rest. If the
+    optimiser fails, pod match decides.
+    """
+
+    parameters_model = PileOnTasksParameters
+    decides: ClassVar[frozenset[Problem]] = frozenset({Problem.POA, Problem.PPS})
+    subscriptions = WORK | {
+        Trigger.NEW_ORDER,
+        Trigger.ORDER_COMPLETED,
+        Trigger.BUNDLE_STORED,
+        Trigger.STATION_SWITCHED,
+        Trigger.POD_AT_STATION,
+    }
+    hears = frozenset({Trigger.NEW_ORDER, Trigger.POD_AT_STATION, Trigger.ROBOT_FREE})
+    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.pile_on.question",)
+
+    def __init__(
+        self, parameters: PileOnTasksParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        self._heuristic = Lexicographic(Lexicographic.parameters_model(), view, rng)
+        self._plan = Plan(view, parameters.kept_slots)
+        self._rest = RestPlaces(view, parameters.rest, self.draw)
+        self._at_bundles = ceil(parameters.replenishment_share * len(view.robots))
+        self._asked_s = -inf
+        self._changed = True
+        self._wants_to_ask = False
+
+    def hear(self, trigger: Trigger, subject: Any) -> None:
+        """Take note that the model may decide otherwise than before."""
+        self._changed = True
+
+    def next_event_s(self) -> float:
+        """When the optimiser may be asked again, if it is to be asked."""
+        return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
+
+    def decide(self, consult: Consult) -> Iterator[Decision]:
+        """Carry out the plan, ask if slots are left, and give the other robots their tasks."""
+        for robot in [r for r in self.view.asking.values() if r.pod >= 0]:
+            yield from self._go_on(robot, consult)
+        yield from self._replenish()
+        yield from self._carry_out()
+        yield from self._ask()
+        for robot in [r for r in self.view.asking.values() if r.pod < 0]:
+            yield self._to_rest(robot)
+
+    def answered(self, call: Call) -> Iterator[Decision]:
+        """Take what still holds of an answer into the plan, and carry it out as far as possible."""
+        taken: snapshot.Snapshot = call.ask.memo
+        if call.solution is not None:
+            self._plan.extend(call.solution, taken.items, call)
+        else:
+            self.basis = None
+            self._plan.extend(by_rule(call.ask.question), taken.items, None)
+        robots = [robot.index for robot in taken.robots]
+        for called in self._plan.pods:
+            for pod, (source, number) in called.items():
+                if source is call and number >= 0:
+                    called[pod] = called[pod]._replace(robot=robots[number])
+        yield from self._carry_out()
+
+    def is_modelled(self, decision: Any) -> bool:
+        """Orders, and pods for picks with the robots that fetch them."""
+        if isinstance(decision, BringForPicks):
+            return decision.robot.pod < 0
+        return isinstance(decision, AssignOrder | AssignLines)
+
+    # --- the model ------------------------------------------------------------------------------
+
+    def _ask(self) -> Iterator[Decision]:
+        given, now_s = self.parameters, self.view.now_s
+        self._wants_to_ask = self._changed and not self.in_flight and self._is_short()
+        if not self._wants_to_ask or now_s < self._asked_s + given.buffer_s:
+            return
+        self._asked_s, self._changed, self._wants_to_ask = now_s, False, False
+        taken = snapshot.take(self.view, self._plan, given, self._free_robots())
+        if taken is not None:
+            yield taken.ask(given)
+
+    def _is_short(self) -> bool:
+        """Whether there is a slot, or an open request, for which nothing is planned."""
+        view, items = self.view, self._plan.items
+        if any(s.free_slots > len(items[s.index]) for s in view.pick_stations):
+            return True
+        return bool((view.need > view.inventory.inbound[: len(view.pick_stations)]).any())
+
+    def _free_robots(self) -> list[Robot]:
+        """Robots without pod and task, in order."""
+        asking, resting = self.view.asking, self.view.resting
+        return [
+            robot
+            for robot in self.view.robots
+            if robot.index in resting or (robot.index in asking and robot.pod < 0)
+        ]
+
+    # --- orders and pods ------------------------------------------------------------------------
+
+    def _carry_out(self) -> Iterator[Decision]:
+        """Put planned orders on free slots, and send robots for the pods called."""
+        for station in self.view.pick_stations:
+            for planned in self._plan.due(station):
+                self.basis = planned.call
+                yield planned.item.decision(station.index)
+            yield from self._fetch(station)
+
+    def _fetch(self, station: PickStation) -> Iterator[Decision]:
+        """Send a robot for each pod called: the one the model named, or else the nearest free."""
+        called = self._plan.pods[station.index]
+        for pod in [pod for pod in called if self._plan.useful(pod, station)]:
+            free = {robot.index: robot for robot in self._free_robots()}
+            if not free:
+                return
+            call, named = called.pop(pod)
+            self.basis = call
+            chosen = free[named] if named in free else self._nearest(list(free.values()), pod)
+            yield BringForPicks(keeper_of(self.view, chosen, pod), pod, station.index)
+
+    def _nearest(self, robots: Sequence[Robot], pod: int) -> Robot:
+        at = self.view.storage.pod_waypoint[[pod]]
+        travel = self.view.travel
+        return min(robots, key=lambda r: (travel.estimate_s(r.waypoint, at)[0], r.index))
+
+    # --- what the model leaves open -------------------------------------------------------------
+
+    def _go_on(self, robot: Robot, consult: Consult) -> Iterator[Decision]:
+        """Use a pod that has been served again, or park it."""
+        self.basis = None
+        station = robot.station
+        if station >= 0 and consult.serves(robot.pod, station):
+            bring = BringForPicks if station < len(self.view.pick_stations) else BringForBundles
+            yield bring(robot, robot.pod, station)
+            return
+        place = consult.place_for(robot)
+        if place >= 0:
+            yield Park(robot, place)
+
+    def _replenish(self) -> Iterator[Decision]:
+        """Send robots for bundles, as many as may work for that at a time."""
+        view, first = self.view, len(self.view.pick_stations)
+        waiting = [s for s in view.replenishment_stations if view.has_open_work(s.index)]
+        working = sum(
+            robot.task is not None and robot.task.station >= first for robot in view.robots
+        )
+        for robot in self._free_robots() if waiting else ():
+            if working >= self._at_bundles:
+                return
+            metres = view.travel.metres(robot.waypoint, np.array([s.waypoint for s in waiting]))
+            for number in np.argsort(metres, kind="stable").tolist():
+                station = waiting[number]
+                pod = self._heuristic.replenishment_pod(robot, station)
+                if pod >= 0:
+                    self.basis = None
+                    yield BringForBundles(keeper_of(view, robot, pod), pod, station.index)
+                    working += 1
+                    break
+
+    def _to_rest(self, robot: Robot) -> Rest:
+        self.basis = None
+        place = self._rest.choose(robot)
+        return Rest(robot, place if place >= 0 else robot.waypoint)
+
+    def rest_place(self, robot: Robot) -> int:
+        """Choose by the rest rule."""
+        return self._rest.choose(robot)
+
+    # --- for the consult ------------------------------------------------------------------------
+
+    def serves(self, pod: int, station: int) -> bool:
+        """Whether there is work for a pod at a station of either kind."""
+        return self._heuristic.serves(pod, station)
+
+    def pick_pod(self, robot: Robot, station: PickStation) -> int:
+        """Nobody else gives tasks: none."""
+        return -1
+
+    def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
+        """Ask the heuristic."""
+        return self._heuristic.replenishment_pod(robot, station)
+
+    def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
+        """Ask the heuristic."""
+        return self._heuristic.next_station(robot, stations)
