@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, inf
+from math import inf
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
@@ -56,8 +56,8 @@ class PileOnTasksParameters(PileOnParameters):
     """Seconds that a visit costs a robot besides the ways."""
     age_reward: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
     """What a second of waiting adds to the worth of an order that gets a slot."""
-    replenishment_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.34
-    """Share of the robots that may work for replenishment stations at a time, rounded up."""
+    replenishment_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.33
+    """Share of the robots that may work for replenishment stations at a time; one at least."""
     rest: RestRule = "nearest"
     """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
     `random`."""
@@ -96,7 +96,7 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
         self._heuristic = Lexicographic(Lexicographic.parameters_model(), view, rng)
         self._plan = Plan(view, parameters.kept_slots)
         self._rest = RestPlaces(view, parameters.rest, self.draw)
-        self._at_bundles = ceil(parameters.replenishment_share * len(view.robots))
+        self._at_bundles = max(round(parameters.replenishment_share * len(view.robots)), 1)
         self._asked_s = -inf
         self._changed = True
         self._wants_to_ask = False

@@ -9,9 +9,9 @@ from doubles import Situation, small_layout
 
 from rmfs import simulate
 from rmfs.control.asks import Ask, Call
-from rmfs.control.decisions import AssignLines, AssignOrder
+from rmfs.control.decisions import AssignLines, AssignOrder, BringForBundles, BringForPicks, Rest
 from rmfs.control.problems import Problem
-from solvers.control.pile_on import PileOnControl
+from solvers.control.pile_on import PileOnControl, PileOnTasks
 
 
 def decisions(situation: Situation, control: PileOnControl, *, answer: bool = True) -> list[Any]:
@@ -75,6 +75,83 @@ def test_stale_items_and_pods_are_dropped() -> None:
     other = situation.world.robots[1]
     situation.world.start_reposition(other, 0, 5)
     assert control.pick_pod(situation.world.robots[0], situation.world.pick_stations[0]) == -1
+
+
+def tasks(situation: Situation, control: PileOnTasks, *, answer: bool = True) -> list[Any]:
+    """Ask for tasks; what is said is applied and returned, questions are answered at once."""
+    found: list[Any] = []
+    control.basis = None
+    apply(control.decide(NoConsult()), situation, control, answer, found)  # type: ignore[arg-type]
+    return found
+
+
+def apply(
+    decisions: Any, situation: Situation, control: PileOnTasks, answer: bool, found: list[Any]
+) -> None:
+    """Apply decisions one by one."""
+    world = situation.world
+    for decision in decisions:
+        if isinstance(decision, Ask):
+            call = Call(0, Problem.TA, control, decision, 0, "")
+            call.answer = decision.solve(decision.question) if answer else None
+            apply(control.answered(call), situation, control, answer, found)
+            continue
+        found.append(decision)
+        if isinstance(decision, AssignOrder):
+            world.assign_order(decision.order, decision.station)
+        elif isinstance(decision, BringForPicks):
+            world.start_pick(decision.robot, decision.pod, decision.station)
+        elif isinstance(decision, BringForBundles):
+            world.start_replenish(decision.robot, decision.pod, decision.station)
+
+
+class NoConsult:
+    """Nothing to go on with, nowhere to park."""
+
+    def serves(self, pod: int, station: int) -> bool:
+        return False
+
+    def place_for(self, robot: Any) -> int:
+        return -1
+
+
+@pytest.mark.parametrize("answer", [True, False], ids=["optimiser", "heuristic"])
+def test_orders_pods_and_robots_together(answer: bool) -> None:
+    """Both orders go where one pod serves them; the robot nearer to that pod fetches it."""
+    situation = Situation()
+    situation.stock(0, s1=5)
+    situation.stock(1, s2=5)
+    situation.stock(2, s1=5, s2=5)
+    one, other = situation.order(s1=1), situation.order(s2=1)
+    control = situation.make(PileOnTasks)
+    robots = situation.world.robots
+    at = situation.world.storage.pod_waypoint[[2]]
+    travel = control.view.travel
+    near = min(robots, key=lambda robot: (travel.estimate_s(robot.waypoint, at)[0], robot.index))
+    found = tasks(situation, control, answer=answer)
+    assert {d.order for d in found if isinstance(d, AssignOrder)} == {one, other}
+    (fetch,) = [d for d in found if isinstance(d, BringForPicks)]
+    assert (fetch.robot, fetch.pod) == (near, 2)
+    others = {d.robot.index for d in found if isinstance(d, Rest)}
+    assert others == {robot.index for robot in robots if robot is not near}
+
+
+def test_some_robots_bring_pods_for_bundles() -> None:
+    """One robot of two at most; the other is left to the model."""
+    situation = Situation()
+    situation.waiting_bundle(pod=0, station=1)
+    situation.waiting_bundle(pod=1, station=1)
+    control = situation.make(PileOnTasks, replenishment_share=0.33)
+    found = tasks(situation, control)
+    assert len([d for d in found if isinstance(d, BringForBundles)]) == 1
+    assert not control.is_modelled(found[0])
+
+
+def test_m1g_runs() -> None:
+    """Nine of ten decisions that M1G takes come from the model."""
+    run = simulate("small", "small", "m1g", seed=1, overrides=[(["scenario", "duration_s"], 900)])
+    assert run.footprint["optimiser_decision_share"] >= 0.9
+    assert run.footprint["units_per_h"] > 600
 
 
 @pytest.mark.parametrize("split", [False, True])
