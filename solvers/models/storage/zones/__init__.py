@@ -7,6 +7,7 @@ from solvers.models.storage.zones.data import objective as objective
 from solvers.models.storage.zones.data import violations as violations
 from solvers.models.storage.zones.greedy import solve as solve_greedily
 from solvers.models.storage.zones.prices import Prices as Prices
+from solvers.models.storage.zones.prices import expected_stay_h as expected_stay_h
 from solvers.models.storage.zones.prices import place_values as place_values
 from solvers.models.storage.zones.prices import price_bound as price_bound
 
@@ -14,6 +15,7 @@ __all__ = [
     "Prices",
     "ZonePlan",
     "Zones",
+    "expected_stay_h",
     "objective",
     "place_values",
     "price_bound",

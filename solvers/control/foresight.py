@@ -1,0 +1,87 @@
+"""How often pods will be wanted, from stock, popularity and backlog."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING
+
+from rmfs.control.trackers.frequency import Frequency
+from solvers.models.storage.placement import expected_visits
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+
+_PRIOR_VISITS = 20.0
+_PRIOR_PILE_ON = 2.0
+_PRIOR_H = 0.1
+
+
+class Foresight:
+    """Expects visits to pods; kept for a while, as the whole stock is gone through.
+
+    Units wanted within the horizon are those of waiting orders and those that new orders will ask
+    for: the rate at which units were picked so far, shared out by the units ordered of each SKU.
+    What has been measured counts from the first hour on; before, pick stations are taken to pick
+    two units per visit without a break.
+
+    Parameters
+    ----------
+    view
+        The world.
+    horizon_s
+        How far ahead to look, positive.
+    kept_s
+        How long figures are used before they are worked out anew.
+    """
+
+    def __init__(self, view: View, horizon_s: float, kept_s: float) -> None:
+        self._view = view
+        self._frequency = view.trackers.get(Frequency)
+        self._horizon_h = horizon_s / 3600.0
+        self._kept_s = kept_s
+        self._found_s = -inf
+        self._rate_per_h: NDArray[np.float64] | None = None
+        self._before_units = self._picked()
+        self._before_s = view.now_s
+        stations = view.layout.pick_stations
+        self._most_per_h = sum(3600.0 / station.unit_transfer_s for station in stations)
+
+    @property
+    def units_per_h(self) -> NDArray[np.float64]:
+        """Units that orders will ask for, per SKU, shape (K,), in 1/h."""
+        units = self._frequency.units
+        hours = (self._view.now_s - self._before_s) / 3600.0
+        picked = self._picked() - self._before_units + _PRIOR_H * self._most_per_h
+        rate: NDArray[np.float64] = units * (picked / (hours + _PRIOR_H) / max(units.sum(), 1))
+        return rate
+
+    @property
+    def pile_on(self) -> float:
+        """Units picked per visit so far."""
+        visits = sum(station.visits for station in self._view.pick_stations)
+        units = _PRIOR_VISITS * _PRIOR_PILE_ON + self._picked()
+        return max(1.0, float(units / (_PRIOR_VISITS + visits)))
+
+    @property
+    def visits_per_h(self) -> NDArray[np.float64]:
+        """Visits to expect of each pod, shape (P,), in 1/h."""
+        now_s = self._view.now_s
+        if self._rate_per_h is None or now_s >= self._found_s + self._kept_s:
+            inventory = self._view.inventory
+            visits = expected_visits(
+                inventory.available,
+                inventory.wanted,
+                self.units_per_h,
+                horizon_h=self._horizon_h,
+                pile_on=self.pile_on,
+            )
+            self._rate_per_h = visits / self._horizon_h
+            self._found_s = now_s
+        return self._rate_per_h
+
+    def _picked(self) -> int:
+        inventory = self._view.inventory
+        return int(inventory.ordered.sum() - inventory.wanted.sum())

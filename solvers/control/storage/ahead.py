@@ -1,0 +1,100 @@
+"""What the PSA controllers share: a place for every pod that will return, found ahead."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from math import inf
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from rmfs.control.problems import Trigger
+from rmfs.control.psa import PodStorageAssignment
+from rmfs.control.psa.nearest import Nearest
+from solvers.control.foresight import Foresight
+from solvers.control.storage.parameters import StorageParameters
+from solvers.control.storage.ways import Ways
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rmfs.control.asks import Ask, Call
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+P = TypeVar("P", bound=StorageParameters)
+
+
+class Ahead(PodStorageAssignment[P]):
+    """Plans places for pods that robots carry, before they have to be stored.
+
+    When a pod reaches a station, and at most once per `buffer_s`, the optimiser is asked for the
+    places of all pods that robots carry to stations, or have to store now. Its plan replaces the
+    one before. A pod without plan, or whose place is taken, goes to the nearest empty place.
+    """
+
+    subscriptions = frozenset({Trigger.POD_AT_STATION})
+
+    def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self.foresight = Foresight(view, parameters.horizon_s, parameters.refresh_s)
+        self.ways = Ways(view)
+        self._heuristic = Nearest(Nearest.parameters_model(), view, rng)
+        self._plan: dict[int, tuple[int, Call]] = {}
+        self._asked_s = -inf
+        self._wants_to_ask = False
+
+    @abstractmethod
+    def question(self, robots: Sequence[Robot]) -> Ask[Any]:
+        """Ask for the places of the pods that robots carry; the memo is these pods."""
+
+    @abstractmethod
+    def places(self, call: Call) -> Sequence[int]:
+        """Read the place (waypoint) of each pod off an answer; -1 for none."""
+
+    def next_event_s(self) -> float:
+        """When the optimiser may be asked again, if it is to be asked."""
+        return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
+
+    def decide(self) -> Iterator[Ask[Any]]:
+        """Ask, unless it was done a moment ago or the answer is still out."""
+        late = self.view.now_s >= self._asked_s + self.parameters.buffer_s
+        self._wants_to_ask = not late and not self.in_flight
+        if self.in_flight or not late:
+            return
+        robots = [robot for robot in self.view.robots if _will_store(robot)]
+        if robots and self.view.storage.is_empty.any():
+            self._asked_s = self.view.now_s
+            yield self.question(robots)
+
+    def answered(self, call: Call) -> Iterator[Any]:
+        """Take the places that are empty into the plan."""
+        self._plan.clear()
+        if call.solution is not None:
+            carried = {robot.pod for robot in self.view.robots}
+            for pod, place in zip(call.ask.memo, self.places(call), strict=True):
+                if pod in carried and place >= 0 and self._is_empty(place):
+                    self._plan[pod] = place, call
+                else:
+                    call.stale += 1
+        return iter(())
+
+    def place(self, robot: Robot) -> int:
+        """Store the pod where the plan says, or at the nearest place."""
+        planned = self._plan.pop(robot.pod, None)
+        if planned is not None:
+            place, call = planned
+            if self._is_empty(place):
+                self.basis = call
+                return place
+            call.stale += 1
+        return self._heuristic.place(robot)
+
+    def _is_empty(self, place: int) -> bool:
+        storage = self.view.storage
+        return bool(storage.is_empty[storage.place_index[place]])
+
+
+def _will_store(robot: Robot) -> bool:
+    """Whether a robot carries a pod to a station, or waits to be told where to put it."""
+    return robot.pod >= 0 and (robot.task is None or robot.task.station >= 0)

@@ -1,0 +1,42 @@
+"""Places cut into zones by their distance from the pick stations, pods into classes by visits."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def bands(values: NDArray[np.float64], count: int) -> NDArray[np.int64]:
+    """Cut things into bands of about the same number, the lowest values first.
+
+    Parameters
+    ----------
+    values
+        Shape (N,).
+    count
+        How many bands at most, positive.
+
+    Returns
+    -------
+    The band of each thing, shape (N,), from 0 and without gaps; ties go by index.
+    """
+    band = np.empty(len(values), np.int64)
+    order = np.argsort(values, kind="stable")
+    band[order] = np.arange(len(values)) * min(count, len(values)) // max(len(values), 1)
+    return band
+
+
+def means(values: NDArray[np.float64], band: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return the mean of each band.
+
+    Parameters
+    ----------
+    values, band
+        Of each thing, shape (N,).
+
+    Returns
+    -------
+    Shape (bands,).
+    """
+    mean: NDArray[np.float64] = np.bincount(band, weights=values) / np.bincount(band)
+    return mean

@@ -1,0 +1,95 @@
+"""PSA placement: the cheapest places for all pods that will return, now and later together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+import numpy as np
+import pydantic
+from numpy.typing import NDArray
+
+from rmfs.control.asks import Answer, Ask
+from solvers.control.answers import answer
+from solvers.control.storage.ahead import Ahead
+from solvers.control.storage.parameters import StorageParameters
+from solvers.models.storage import placement
+from solvers.models.storage.placement import Placement
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.control.asks import Call
+    from rmfs.world.robots import Robot
+
+
+@dataclass(frozen=True)
+class Question:
+    """Pods that return and empty places.
+
+    Attributes
+    ----------
+    waypoint
+        Of each place, shape (L,).
+    """
+
+    data: Placement
+    waypoint: NDArray[np.int64]
+
+
+def solve(question: Question) -> Answer:
+    """Find the place of each pod: `place`, its waypoint, shape (P,)."""
+    found = placement.solve(question.data)
+    values = None if found.values is None else {"place": question.waypoint[found.values]}
+    return answer(found, values)
+
+
+def worth_looking_at(cost_s: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Places that the best placement can use: of each of P pods the P cheapest; nothing is lost.
+
+    Parameters
+    ----------
+    cost_s
+        Cost of each pod at each place, shape (P, L).
+    """
+    pods, places = cost_s.shape
+    if pods >= places:
+        return np.arange(places)
+    cheapest = np.argpartition(cost_s, pods - 1, axis=1)[:, :pods]
+    found: NDArray[np.intp] = np.unique(cheapest)
+    return found
+
+
+class PlacementParameters(StorageParameters):
+    """Parameters of PSA placement."""
+
+    later_weight: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 1.0
+    """What a second of a robot's time for a later visit counts against one now."""
+
+
+class PlacementControl(Ahead[PlacementParameters]):
+    """Weighs the way of storing each pod against the ways of the visits expected of it.
+
+    A linear assignment of all pods that robots carry to the empty places.
+    """
+
+    parameters_model = PlacementParameters
+    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.storage.placement",)
+
+    def question(self, robots: Sequence[Robot]) -> Ask[Question]:
+        """State the assignment, with the places that can matter."""
+        empty = self.view.storage.is_empty.nonzero()[0]
+        pods = [robot.pod for robot in robots]
+        travel_s = self.ways.storing_s(robots)[:, empty]
+        visits = self.foresight.visits_per_h[pods] * (self.parameters.horizon_s / 3600.0)
+        access_s = (self.ways.fetch_s + self.ways.home_s)[empty] * self.parameters.later_weight
+        kept = worth_looking_at(travel_s + np.outer(visits, access_s))
+        data = Placement(travel_s[:, kept], access_s[kept], visits)
+        waypoint = self.view.storage.places[empty[kept]].astype(np.int64)
+        sizes = {"pods": len(pods), "places": len(kept)}
+        return Ask(solve, Question(data, waypoint), sizes, pods)
+
+    def places(self, call: Call) -> Sequence[int]:
+        """Read the places."""
+        assert call.solution is not None
+        return [int(place) for place in call.solution["place"]]

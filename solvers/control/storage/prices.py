@@ -1,0 +1,135 @@
+"""PSA prices: travel, plus the price of the place while the pod stays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+import numpy as np
+import pydantic
+from numpy.typing import NDArray
+
+from rmfs.control.asks import Answer, Ask
+from rmfs.control.problems import Trigger
+from rmfs.control.psa import PodStorageAssignment
+from rmfs.control.psa.nearest import Nearest
+from solvers.control.answers import answer
+from solvers.control.foresight import Foresight
+from solvers.control.storage.bands import bands, means
+from solvers.control.storage.parameters import Positive, StorageParameters
+from solvers.control.storage.ways import Ways
+from solvers.models.storage import zones
+from solvers.models.storage.zones import Prices, Zones, expected_stay_h, place_values
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.control.asks import Call
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+Count = Annotated[int, pydantic.Field(ge=1)]
+
+
+@dataclass(frozen=True)
+class Question:
+    """The steady state whose prices are wanted."""
+
+    data: Zones
+
+
+def solve(question: Question) -> Answer:
+    """Find the prices of zones (`place_per_h`, `delay_s`) and the worth of classes."""
+    found = zones.solve(question.data)
+    if found.values is None:
+        return answer(found, None)
+    prices = Prices.of(question.data, found.values)
+    return answer(found, {name: value for name, value in vars(prices).items()})
+
+
+class PricesParameters(StorageParameters):
+    """Parameters of PSA prices."""
+
+    classes: Count = 8
+    """Classes of pods, by the visits expected of them."""
+    zones: Count = 8
+    """Zones of places, by their distance from the pick stations."""
+    period_s: Positive = 300.0
+    """Seconds after which prices are worked out anew."""
+    congestion_s_h: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.02
+    """Seconds that a visit is delayed per visit per hour to the same zone."""
+
+
+class PricesControl(PodStorageAssignment[PricesParameters]):
+    """Values places by the dual prices of the best steady state, and takes the best bargain.
+
+    Every `period_s` pods are classed by the visits expected of them, and a convex programme finds
+    how many of each class should stand in each zone, congestion counted; the price of a place is
+    what one more place of its zone would save per hour. A pod goes to the empty place where the way
+    there and away, the delay, and the price for as long as it is expected to stay add up to least.
+    Until the first answer, and after a failure, it goes to the nearest empty place.
+    """
+
+    parameters_model = PricesParameters
+    subscriptions = frozenset({Trigger.START})
+    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.storage.prices",)
+
+    def __init__(self, parameters: PricesParameters, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._foresight = Foresight(view, parameters.horizon_s, parameters.refresh_s)
+        self._ways = Ways(view)
+        self._heuristic = Nearest(Nearest.parameters_model(), view, rng)
+        self._zone = bands(self._ways.fetch_s + self._ways.home_s, parameters.zones)
+        self._prices: tuple[Prices, NDArray[np.int64], Call] | None = None
+        self._asked_s = -inf
+
+    def next_event_s(self) -> float:
+        """When prices are to be worked out anew."""
+        return max(self._asked_s, 0.0) + self.parameters.period_s
+
+    def decide(self) -> Iterator[Ask[Question]]:
+        """Ask for prices, unless they are new or the answer is still out."""
+        if self.in_flight or self.view.now_s < self._asked_s + self.parameters.period_s:
+            return
+        self._asked_s = self.view.now_s
+        rate = self._foresight.visits_per_h
+        pod_class = bands(-rate, self.parameters.classes)
+        data = self._steady_state(rate, pod_class)
+        sizes = {"classes": len(data.pods), "zones": len(data.places)}
+        yield Ask(solve, Question(data), sizes, pod_class)
+
+    def answered(self, call: Call) -> Iterator[Any]:
+        """Keep the prices."""
+        if call.solution is not None:
+            prices = Prices(**{name: np.asarray(value) for name, value in call.solution.items()})
+            self._prices = prices, call.ask.memo, call
+        return iter(())
+
+    def place(self, robot: Robot) -> int:
+        """Take the best bargain among the empty places."""
+        if self._prices is None:
+            return self._heuristic.place(robot)
+        prices, pod_class, call = self._prices
+        rate = self._foresight.visits_per_h[[robot.pod]]
+        values = place_values(
+            prices,
+            self._ways.storing_s([robot]) + self._ways.fetch_s,
+            zone=self._zone,
+            pod_class=pod_class[[robot.pod]],
+            stay_h=expected_stay_h(rate, self.parameters.horizon_s / 3600.0),
+        )
+        self.basis = call
+        return self.least(values[0], self.view.storage.is_empty)
+
+    def _steady_state(self, rate: NDArray[np.float64], pod_class: NDArray[np.int64]) -> Zones:
+        """State the problem: mean ways of the zones, mean visits of the classes."""
+        each_s = means(self._ways.home_s + self._ways.fetch_s, self._zone)
+        classes, count = int(pod_class.max()) + 1, len(each_s)
+        return Zones(
+            visit_s=np.broadcast_to(each_s, (classes, count)),
+            rate_per_h=means(rate, pod_class),
+            pods=np.bincount(pod_class).astype(np.float64),
+            places=np.bincount(self._zone).astype(np.float64),
+            congestion_s_h=np.full(count, self.parameters.congestion_s_h),
+        )

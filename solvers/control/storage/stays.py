@@ -1,0 +1,132 @@
+"""PSA stays: zones for the pods that will return, as others leave theirs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+import numpy as np
+import pydantic
+from numpy.typing import NDArray
+
+from rmfs.control.asks import Answer, Ask
+from solvers.control.answers import answer
+from solvers.control.parameters import SearchParameters
+from solvers.control.storage.ahead import Ahead
+from solvers.control.storage.bands import bands, means
+from solvers.control.storage.parameters import StorageParameters
+from solvers.models.solution import Limits
+from solvers.models.storage.stays import Stays, solve_by_cp_sat, solve_greedily
+from solvers.models.storage.zones import expected_stay_h
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.control.asks import Call
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+_SERVICE_S = 30.0
+"""Time from question to storing taken for pods whose service has not begun."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """Stays, those of the pods that return first.
+
+    Attributes
+    ----------
+    returning
+        How many stays are of pods that return.
+    """
+
+    data: Stays
+    returning: int
+    limits: Limits
+
+
+def solve(question: Question) -> Answer:
+    """Find the zone of each pod that returns: `zone`, shape (returning,)."""
+    rule = solve_greedily(question.data)
+    found = solve_by_cp_sat(question.data, question.limits, start=rule.values)
+    values = None if found.values is None else {"zone": found.values[: question.returning]}
+    return answer(found, values)
+
+
+class StaysParameters(StorageParameters, SearchParameters):
+    """Parameters of PSA stays."""
+
+    work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.02
+    """Limit of the search in deterministic seconds of CP-SAT: about the same in wall time."""
+    gap: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.001
+    """Relative gap between value and bound at which the search ends."""
+    zones: Annotated[int, pydantic.Field(ge=1)] = 8
+    """Zones of places, by their distance from the pick stations."""
+
+
+class StaysControl(Ahead[StaysParameters]):
+    """Gives pods zones by when they will be fetched again, and when others will leave.
+
+    Every pod is taken to be fetched when the visits expected of it say (at the latest after the
+    horizon): pods in stock leave their zone then, and those that return need a place until then.
+    An integer programme finds the zones of least robot time in which there is always room. In its
+    zone a pod takes the empty place nearest to its station.
+    """
+
+    parameters_model = StaysParameters
+    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.storage.stays",)
+
+    def __init__(self, parameters: StaysParameters, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._zone = bands(self.ways.fetch_s + self.ways.home_s, parameters.zones)
+        self._index = np.array(view.storage.place_index)
+
+    def question(self, robots: Sequence[Robot]) -> Ask[Question]:
+        """State the stays."""
+        data = self._stays(robots)
+        question = Question(data, len(robots), self.parameters.limits)
+        sizes = {"pods": len(robots), "stays": len(data.begin_s), "zones": len(data.capacity)}
+        return Ask(solve, question, sizes, [robot.pod for robot in robots])
+
+    def places(self, call: Call) -> Sequence[int]:
+        """Give each pod the nearest empty place of its zone, one after the other."""
+        assert call.solution is not None
+        storage = self.view.storage
+        carriers = {robot.pod: robot for robot in self.view.robots if robot.pod >= 0}
+        free = storage.is_empty.copy()
+        places = []
+        for pod, zone in zip(call.ask.memo, call.solution["zone"], strict=True):
+            place = -1
+            if pod in carriers:
+                store_s = self.ways.store_s(carriers[pod].waypoint)
+                place = self.least(store_s, free & (self._zone == zone))
+            if place >= 0:
+                free[storage.place_index[place]] = False
+            places.append(place)
+        return places
+
+    def _stays(self, robots: Sequence[Robot]) -> Stays:
+        """Pods that return, then pods in stock that leave within the horizon.
+
+        Those that stay longer take their place away from the zone, as do robots on their way to one.
+        """
+        view, horizon_s = self.view, self.parameters.horizon_s
+        stay_s = expected_stay_h(self.foresight.visits_per_h, horizon_s / 3600.0) * 3600.0
+        zones = int(self._zone.max()) + 1
+        stored = view.storage.is_stored.nonzero()[0]
+        zone_of = self._zone[self._index[view.storage.pod_waypoint[stored]]]
+        leaves = stay_s[stored] < horizon_s
+        capacity = np.bincount(self._zone[view.storage.is_empty], minlength=zones)
+        capacity += np.bincount(zone_of[leaves], minlength=zones)
+        begin_s = np.array([0.0 if r.task is None else _SERVICE_S for r in robots])
+        end_s = begin_s + stay_s[[robot.pod for robot in robots]]
+        fetch_s = means(self.ways.fetch_s, self._zone)
+        cost_s = np.stack([means(self.ways.store_s(r.waypoint), self._zone) for r in robots])
+        settled = np.full((int(leaves.sum()), zones), np.inf)
+        settled[np.arange(len(settled)), zone_of[leaves]] = 0.0
+        return Stays(
+            begin_s=np.concatenate([begin_s, np.zeros(len(settled))]),
+            end_s=np.concatenate([end_s, stay_s[stored[leaves]]]),
+            cost_s=np.vstack([cost_s + fetch_s, settled]),
+            capacity=capacity,
+        )

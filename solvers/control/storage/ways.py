@@ -1,0 +1,60 @@
+"""How long robots take between places and stations."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+UNREACHABLE_S = 1e5
+"""Time that stands for no way at all."""
+
+
+class Ways:
+    """Times of storing pods and of fetching them again, from and to every storage place.
+
+    Parameters
+    ----------
+    view
+        The world.
+    """
+
+    def __init__(self, view: View) -> None:
+        self._view = view
+        self._stored: dict[int, NDArray[np.float64]] = {}
+
+    @cached_property
+    def fetch_s(self) -> NDArray[np.float64]:
+        """Drive from each place to a pick station, loaded, mean over stations, shape (L,), s."""
+        view = self._view
+        places = view.storage.places
+        times = [view.travel.to(s.waypoint, loaded=True)[places] for s in view.pick_stations]
+        return np.minimum(np.mean(times, axis=0), UNREACHABLE_S)
+
+    @cached_property
+    def home_s(self) -> NDArray[np.float64]:
+        """Drive from a pick station to each place, loaded, mean over stations, shape (L,), s."""
+        stations = [self.store_s(s.waypoint) for s in self._view.pick_stations]
+        return np.minimum(np.mean(stations, axis=0), UNREACHABLE_S)
+
+    def store_s(self, waypoint: int) -> NDArray[np.float64]:
+        """Drive from a waypoint to each place, loaded, shape (L,), s; inf if unreachable."""
+        times = self._stored.get(waypoint)
+        if times is None:
+            view = self._view
+            times = view.travel.away(waypoint, loaded=True)[view.storage.places]
+            self._stored[waypoint] = times
+        return times
+
+    def storing_s(self, robots: Sequence[Robot]) -> NDArray[np.float64]:
+        """Drive of each robot from where it is served to each place, shape (R, L), s."""
+        return np.stack([self.store_s(robot.waypoint) for robot in robots])
