@@ -45,7 +45,7 @@ def solve(question: Question) -> Answer:
     if found.values is None:
         return answer(found, None)
     prices = Prices.of(question.data, found.values)
-    return answer(found, {name: value for name, value in vars(prices).items()})
+    return answer(found, dict(vars(prices)))
 
 
 class PricesParameters(StorageParameters):

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
 import pydantic
-from numpy.typing import NDArray
 
 from rmfs.control.asks import Answer, Ask
 from solvers.control.answers import answer
@@ -108,7 +107,7 @@ class StaysControl(Ahead[StaysParameters]):
     def _stays(self, robots: Sequence[Robot]) -> Stays:
         """Pods that return, then pods in stock that leave within the horizon.
 
-        Those that stay longer take their place away from the zone, as do robots on their way to one.
+        Those that stay longer take their place away from the zone, as do robots on their way.
         """
         view, horizon_s = self.view, self.parameters.horizon_s
         stay_s = expected_stay_h(self.foresight.visits_per_h, horizon_s / 3600.0) * 3600.0

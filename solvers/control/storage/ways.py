@@ -38,13 +38,15 @@ class Ways:
         view = self._view
         places = view.storage.places
         times = [view.travel.to(s.waypoint, loaded=True)[places] for s in view.pick_stations]
-        return np.minimum(np.mean(times, axis=0), UNREACHABLE_S)
+        mean_s: NDArray[np.float64] = np.mean(times, axis=0)
+        return np.minimum(mean_s, UNREACHABLE_S)
 
     @cached_property
     def home_s(self) -> NDArray[np.float64]:
         """Drive from a pick station to each place, loaded, mean over stations, shape (L,), s."""
         stations = [self.store_s(s.waypoint) for s in self._view.pick_stations]
-        return np.minimum(np.mean(stations, axis=0), UNREACHABLE_S)
+        mean_s: NDArray[np.float64] = np.mean(stations, axis=0)
+        return np.minimum(mean_s, UNREACHABLE_S)
 
     def store_s(self, waypoint: int) -> NDArray[np.float64]:
         """Drive from a waypoint to each place, loaded, shape (L,), s; inf if unreachable."""

@@ -1,0 +1,163 @@
+"""What the TA controllers share: when the optimiser is asked, and what is done without it."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from math import inf
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+
+import pydantic
+
+from rmfs.control.decisions import Park, Rest, TaskDecision
+from rmfs.control.ta import TaskAllocation
+from rmfs.control.ta.rest import RestPlaces, RestRule
+from rmfs.control.ta.stations import bring, keeper_of
+from solvers.control.parameters import BufferParameters
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    import numpy as np
+
+    from rmfs.control.asks import Ask, Call
+    from rmfs.control.decisions import Prepare
+    from rmfs.control.ta import Consult
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+    Told = TaskDecision | Prepare | Ask[Any]
+
+NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
+
+
+class TaskParameters(BufferParameters):
+    """When robots are told, and how many go to a station."""
+
+    robots_per_station: Annotated[int, pydantic.Field(ge=1)] = 9
+    """How many robots may be at, or on their way to, one station."""
+    rule_meanwhile: bool = True
+    """Whether robots with a pod are told by the rule while an answer is out: they may stand in the
+    way of others. Robots without wait for it."""
+    rest: RestRule = "nearest"
+    """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
+    `random`."""
+
+
+P = TypeVar("P", bound=TaskParameters)
+
+
+class Asking(TaskAllocation[P]):
+    """Asks the optimiser what the robots that need a task, and those at rest, should do.
+
+    It is asked as soon as a robot needs a task, and for robots at rest when there is new work, at
+    most once per `buffer_s`. The rule, for when the optimiser has failed or is still thinking: a
+    pod goes on at a station that it can serve, or is parked; an empty robot works for the station
+    with work that has the fewest pods under way, ties by distance.
+    """
+
+    def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._rest = RestPlaces(view, parameters.rest, self.draw)
+        self._seen: tuple[tuple[int, ...], ...] | None = None
+        self._asked_s = -inf
+        self._wants_to_ask = False
+
+    @abstractmethod
+    def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Any]:
+        """Ask what robots, each without task or at rest, should do."""
+
+    @abstractmethod
+    def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:
+        """Yield what still holds of a solution."""
+
+    def next_event_s(self) -> float:
+        """When the optimiser may be asked again, if it is to be asked."""
+        return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
+
+    def decide(self, consult: Consult) -> Iterator[Told]:
+        """Ask if there is something to ask, or let the rule decide while the answer is out."""
+        self._consult = consult
+        if not self.in_flight and self._has_news():
+            late = self.view.now_s >= self._asked_s + self.parameters.buffer_s
+            self._wants_to_ask = not late
+            if late:
+                yield self._ask(consult)
+        if self.in_flight and self.parameters.rule_meanwhile:
+            for robot in list(self.view.asking.values()):
+                if robot.pod >= 0 and robot.task is None:
+                    yield from self._by_rule(robot, consult)
+
+    def answered(self, call: Call) -> Iterator[Told]:
+        """Carry the answer out, and decide by the rule where there is none."""
+        consult = self._consult
+        if call.solution is not None:
+            yield from self.carry_out(call, consult)
+            self.basis = None
+        told = {robot.index for robot in call.ask.memo.robots}
+        for robot in list(self.view.asking.values()):
+            if robot.task is None and robot.index in told:
+                yield from self._by_rule(robot, consult)
+        # others have come to need a task meanwhile
+        yield from self.decide(consult)
+
+    def rest_place(self, robot: Robot) -> int:
+        """Choose by the rest rule."""
+        return self._rest.choose(robot)
+
+    def to_rest(self, robot: Robot) -> Rest:
+        """Let a robot rest where the rule says, or where it is."""
+        place = self._rest.choose(robot)
+        return Rest(robot, place if place >= 0 else robot.waypoint)
+
+    def place_for(self, robot: Robot, consult: Consult) -> int:
+        """Find a place for the pod of a robot, or -1."""
+        return consult.place_for(robot)
+
+    def pod_for(self, robot: Robot, station: int, consult: Consult) -> int:
+        """Find a pod that a robot should bring to a station, or -1."""
+        return consult.pod_for(robot, station)
+
+    def may_come(self, station: int) -> int:
+        """How many more robots may go to a station."""
+        target = self.view.stations[station]
+        return max(0, self.parameters.robots_per_station - len(target.tasks))
+
+    def _ask(self, consult: Consult) -> Ask[Any]:
+        self._asked_s = self.view.now_s
+        self._seen = self._versions()
+        robots = [robot for robot in self.view.asking.values() if robot.task is None]
+        return self.question([*robots, *self.view.resting.values()], consult)
+
+    def _has_news(self) -> bool:
+        """Whether a robot needs a task, or one at rest could have new work."""
+        if any(robot.task is None for robot in self.view.asking.values()):
+            return True
+        return bool(self.view.resting) and self._versions() != self._seen
+
+    def _versions(self) -> tuple[tuple[int, ...], ...]:
+        return tuple(self.view.work_version(station.index) for station in self.view.stations)
+
+    def _by_rule(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision]:
+        view = self.view
+        if robot.pod >= 0:
+            for station in view.stations:
+                if consult.serves(robot.pod, station.index):
+                    yield bring(view, robot, robot.pod, station.index)
+                    return
+            place = self.place_for(robot, consult)
+            if place >= 0:
+                yield Park(robot, place)
+            return
+        open_work = [s for s in view.stations if view.has_open_work(s.index)]
+        for station in sorted(open_work, key=lambda s: (len(s.tasks), self._way_s(robot, s.index))):
+            if self.may_come(station.index):
+                pod = self.pod_for(robot, station.index, consult)
+                if pod >= 0:
+                    yield bring(view, keeper_of(view, robot, pod), pod, station.index)
+                    if robot.task is not None:
+                        return
+        yield self.to_rest(robot)
+
+    def _way_s(self, robot: Robot, station: int) -> float:
+        to_station = self.view.travel.to(self.view.stations[station].waypoint, loaded=False)
+        return float(to_station[robot.waypoint])

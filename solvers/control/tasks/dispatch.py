@@ -1,0 +1,211 @@
+"""TA dispatch: robots to stations by travel time, or by queues and due times as well."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rmfs.control.asks import Answer, Ask
+from rmfs.control.decisions import Park
+from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
+from rmfs.control.ta.stations import bring, keeper_of
+from solvers.control.answers import answer
+from solvers.control.tasks.asking import Asking, NotNegative, TaskParameters
+from solvers.models.tasks import balance, matching
+from solvers.models.tasks.balance import Balance
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rmfs.control.asks import Call
+    from rmfs.control.decisions import Prepare, TaskDecision
+    from rmfs.control.ta import Consult
+    from rmfs.world.robots import Robot
+
+Method = Literal["balance", "matching"]
+
+
+@dataclass(frozen=True)
+class Question:
+    """Robots, and pods that could be brought to stations."""
+
+    data: Balance
+    method: str
+
+
+def solve(question: Question) -> Answer:
+    """Find the robot of each task: `robot`, -1 for none, shape (T,)."""
+    data = question.data
+    found = matching.solve(data.pairs) if question.method == "matching" else balance.solve(data)
+    return answer(found, None if found.values is None else {"robot": found.values})
+
+
+@dataclass(frozen=True)
+class Memo:
+    """What the numbers of a question mean.
+
+    Attributes
+    ----------
+    station
+        Of each task.
+    own
+        Whether a task is to go on with the pod carried.
+    """
+
+    robots: list[Robot]
+    station: list[int]
+    own: list[bool]
+
+
+class DispatchParameters(TaskParameters):
+    """Parameters of TA dispatch."""
+
+    method: Method = "balance"
+    """`matching` looks at travel times only, `balance` at queues and due times too."""
+    pick_value_s: NotNegative = 300.0
+    """Seconds of a robot that a pod at a pick station is worth: so long may the way and the queue
+    be."""
+    bundle_value_s: NotNegative = 300.0
+    """The same for a pod at a replenishment station."""
+    service_s: NotNegative = 30.0
+    """Seconds that a pod is expected to keep a station."""
+    late_weight: NotNegative = 0.02
+    """Seconds of travel that a second of lateness of an order counts as."""
+
+
+class DispatchControl(Asking[DispatchParameters]):
+    """Sends robots to stations; which pod they bring, PPS says.
+
+    The tasks are: for each station with work, pods that could be brought, as many as there are
+    robots; and for each pod carried, each station it can serve. By `matching` they are given to
+    robots so that travel is least (linear assignment), at most as many as may come to a station;
+    by `balance` the wait behind other pods and the lateness of orders count as well (minimum-cost
+    flow). What is not worth its way is left: pods are parked, robots rest.
+
+    The way to a pod is the mean over the pods with work, as PPS chooses later.
+    """
+
+    parameters_model = DispatchParameters
+    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.tasks.dispatch",)
+
+    def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Question]:
+        """State the flow."""
+        empty = [row for row, robot in enumerate(robots) if robot.pod < 0]
+        station: list[int] = []
+        own: list[bool] = []
+        arrive: list[NDArray[np.float64]] = []
+        for row, robot in enumerate(robots):
+            if robot.pod >= 0:
+                for number, way_s in self._goes_on(robot, consult):
+                    column = np.full(len(robots), np.inf)
+                    column[row] = way_s
+                    station.append(number)
+                    own.append(True)
+                    arrive.append(column)
+        for target in self.view.stations:
+            column = self._to_station(robots, empty, target.index)
+            copies = min(len(empty), self.may_come(target.index), self._wanted(target.index))
+            if np.isfinite(column).any():
+                station += [target.index] * copies
+                own += [False] * copies
+                arrive += [column] * copies
+        data = self._balance(len(robots), station, own, arrive)
+        sizes = {"robots": len(robots), "tasks": len(station)}
+        memo = Memo(list(robots), station, own)
+        return Ask(solve, Question(data, self.parameters.method), sizes, memo)
+
+    def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:
+        """Bring pods, park those that are not needed, and let the others rest."""
+        assert call.solution is not None
+        memo: Memo = call.ask.memo
+        view = self.view
+        told = np.asarray(call.solution["robot"])
+        for task in np.flatnonzero(told >= 0).tolist():
+            robot, station = memo.robots[int(told[task])], memo.station[task]
+            free = robot.task is None or robot.index in view.resting
+            if memo.own[task]:
+                if free and robot.pod >= 0 and consult.serves(robot.pod, station):
+                    yield bring(view, robot, robot.pod, station)
+                    continue
+            elif free and robot.pod < 0 and self.may_come(station):
+                pod = consult.pod_for(robot, station)
+                if pod >= 0:
+                    yield bring(view, keeper_of(view, robot, pod), pod, station)
+                    continue
+            call.stale += 1
+        for robot in memo.robots:
+            if robot.task is None and robot.index in view.asking:
+                place = consult.place_for(robot) if robot.pod >= 0 else -1
+                if place >= 0:
+                    yield Park(robot, place)
+                elif robot.pod < 0:
+                    yield self.to_rest(robot)
+
+    def _goes_on(self, robot: Robot, consult: Consult) -> Iterator[tuple[int, float]]:
+        """Yield the stations that a carried pod can serve, and the way there."""
+        away_s = self.view.travel.away(robot.waypoint, loaded=True)
+        for station in self.view.stations:
+            here = station.index == robot.station
+            if (here or self.may_come(station.index)) and consult.serves(robot.pod, station.index):
+                yield station.index, 0.0 if here else float(away_s[station.waypoint])
+
+    def _to_station(
+        self, robots: Sequence[Robot], empty: list[int], number: int
+    ) -> NDArray[np.float64]:
+        """Return the time until each robot has brought a pod, mean over pods; inf if it cannot."""
+        view, column = self.view, np.full(len(robots), np.inf)
+        if not empty or not view.has_open_work(number):
+            return column
+        picks = len(view.pick_stations)
+        if number < picks:
+            pods = pick_candidates(view, robots[empty[0]], view.pick_stations[number]).pods
+        else:
+            station = view.replenishment_stations[number - picks]
+            pods = replenishment_candidates(view, robots[empty[0]], station).pods
+        if len(pods):
+            at = view.storage.pod_waypoint[pods]
+            bring_s = view.travel.to(view.stations[number].waypoint, loaded=True)[at]
+            for row in empty:
+                reach_s = view.travel.estimate_s(robots[row].waypoint, at)
+                column[row] = float(np.mean(reach_s + bring_s))
+        return column
+
+    def _wanted(self, number: int) -> int:
+        """How many pods a station could use at most."""
+        picks = len(self.view.pick_stations)
+        if number < picks:
+            target = self.view.pick_stations[number]
+            return target.requests.units + target.queued_requests.units
+        return len(self.view.replenishment_stations[number - picks].waiting)
+
+    def _balance(
+        self,
+        robots: int,
+        station: list[int],
+        own: list[bool],
+        arrive: list[NDArray[np.float64]],
+    ) -> Balance:
+        view, given = self.view, self.parameters
+        picks = len(view.pick_stations)
+        value = [given.pick_value_s if s < picks else given.bundle_value_s for s in station]
+        due_s = [
+            min((order.due_s for order in target.orders.values()), default=np.inf) - view.now_s
+            for target in view.pick_stations
+        ]
+        queue = [len(target.tasks) for target in view.stations]
+        here = np.bincount(
+            [s for s, o in zip(station, own, strict=True) if o], minlength=len(queue)
+        )
+        return Balance(
+            arrive_s=np.stack(arrive, axis=1) if arrive else np.zeros((robots, 0)),
+            leave_s=np.array(value, np.float64),
+            due_s=np.array([due_s[s] if s < picks else np.inf for s in station], np.float64),
+            station=np.array(station, np.int64),
+            queue=np.array(queue),
+            service_s=np.full(len(queue), given.service_s),
+            room=np.array([self.may_come(s) for s in range(len(queue))]) + here,
+            late_weight=given.late_weight,
+        )

@@ -1,0 +1,151 @@
+"""Pods that stations could use next: the tasks that routes are made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.pps.candidates import PickCandidates
+    from rmfs.control.view import View
+    from rmfs.world.stations import PickStation, ReplenishmentStation
+
+
+@dataclass(frozen=True)
+class Worth:
+    """What the work of a pod is worth, in seconds of a robot.
+
+    Attributes
+    ----------
+    unit_s, order_s, bundle_s
+        A unit picked, an order completed, a bundle stored.
+    """
+
+    unit_s: float
+    order_s: float
+    bundle_s: float
+
+
+@dataclass(frozen=True)
+class Job:
+    """A pod that a station could use.
+
+    Attributes
+    ----------
+    bring_s
+        Way of the pod to the station, loaded.
+    service_s
+        How long it will keep the station.
+    due_s
+        When the station will have run out of work, from now.
+    worth_s
+        What its work is worth.
+    """
+
+    pod: int
+    station: int
+    bring_s: float
+    service_s: float
+    due_s: float
+    worth_s: float
+
+
+def jobs(view: View, worth: Worth, robots_per_station: int, per_station: int) -> list[Job]:
+    """Choose pods for every station, one after the other.
+
+    The next pod of a pick station is the one whose units, of requests that those before it leave
+    open, and completed orders are worth most over its way; ties: the lowest number. The next pod of
+    a replenishment station is the one with the most bundles over its way. A pod is chosen once.
+
+    Parameters
+    ----------
+    view
+        The world; a robot at least.
+    worth
+        What work is worth.
+    robots_per_station
+        How many robots may be at, or on their way to, a station.
+    per_station
+        How many pods are chosen for each station at most.
+    """
+    taken: set[int] = set()
+    found: list[Job] = []
+    for station in view.stations:
+        count = min(per_station, robots_per_station - len(station.tasks))
+        if count > 0 and view.has_open_work(station.index):
+            if station.index < len(view.pick_stations):
+                target = view.pick_stations[station.index]
+                found += _picks(view, target, worth, count, taken)
+            else:
+                number = station.index - len(view.pick_stations)
+                found += _bundles(view, view.replenishment_stations[number], worth, count, taken)
+    return found
+
+
+def _picks(
+    view: View, station: PickStation, worth: Worth, count: int, taken: set[int]
+) -> Iterator[Job]:
+    """Cover the requests of a pick station greedily."""
+    pods = pick_candidates(view, view.robots[0], station)
+    if not len(pods):
+        return
+    unit_s = view.layout.pick_stations[station.index].unit_transfer_s
+    busy_s = unit_s * sum(len(task.picks) for task in station.tasks.values())
+    to_station_s = view.travel.to(station.waypoint, loaded=True)
+    bring_s = to_station_s[view.storage.pod_waypoint[pods.pods]]
+    left = view.need[station.index][pods.skus].astype(np.int64)
+    completes = _completes(pods)
+    for _ in range(count):
+        units = np.minimum(pods.have, left[:, None]).sum(axis=0)
+        gain = units * worth.unit_s + completes.sum(axis=0) * worth.order_s
+        rating = np.where(units > 0, gain - bring_s, -np.inf)
+        rating[np.isin(pods.pods, list(taken))] = -np.inf
+        best = int(rating.argmax())
+        if rating[best] == -np.inf:
+            return
+        pod, service_s = int(pods.pods[best]), unit_s * float(units[best])
+        yield Job(pod, station.index, float(bring_s[best]), service_s, busy_s, float(gain[best]))
+        taken.add(pod)
+        busy_s += service_s
+        left -= np.minimum(pods.have[:, best], left)
+        completes = completes & ~completes[:, [best]]
+
+
+def _completes(pods: PickCandidates) -> NDArray[np.bool_]:
+    """Return which orders each pod completes, shape (O, C)."""
+    done = pods.completed()
+    return done.flags[: done.assigned].copy()
+
+
+def _bundles(
+    view: View, station: ReplenishmentStation, worth: Worth, count: int, taken: set[int]
+) -> Iterator[Job]:
+    """Bring the pods with the most bundles."""
+    pods = replenishment_candidates(view, view.robots[0], station).pods
+    number = station.index - len(view.pick_stations)
+    each_s = view.layout.replenishment_stations[number].bundle_transfer_s
+    busy_s = each_s * station.bundles
+    bundles = view.bundles_waiting[number][pods]
+    bring_s = view.travel.to(station.waypoint, loaded=True)[view.storage.pod_waypoint[pods]]
+    rating = bundles * worth.bundle_s - bring_s
+    for best in np.argsort(-rating, kind="stable").tolist():
+        pod = int(pods[best])
+        if count == 0:
+            return
+        if pod not in taken:
+            taken.add(pod)
+            count -= 1
+            service_s, worth_s = (
+                each_s * float(bundles[best]),
+                worth.bundle_s * float(bundles[best]),
+            )
+            yield Job(pod, station.index, float(bring_s[best]), service_s, busy_s, worth_s)
+            busy_s += service_s

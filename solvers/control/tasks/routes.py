@@ -1,0 +1,277 @@
+"""TA routes: the return of one pod combined with the fetch of the next, for all robots at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+import numpy as np
+import pydantic
+
+from rmfs.control.asks import Answer, Ask
+from rmfs.control.decisions import Park
+from rmfs.control.problems import Problem
+from rmfs.control.psa.nearest import Nearest
+from rmfs.control.ta.stations import bring, keeper_of
+from rmfs.world.tasks import TaskKind
+from solvers.control.answers import answer
+from solvers.control.parameters import SearchParameters
+from solvers.control.tasks.asking import Asking, NotNegative, TaskParameters
+from solvers.control.tasks.jobs import Job, Worth, jobs
+from solvers.models.solution import Limits
+from solvers.models.tasks import sequence
+from solvers.models.tasks.sequence import Sequence as Routing
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.asks import Call
+    from rmfs.control.decisions import Prepare, TaskDecision
+    from rmfs.control.ta import Consult
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+Count = Annotated[int, pydantic.Field(ge=1)]
+NONE = -1
+
+
+@dataclass(frozen=True)
+class Question:
+    """Robots, pods for stations and empty places.
+
+    Attributes
+    ----------
+    tasks, places
+        How many tasks after each pod, and places between them, CP-SAT looks at; 0 tasks for
+        insertion alone.
+    """
+
+    data: Routing
+    limits: Limits
+    tasks: int
+    places: int
+
+
+def solve(question: Question) -> Answer:
+    """Find what each robot does first: `place` for its pod, then `task`; -1 for none, shape (R,).
+
+    Insertion first, then CP-SAT from there over the shortest ways.
+    """
+    data = question.data
+    found = sequence.solve_greedily(data)
+    if found.values is not None and question.tasks and data.tasks:
+        ways = sequence.short_ways(data, found.values, tasks=question.tasks, places=question.places)
+        found = sequence.solve(data, question.limits, start=found.values, ways=ways)
+    if found.values is None:
+        return answer(found, None)
+    routes = found.values
+    first = np.array([tasks[0] if tasks else NONE for tasks in routes.tasks], np.int64)
+    return answer(found, {"place": routes.robot_place, "task": first})
+
+
+@dataclass(frozen=True)
+class Memo:
+    """What the numbers of a question mean.
+
+    Attributes
+    ----------
+    robots
+        Those of the routes.
+    again
+        Robots whose pod is served again where it stands.
+    jobs
+        Of each task.
+    places
+        Waypoint of each place, shape (L,).
+    """
+
+    robots: list[Robot]
+    again: list[Robot]
+    jobs: list[Job]
+    places: NDArray[np.int32]
+
+
+class RoutesParameters(TaskParameters, SearchParameters):
+    """Parameters of TA routes."""
+
+    work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.01
+    """Limit of the search in deterministic seconds of CP-SAT: about the same in wall time."""
+    gap: NotNegative = 0.01
+    """Relative gap between value and bound at which the search ends."""
+    unit_value_s: NotNegative = 40.0
+    """Seconds of a robot that a unit picked is worth."""
+    order_value_s: NotNegative = 40.0
+    """The same for an order completed."""
+    bundle_value_s: NotNegative = 80.0
+    """The same for a bundle stored."""
+    pods_per_station: Count = 3
+    """Pods that are looked at for each station."""
+    places_per_robot: Count = 6
+    """Empty places that are looked at for each pod to be stored, the nearest to its station."""
+    places_per_task: Count = 3
+    """Empty places that are looked at for each pod to be fetched, the nearest to it."""
+    ways_per_pod: Annotated[int, pydantic.Field(ge=0)] = 3
+    """Tasks after each pod that CP-SAT looks at; 0 for insertion alone."""
+
+
+class RoutesControl(Asking[RoutesParameters]):
+    """Plans routes of robots over stores and fetches, and lets each robot take the first step.
+
+    The robots are those that need a task or rest, those that are storing a pod, and those at the
+    head of a queue. The tasks are the best next pods of every station, each due when its station
+    runs out of work. Driving, lateness and the worth of tasks left undone are weighed: a pod is
+    stored where the way there and on to the next pod is short, not at the place nearest to it. The
+    plan is made anew whenever a robot needs a task.
+
+    A pod that can serve more where it stands is served. The routes choose pods and places, so PPS
+    and PSA must be dummies. Without an answer pods go to the nearest empty place.
+    """
+
+    parameters_model = RoutesParameters
+    decides: ClassVar[frozenset[Problem]] = frozenset({Problem.PPS, Problem.PSA})
+    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.tasks.routes",)
+
+    def __init__(self, parameters: RoutesParameters, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._nearest = Nearest(Nearest.parameters_model(), view, rng)
+        self._transfer_s = max(kind.pod_transfer_s for kind in view.layout.robot_kinds)
+        given = parameters
+        self._worth = Worth(given.unit_value_s, given.order_value_s, given.bundle_value_s)
+
+    def place_for(self, robot: Robot, consult: Consult) -> int:
+        """Find the nearest empty place."""
+        return self._nearest.place(robot)
+
+    def pod_for(self, robot: Robot, station: int, consult: Consult) -> int:
+        """Find the best next pod of a station."""
+        return next((job.pod for job in self._jobs() if job.station == station), NONE)
+
+    def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Question]:
+        """State the routes."""
+        given, view = self.parameters, self.view
+        again = [
+            r for r in robots if r.pod >= 0 and r.station >= 0 and consult.serves(r.pod, r.station)
+        ]
+        planned = [robot for robot in robots if robot not in again]
+        planned += [robot for robot in view.robots if _is_soon_free(robot)]
+        found = self._jobs()
+        places = self._places(planned, found)
+        data = self._routing(planned, found, places)
+        question = Question(data, given.limits, given.ways_per_pod, 2)
+        sizes = {"robots": len(planned), "tasks": len(found), "places": len(places)}
+        return Ask(solve, question, sizes, Memo(planned, again, found, places))
+
+    def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:
+        """Let robots that need a task take the first step of their route."""
+        assert call.solution is not None
+        memo: Memo = call.ask.memo
+        view = self.view
+        for robot in memo.again:
+            if robot.task is None and consult.serves(robot.pod, robot.station):
+                yield bring(view, robot, robot.pod, robot.station)
+            else:
+                call.stale += 1
+        steps = zip(memo.robots, call.solution["place"], call.solution["task"], strict=True)
+        for robot, place, task in steps:
+            if robot.task is not None and robot.index not in view.resting:
+                continue
+            if robot.pod >= 0:
+                if place >= 0 and self._is_empty(memo.places[place]):
+                    yield Park(robot, int(memo.places[place]))
+                else:
+                    call.stale += 1
+            elif task >= 0:
+                job = memo.jobs[int(task)]
+                if view.storage.is_at_hand[job.pod] and consult.serves(job.pod, job.station):
+                    yield bring(view, keeper_of(view, robot, job.pod), job.pod, job.station)
+                else:
+                    call.stale += 1
+            elif robot.task is None:
+                yield self.to_rest(robot)
+
+    def _jobs(self) -> list[Job]:
+        given = self.parameters
+        return jobs(self.view, self._worth, given.robots_per_station, given.pods_per_station)
+
+    def _is_empty(self, place: int) -> bool:
+        storage = self.view.storage
+        return bool(storage.is_empty[storage.place_index[place]])
+
+    def _places(self, robots: Sequence[Robot], tasks: Sequence[Job]) -> NDArray[np.int32]:
+        """Choose empty places near the stations of pods to be stored, and near those to fetch."""
+        given, storage, travel = self.parameters, self.view.storage, self.view.travel
+        empty = storage.places[storage.is_empty]
+        if not len(empty):
+            return empty
+        kept = []
+        for robot in robots:
+            if robot.pod >= 0:
+                away_s = travel.away(robot.waypoint, loaded=True)[empty]
+                kept.append(np.argsort(away_s, kind="stable")[: given.places_per_robot])
+        for job in tasks:
+            away_s = travel.estimate_s(storage.place_of[job.pod], empty)
+            kept.append(np.argsort(away_s, kind="stable")[: given.places_per_task])
+        chosen: NDArray[np.int32] = empty[np.unique(np.concatenate(kept))] if kept else empty[:0]
+        return chosen
+
+    def _routing(
+        self, robots: Sequence[Robot], tasks: Sequence[Job], places: NDArray[np.int32]
+    ) -> Routing:
+        view, travel = self.view, self.view.travel
+        at = np.array([view.storage.place_of[job.pod] for job in tasks], np.int32)
+        of = [view.stations[job.station].waypoint for job in tasks]
+        shape = len(tasks), len(places)
+
+        def away_s(waypoints: Sequence[int]) -> NDArray[np.float64]:
+            rows = [travel.away(waypoint, loaded=True)[places] for waypoint in waypoints]
+            return np.array(rows).reshape(len(waypoints), len(places)) + self._transfer_s
+
+        carrying = np.array([robot.pod >= 0 and not _is_parking(robot) for robot in robots], bool)
+        stow_s = np.zeros((len(robots), len(places)))
+        carriers = np.flatnonzero(carrying)
+        stow_s[carriers] = away_s([robots[row].waypoint for row in carriers.tolist()])
+        return Routing(
+            ready_s=np.array([self._ready_s(robot) for robot in robots]),
+            carrying=carrying,
+            reach_s=np.array([travel.estimate_s(robot.waypoint, at) for robot in robots]).reshape(
+                len(robots), len(tasks)
+            ),
+            stow_s=stow_s,
+            fetch_s=np.array([travel.estimate_s(place, at) for place in places.tolist()]).reshape(
+                shape[::-1]
+            ),
+            bring_s=np.array([job.bring_s + self._transfer_s for job in tasks]),
+            service_s=np.array([job.service_s for job in tasks]),
+            store_s=away_s(of),
+            earliest_s=np.zeros(len(tasks)),
+            latest_s=np.full(len(tasks), np.inf),
+            due_s=np.array([job.due_s for job in tasks]),
+            skip_s=np.array([job.worth_s for job in tasks]),
+        )
+
+    def _ready_s(self, robot: Robot) -> float:
+        """When a robot can begin, from now."""
+        view = self.view
+        if _is_parking(robot):
+            at = view.travel.robot_waypoint(robot.index)
+            way_s = view.travel.estimate_s(at, np.array([robot.waypoint], np.int32))
+            return float(way_s[0]) + self._transfer_s
+        task = robot.task
+        if robot.station < 0 or task is None:
+            return 0.0
+        if task.kind is TaskKind.PICK:
+            seconds = view.layout.pick_stations[robot.station].unit_transfer_s
+            return seconds * len(task.picks)
+        number = robot.station - len(view.pick_stations)
+        return view.layout.replenishment_stations[number].bundle_transfer_s * len(task.bundles)
+
+
+def _is_parking(robot: Robot) -> bool:
+    return robot.task is not None and robot.task.kind is TaskKind.PARK
+
+
+def _is_soon_free(robot: Robot) -> bool:
+    """Whether a robot has a task that will be done soon: storing a pod, or being served."""
+    return robot.task is not None and (_is_parking(robot) or robot.station >= 0)
