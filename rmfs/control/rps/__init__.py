@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rmfs.control.asks import Ask
-    from rmfs.control.decisions import PromiseBundle, ReleasePod
+    from rmfs.control.decisions import PromiseBundle, ReleasePod, SendBundle
 
 P = TypeVar("P", bound=Parameters)
 
@@ -29,5 +29,8 @@ class ReplenishmentPodSelection(Controller[P]):
     triggers = frozenset({Trigger.START, Trigger.NEW_BUNDLE, Trigger.UNIT_PICKED})
 
     @abstractmethod
-    def decide(self) -> Iterator[PromiseBundle | ReleasePod | Ask[Any]]:
-        """Yield promises and releases until nothing is to be decided now."""
+    def decide(self) -> Iterator[PromiseBundle | ReleasePod | SendBundle | Ask[Any]]:
+        """Yield promises and releases until nothing is to be decided now.
+
+        A rule that also decides ROA sends the bundles of a pod after it has released them.
+        """

@@ -1,0 +1,245 @@
+"""RPS stocking: which bundles go into which pods at which stations, for what it saves later."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+import numpy as np
+import pydantic
+
+from rmfs.control.asks import Answer, Ask
+from rmfs.control.decisions import PromiseBundle, ReleasePod, SendBundle
+from rmfs.control.problems import Problem, Trigger
+from rmfs.control.rps import ReplenishmentPodSelection
+from rmfs.control.trackers.frequency import Frequency, PairFrequency
+from solvers.control.answers import answer
+from solvers.control.foresight import Foresight
+from solvers.control.parameters import SearchParameters
+from solvers.models import replenishment
+from solvers.models.replenishment import Replenishment
+from solvers.models.solution import Limits
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from typing import Any
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.asks import Call
+    from rmfs.control.view import View
+    from rmfs.world.orders import Bundle
+
+    Told = Ask["Question"] | PromiseBundle | ReleasePod | SendBundle
+
+Method = Literal["cp_sat", "highs", "rounding", "greedy"]
+NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
+Count = Annotated[int, pydantic.Field(ge=1)]
+
+_SOLVERS = {
+    "cp_sat": replenishment.solve_by_cp_sat,
+    "highs": replenishment.solve_by_highs,
+    "rounding": replenishment.solve_by_rounding,
+    "greedy": replenishment.solve_greedily,
+}
+_NODES = 1
+_SCORED_PER_S = 1e6
+"""Candidates that the greedy rule scores in about a second."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """Bundles, pods and stations, and who decides.
+
+    Attributes
+    ----------
+    method
+        `cp_sat`, `highs` or `rounding`, each beginning with the greedy rule, or `greedy` alone.
+    """
+
+    data: Replenishment
+    method: str
+    limits: Limits
+
+
+def solve(question: Question) -> Answer:
+    """Find `pod` of each bundle and `station` of each pod, -1 for none."""
+    found = replenishment.solve_greedily(question.data)
+    if question.method != "greedy":
+        start = found.values
+        found = _SOLVERS[question.method](question.data, question.limits, start=start)
+    values = found.values
+    return answer(found, None if values is None else dict(vars(values)))
+
+
+class StockingParameters(SearchParameters):
+    """Parameters of RPS stocking."""
+
+    method: Method = "cp_sat"
+    """Who decides: CP-SAT, HiGHS (at its root node), rounding of the relaxation, or the greedy
+    rule."""
+    buffer_s: NotNegative = 30.0
+    """Seconds for which decisions are collected before the optimiser is asked again."""
+    work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.05
+    """Limit of the search in deterministic seconds of CP-SAT: about the same in wall time."""
+    gap: NotNegative = 0.01
+    """Relative gap between value and bound at which the search ends."""
+    leave_s: NotNegative = 20.0
+    """Seconds of a robot that it costs to leave a bundle for later, besides what it would save."""
+    bundles: Count = 60
+    """Bundles that are looked at, the oldest first."""
+    pods_per_bundle: Count = 8
+    """Pods that are looked at for each bundle, the best first."""
+    stations_per_pod: Count = 2
+    """Stations that are looked at for each pod, the nearest first."""
+
+
+class StockingControl(ReplenishmentPodSelection[StockingParameters]):
+    """Chooses bundles, pods and stations together: ROA must be a dummy.
+
+    A bundle is worth the robot time that its units will save by raising the pile-on: much where
+    its SKU is wanted and missing, and more in a pod with SKUs that are ordered together with it.
+    That is weighed against the way of the pod, to a station with room, once for all its bundles.
+    A pod that is to be brought to a station anyway takes more bundles for nothing. The optimiser is
+    asked when bundles wait and a station has room, at most once per `buffer_s`; where it fails, the
+    greedy rule decides.
+    """
+
+    parameters_model = StockingParameters
+    decides: ClassVar[frozenset[Problem]] = frozenset({Problem.ROA})
+    subscriptions = frozenset({Trigger.BUNDLE_STORED, Trigger.STATION_SWITCHED})
+    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.stocking",)
+
+    def __init__(
+        self, parameters: StockingParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        self._foresight = Foresight(view, horizon_s=1800.0, kept_s=300.0)
+        self._frequency = view.trackers.get(Frequency)
+        self._pairs = view.trackers.get(PairFrequency)
+        self._asked_s = -inf
+        self._wants_to_ask = False
+
+    def next_event_s(self) -> float:
+        """When the optimiser may be asked again, if it is to be asked."""
+        return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
+
+    def decide(self) -> Iterator[Told]:
+        """Ask if bundles wait for which some station has room, and the last time is long ago."""
+        self._wants_to_ask = not self.in_flight and self._is_possible()
+        if not self._wants_to_ask or self.view.now_s < self._asked_s + self.parameters.buffer_s:
+            return
+        self._asked_s = self.view.now_s
+        yield self._question()
+
+    def answered(self, call: Call) -> Iterator[Told]:
+        """Apply what still holds, pod by pod; without a solution, what the greedy rule says."""
+        if call.solution is not None:
+            yield from self._apply(call.solution, call.ask.memo, call)
+            return
+        question: Question = call.ask.question
+        found = solve(Question(question.data, "greedy", question.limits)).solution
+        self.basis = None
+        if found is not None:
+            yield from self._apply(found, call.ask.memo, None)
+
+    def _is_possible(self) -> bool:
+        waiting = self.view.bundles.without_pod.values()
+        room = max((s.free_space for s in self.view.replenishment_stations if s.active), default=0)
+        return any(bundle.space <= room for bundle in waiting)
+
+    def _apply(
+        self, solution: Mapping[str, Any], bundles: Sequence[Bundle], call: Call | None
+    ) -> Iterator[Told]:
+        inventory, view = self.view.inventory, self.view
+        station_of = np.asarray(solution["station"]).tolist()
+        by_pod: dict[int, list[Bundle]] = {}
+        for bundle, pod in zip(bundles, np.asarray(solution["pod"]).tolist(), strict=True):
+            if pod >= 0:
+                by_pod.setdefault(pod, []).append(bundle)
+        for pod, chosen in by_pod.items():
+            target = view.replenishment_stations[station_of[pod]]
+            room, space = inventory.capacity[pod] - inventory.load[pod], target.free_space
+            kept = []
+            for bundle in chosen:
+                fits = bundle.pod < 0 and bundle.space <= min(room, space) and target.active
+                if fits:
+                    room, space = room - bundle.space, space - bundle.space
+                    kept.append(bundle)
+                    yield PromiseBundle(bundle, pod)
+                elif call is not None:
+                    call.stale += 1
+            if kept:
+                yield ReleasePod(pod)
+                for bundle in kept:
+                    yield SendBundle(bundle, target.index)
+
+    def _question(self) -> Ask[Question]:
+        given, view = self.parameters, self.view
+        waiting = view.bundles.without_pod.values()
+        bundles = [bundle for bundle in waiting if bundle.station < 0][: given.bundles]
+        inventory = view.inventory
+        everything = Replenishment(
+            worth_s=self._worth_s(bundles),
+            leave_s=np.full(len(bundles), given.leave_s),
+            space=np.array([bundle.space for bundle in bundles]),
+            pod_space=np.maximum(inventory.capacity - inventory.load, 0.0),
+            trip_s=self._trip_s(),
+            station_space=np.array(
+                [s.free_space if s.active else 0.0 for s in view.replenishment_stations]
+            ),
+        )
+        data = replenishment.best_pods(
+            everything, pods=given.pods_per_bundle, stations=given.stations_per_pod
+        )
+        limits = Limits(deterministic_s=given.work_s, gap=given.gap, nodes=_NODES)
+        pods, stations = data.trip_s.shape
+        sizes = {"bundles": len(bundles), "pods": pods, "stations": stations}
+        return Ask(solve, Question(data, given.method, limits), sizes, bundles)
+
+    def _worth_s(self, bundles: Sequence[Bundle]) -> NDArray[np.float64]:
+        """Rate every pod for every bundle, shape (B, P)."""
+        view, foresight = self.view, self._foresight
+        visits_per_h = max(float(foresight.visits_per_h.sum()), 1e-3)
+        between_h = min(len(view.inventory.capacity) / visits_per_h, 24.0)
+        skus = np.array([bundle.sku for bundle in bundles], np.int64)
+        return replenishment.bundle_worth_s(
+            view.inventory.available,
+            skus,
+            np.array([bundle.units for bundle in bundles], np.int64),
+            foresight.units_per_h * between_h,
+            self._affinity(skus),
+            visit_s=len(view.robots) * 3600.0 / visits_per_h,
+            pile_on=foresight.pile_on,
+        )
+
+    def _affinity(self, skus: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Lines of each SKU ordered with a line of these, shape (K, K); other rows are 0."""
+        count = len(self.view.skus)
+        affinity = np.zeros((count, count))
+        units = self._frequency.units
+        for sku in np.unique(skus).tolist():
+            affinity[sku] = self._pairs.orders_with(sku)[:count] / max(int(units[sku]), 1)
+        return affinity
+
+    def _trip_s(self) -> NDArray[np.float64]:
+        """Robot time to bring each pod and to store it again, shape (P, S), s.
+
+        Pods that robots carry are left alone; those that go to a station anyway cost nothing there.
+        """
+        view = self.view
+        at = view.storage.pod_waypoint
+        transfer_s = max(kind.pod_transfer_s for kind in view.layout.robot_kinds)
+        trips = [
+            view.travel.to(s.waypoint, loaded=True)[at]
+            + view.travel.away(s.waypoint, loaded=True)[at]
+            + 2.0 * transfer_s
+            for s in view.replenishment_stations
+        ]
+        trip_s = np.stack(trips, axis=1)
+        trip_s[~view.storage.is_stored] = inf
+        goes = view.bundles_waiting.T > 0
+        trip_s[goes.any(axis=1)] = inf
+        trip_s[goes] = 0.0
+        return trip_s
