@@ -199,5 +199,8 @@ WORK_UNITS = {
     "highs": "simplex iterations over all nodes",
     "clarabel": "interior-point iterations",
     "rule": "candidates scored",
+    "scipy": "entries of the cost table",
+    "min_cost_flow": "arcs",
+    "rounding": "simplex iterations",
 }
 """The unit of `Solution.work` per back end; heuristics count under "rule"."""

@@ -23,6 +23,8 @@ SECONDS_PER_UNIT = {
     "clarabel": 1e-3,
     "rule": 1e-7,
     "scipy": 1e-8,
+    "min_cost_flow": 1e-6,
+    "rounding": 1e-4,
 }
 """Wall seconds of a unit of work of each back end, measured (docs: optimisers in the loop)."""
 

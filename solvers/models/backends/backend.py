@@ -79,7 +79,7 @@ def solve_by(
 
     Returns
     -------
-    What the solver found.
+    What the solver found; never worse than the start.
 
     Raises
     ------
@@ -94,7 +94,26 @@ def solve_by(
     point = None if start is None else formulation.encode(start)
     built_s = perf_counter() - begin
     outcome = backend(formulation.program, limits, seed=seed, start=point)
-    return outcome.solution(formulation.decode, objective, build_s=built_s)
+    found = outcome.solution(formulation.decode, objective, build_s=built_s)
+    return found if start is None else at_least(found, start, objective(start))
+
+
+def at_least(found: Solution[V], start: V, value: float) -> Solution[V]:
+    """Return the start if a search has found nothing, or nothing better, before its limit.
+
+    Parameters
+    ----------
+    found
+        What the search found; a minimum.
+    start
+        Feasible values.
+    value
+        Their objective.
+    """
+    if found.found and found.objective <= value:
+        return found
+    status = Status.OPTIMAL if found.status is Status.OPTIMAL else Status.FEASIBLE
+    return replace(found, values=start, objective=value, status=status)
 
 
 def relax(program: LinearProgram, limits: Limits = NO_LIMITS, *, seed: int = 0) -> Outcome:

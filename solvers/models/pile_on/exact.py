@@ -6,7 +6,7 @@ import math
 import time
 from dataclasses import replace
 
-from solvers.models.backends.backend import Backend
+from solvers.models.backends.backend import Backend, at_least
 from solvers.models.checks import require
 from solvers.models.pile_on.candidates import Candidates, everything
 from solvers.models.pile_on.data import PileOn
@@ -70,11 +70,4 @@ def solve_with(
         # The best of the pruned pairs proves nothing about the others.
         solution = replace(solution, bound=-math.inf, status=Status.FEASIBLE)
     worth = objective(data, fallback)
-    if not solution.found or solution.objective > worth:
-        solution = replace(
-            solution,
-            values=fallback,
-            objective=worth,
-            status=Status.OPTIMAL if solution.status is Status.OPTIMAL else Status.FEASIBLE,
-        )
-    return solution
+    return at_least(solution, fallback, worth)
