@@ -1,0 +1,126 @@
+r"""The problem: every station gets as many orders as it has slots, and pods that cover them.
+
+.. math::
+
+    \min \sum_{ps} y_{ps}, \quad \sum_o x_{os} = C_s, \quad \sum_s x_{os} \le 1, \quad
+    \sum_s y_{ps} \le 1, \quad \sum_p stock_{pk}\, y_{ps} \ge \sum_o units_{ok}\, x_{os}
+
+for all stations s and SKUs k (Valle and Beasley 2021, who speak of racks and pickers). Orders may
+be more than slots; a station is always filled. Beside the pile-on models it knows no time: no pods
+under way, no travel, no slots left empty.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.checks import integers
+
+NONE = -1
+"""The station of an order, or of a pod, that is not used."""
+
+
+@dataclass(frozen=True)
+class RackAllocation:
+    """Orders, pods and stations.
+
+    Parameters
+    ----------
+    units
+        Units of each SKU that each order asks for, shape (O, K).
+    stock
+        Units of each SKU on each pod, shape (P, K).
+    slots
+        Orders that each station takes, shape (S,).
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+
+    units: NDArray[np.int64]
+    stock: NDArray[np.int64]
+    slots: NDArray[np.int64]
+
+    def __post_init__(self) -> None:
+        units = integers("units", self.units, (None, None), low=0)
+        object.__setattr__(self, "units", units)
+        stock = integers("stock", self.stock, (None, units.shape[1]), low=0)
+        object.__setattr__(self, "stock", stock)
+        object.__setattr__(self, "slots", integers("slots", self.slots, (None,), low=0))
+
+    @cached_property
+    def lines(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Order and SKU of each order line, both shape (L,)."""
+        order, sku = np.nonzero(self.units)
+        return order, sku
+
+    @property
+    def sizes(self) -> tuple[int, int, int]:
+        """Numbers of orders, pods and stations."""
+        return len(self.units), len(self.stock), len(self.slots)
+
+
+@dataclass(frozen=True)
+class Allocation:
+    """Who goes where.
+
+    Attributes
+    ----------
+    order_station
+        Station of each order, or `NONE`, shape (O,).
+    pod_station
+        Station of each pod, or `NONE`, shape (P,).
+    """
+
+    order_station: NDArray[np.int64]
+    pod_station: NDArray[np.int64]
+
+
+def objective(data: RackAllocation, allocation: Allocation) -> float:
+    """Return how many pods are used.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    allocation
+        Who goes where.
+    """
+    return float((allocation.pod_station != NONE).sum())
+
+
+def violations(data: RackAllocation, allocation: Allocation) -> list[str]:
+    """Say what is wrong with an allocation; empty if nothing is.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    allocation
+        Who goes where.
+    """
+    orders, pods, stations = data.sizes
+    for name, chosen, count in (
+        ("order", allocation.order_station, orders),
+        ("pod", allocation.pod_station, pods),
+    ):
+        if chosen.shape != (count,) or not ((chosen >= NONE) & (chosen < stations)).all():
+            return [f"not one station, or none, for every {name}"]
+    found = []
+    given = np.bincount(
+        allocation.order_station[allocation.order_station != NONE], minlength=stations
+    )
+    if (given != data.slots).any():
+        found.append("a station that is not filled, or overfilled")
+    for station in range(stations):
+        asked = data.units[allocation.order_station == station].sum(axis=0)
+        there = data.stock[allocation.pod_station == station].sum(axis=0)
+        if (asked > there).any():
+            found.append(f"station {station} lacks units")
+    return found

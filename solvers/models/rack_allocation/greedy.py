@@ -1,0 +1,122 @@
+"""Station after station: the pod that lets most orders be filled, and so on until it is full."""
+
+from __future__ import annotations
+
+import math
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.rack_allocation.data import (
+    NONE,
+    Allocation,
+    RackAllocation,
+    objective,
+    violations,
+)
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+
+
+def solve(
+    data: RackAllocation,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: Allocation | None = None,
+) -> Solution[Allocation]:
+    """Fill stations one after another, the one with most slots first.
+
+    A station gets the pod with which it can fill most further orders, and these, fewest units
+    first; if no pod completes one, the pod that adds most of the lines still missing. Pods that
+    turn out not to be needed are given back.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    limits, seed, start
+        Not needed.
+
+    Returns
+    -------
+    Who goes where; ties go to the lowest index. Status LIMIT if a station could not be filled,
+    INFEASIBLE if there are fewer orders that stock can serve than slots. The bound is one pod for
+    each station that gets an order that asks for something.
+    """
+    begin = perf_counter()
+    servable = (data.units <= data.stock.sum(axis=0)).all(axis=1)
+    # orders that ask for nothing need no pod: at best they fill the smallest stations
+    nothing = int((~data.units.any(axis=1)).sum())
+    bound = float((np.sort(data.slots).cumsum() > nothing).sum())
+    filling = _Filling(data)
+    for station in np.argsort(-data.slots, kind="stable").tolist():
+        filling.fill(station)
+    allocation = Allocation(filling.order_station, filling.pod_station)
+    wall_s, work = perf_counter() - begin, float(filling.scored)
+    if violations(data, allocation):
+        short = int(servable.sum()) < int(data.slots.sum())
+        status = Status.INFEASIBLE if short else Status.LIMIT
+        bound = math.inf if short else bound
+        return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, work)
+    value = objective(data, allocation)
+    return Solution(
+        allocation, value, min(bound, value), Status.FEASIBLE, "rule", wall_s, 0.0, work
+    )
+
+
+class _Filling:
+    """Orders and pods while they are being given out."""
+
+    def __init__(self, data: RackAllocation) -> None:
+        self._data = data
+        self.order_station = np.full(len(data.units), NONE, np.int64)
+        self.pod_station = np.full(len(data.stock), NONE, np.int64)
+        self.scored = 0
+        self._line_order, self._line_sku = data.lines
+        self._line_units = data.units[self._line_order, self._line_sku]
+        self._size = data.units.sum(axis=1)
+
+    def fill(self, station: int) -> None:
+        """Give a station pods and orders until it is full, or no pod helps."""
+        left = np.zeros(self._data.units.shape[1], np.int64)
+        while self._take_orders(station, left):
+            pod = self._next_pod(left)
+            if pod == NONE:
+                return
+            self.pod_station[pod] = station
+            left += self._data.stock[pod]
+        for pod in np.flatnonzero(self.pod_station == station).tolist():
+            if (self._data.stock[pod] <= left).all():
+                self.pod_station[pod] = NONE
+                left -= self._data.stock[pod]
+
+    def _take_orders(self, station: int, left: NDArray[np.int64]) -> int:
+        """Give the station orders that its pods can fill; returns how many slots are left."""
+        free = int(self._data.slots[station] - (self.order_station == station).sum())
+        waiting = np.flatnonzero(self.order_station == NONE)
+        for order in waiting[np.argsort(self._size[waiting], kind="stable")].tolist():
+            if free and (self._data.units[order] <= left).all():
+                self.order_station[order] = station
+                left -= self._data.units[order]
+                free -= 1
+        return free
+
+    def _next_pod(self, left: NDArray[np.int64]) -> int:
+        """Choose the pod that completes most orders; if none does, that covers most lines."""
+        pods = np.flatnonzero(self.pod_station == NONE)
+        lines = np.flatnonzero(self.order_station[self._line_order] == NONE)
+        if not len(pods) or not len(lines):
+            return NONE
+        sku, order = self._line_sku[lines], self._line_order[lines]
+        missing = np.maximum(self._line_units[lines] - left[sku], 0)
+        covered = self._data.stock[np.ix_(pods, sku)] >= missing
+        self.scored += covered.size
+        complete = np.zeros((len(pods), len(self._size)), np.int64)
+        np.add.at(complete.T, order, ~covered.T)
+        of_lines = np.isin(np.arange(len(self._size)), order)
+        completes = ((complete == 0) & of_lines).sum(axis=1)
+        if completes.any():
+            return int(pods[completes.argmax()])
+        adds = (np.minimum(self._data.stock[np.ix_(pods, sku)], missing) > 0).sum(axis=1)
+        return int(pods[adds.argmax()]) if adds.any() else NONE

@@ -1,0 +1,105 @@
+r"""The integer programme.
+
+Two additions make the relaxation tighter without cutting off any allocation. No station needs more
+of SKU k than the sum :math:`d_{sk}` of its :math:`C_s` largest order lines of it, so that
+
+.. math:: \sum_p \min(stock_{pk}, d_{sk})\, y_{ps} \ge \sum_o units_{ok}\, x_{os};
+
+and an order needs a pod for each of its SKUs: :math:`x_{os} \le \sum_{p \ni k} y_{ps}`. Pods with
+nothing that an order wants, and orders that all pods together cannot serve, have no columns.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.models.backends.backend import Formulation
+from solvers.models.program import LinearProgram, ProgramBuilder
+from solvers.models.rack_allocation.data import NONE, Allocation, RackAllocation
+
+
+def formulate(data: RackAllocation) -> Formulation[Allocation]:
+    """State the problem as an integer programme.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    """
+    orders = np.flatnonzero((data.units <= data.stock.sum(axis=0)).all(axis=1))
+    pods = np.flatnonzero((data.stock[:, data.units[orders].any(axis=0)] > 0).any(axis=1))
+    stations = len(data.slots)
+
+    def encode(allocation: Allocation) -> NDArray[np.float64]:
+        number = np.arange(stations)
+        x = allocation.order_station[orders, np.newaxis] == number
+        y = allocation.pod_station[pods, np.newaxis] == number
+        return np.concatenate([x.ravel(), y.ravel()]).astype(np.float64)
+
+    def decode(columns: NDArray[np.float64]) -> Allocation:
+        chosen = columns.reshape(-1, stations) > 0.5 if stations else np.zeros((0, 1), bool)
+        order_station = np.full(len(data.units), NONE, np.int64)
+        pod_station = np.full(len(data.stock), NONE, np.int64)
+        if stations:
+            at = np.where(chosen.any(axis=1), chosen.argmax(axis=1), NONE)
+            order_station[orders], pod_station[pods] = at[: len(orders)], at[len(orders) :]
+        return Allocation(order_station, pod_station)
+
+    return Formulation(_program(data, orders, pods), encode, decode)
+
+
+def _program(
+    data: RackAllocation, orders: NDArray[np.int64], pods: NDArray[np.int64]
+) -> LinearProgram:
+    """State the programme over the orders and pods that have columns."""
+    units, stations = data.units[orders], len(data.slots)
+    skus = np.flatnonzero(units.any(axis=0))
+    units, stock = units[:, skus], data.stock[np.ix_(pods, skus)]
+    builder = ProgramBuilder()
+    x = builder.columns((len(orders), stations))
+    y = builder.columns((len(pods), stations), cost=1.0)
+    at = np.arange(stations)
+    builder.rows(stations, (at, x, 1.0), lower=data.slots, upper=data.slots)
+    builder.rows(len(orders), (np.arange(len(orders))[:, np.newaxis], x, 1.0), upper=1.0)
+    builder.rows(len(pods), (np.arange(len(pods))[:, np.newaxis], y, 1.0), upper=1.0)
+
+    most = _most_wanted(units, data.slots)
+    pod, held = np.nonzero(stock)
+    order, wanted = np.nonzero(units)
+    enough = np.minimum(stock[pod, held, np.newaxis], most[held])
+    builder.rows(
+        len(skus) * stations,
+        (held[:, np.newaxis] * stations + at, y[pod], enough),
+        (wanted[:, np.newaxis] * stations + at, x[order], -units[order, wanted, np.newaxis]),
+        lower=0.0,
+    )
+    # the pods that hold the SKU of each line
+    line, holder = _meet(wanted, held)
+    builder.rows(
+        len(order) * stations,
+        (np.arange(len(order))[:, np.newaxis] * stations + at, x[order], -1.0),
+        (line[:, np.newaxis] * stations + at, y[pod[holder]], 1.0),
+        lower=0.0,
+    )
+    return builder.build()
+
+
+def _most_wanted(units: NDArray[np.int64], slots: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the most units of each SKU that each station can ask for, shape (K, S)."""
+    largest = np.sort(units, axis=0)[::-1].cumsum(axis=0)
+    totals = np.vstack([np.zeros((1, units.shape[1]), np.int64), largest])
+    most: NDArray[np.int64] = totals[np.minimum(slots, len(units))].T
+    return most
+
+
+def _meet(
+    one: NDArray[np.int64], other: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """List the pairs (index into `one`, index into `other`) of equal values."""
+    order = np.argsort(other, kind="stable")
+    begin = np.searchsorted(other[order], one, side="left")
+    count = np.searchsorted(other[order], one, side="right") - begin
+    first = np.repeat(np.arange(len(one)), count)
+    within = np.arange(len(first)) - np.repeat(np.cumsum(count) - count, count)
+    return first, order[within + np.repeat(begin, count)]
