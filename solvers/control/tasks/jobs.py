@@ -132,7 +132,7 @@ def _bundles(
     pods = replenishment_candidates(view, view.robots[0], station).pods
     number = station.index - len(view.pick_stations)
     each_s = view.layout.replenishment_stations[number].bundle_transfer_s
-    busy_s = each_s * station.bundles
+    busy_s = each_s * sum(len(task.bundles) for task in station.tasks.values())
     bundles = view.bundles_waiting[number][pods]
     bring_s = view.travel.to(station.waypoint, loaded=True)[view.storage.pod_waypoint[pods]]
     rating = bundles * worth.bundle_s - bring_s

@@ -95,6 +95,20 @@ def objective(data: RackAllocation, allocation: Allocation) -> float:
     return float((allocation.pod_station != NONE).sum())
 
 
+def pods_needed(data: RackAllocation) -> float:
+    """Bound the number of pods from below: one for each station that must get a real order.
+
+    Orders that ask for nothing need no pod; at best they fill the smallest stations.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    """
+    nothing = int((~data.units.any(axis=1)).sum())
+    return float((np.sort(data.slots).cumsum() > nothing).sum())
+
+
 def violations(data: RackAllocation, allocation: Allocation) -> list[str]:
     """Say what is wrong with an allocation; empty if nothing is.
 

@@ -13,6 +13,7 @@ from solvers.models.rack_allocation.data import (
     Allocation,
     RackAllocation,
     objective,
+    pods_needed,
     violations,
 )
 from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
@@ -46,9 +47,7 @@ def solve(
     """
     begin = perf_counter()
     servable = (data.units <= data.stock.sum(axis=0)).all(axis=1)
-    # orders that ask for nothing need no pod: at best they fill the smallest stations
-    nothing = int((~data.units.any(axis=1)).sum())
-    bound = float((np.sort(data.slots).cumsum() > nothing).sum())
+    bound = pods_needed(data)
     filling = _Filling(data)
     for station in np.argsort(-data.slots, kind="stable").tolist():
         filling.fill(station)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from solvers.models.backends import highs
-from solvers.models.backends.backend import solve_by, with_relaxed_bound
-from solvers.models.rack_allocation.data import Allocation, RackAllocation, objective, violations
-from solvers.models.rack_allocation.program import formulate
+from solvers.models.rack_allocation.data import Allocation, RackAllocation
+from solvers.models.rack_allocation.exact import solve_with
 from solvers.models.solution import NO_LIMITS, Limits, Solution
 
 
@@ -38,12 +37,4 @@ def solve(
     ModelError
         If the start is not feasible.
     """
-    return solve_by(
-        with_relaxed_bound(highs.solve),
-        lambda: formulate(data),
-        limits,
-        seed=seed,
-        start=start,
-        objective=lambda values: objective(data, values),
-        violations=lambda values: violations(data, values),
-    )
+    return solve_with(highs.solve, data, limits, seed=seed, start=start)

@@ -11,18 +11,19 @@ from rmfs.measure.checker import check
 from rmfs.measure.dictionary import reproducible
 
 DECIDES = {
-    "psa-placement": "psa",
-    "psa-prices": "psa",
-    "psa-stays": "psa",
-    "ta-matching": "ta",
-    "ta-balance": "ta",
-    "ta-routes": "ta",
-    "stocking": "rps",
+    "psa-placement": {"psa"},
+    "psa-prices": {"psa"},
+    "psa-stays": {"psa"},
+    "ta-matching": {"ta"},
+    "ta-balance": {"ta"},
+    "ta-routes": {"ta"},
+    "stocking": {"rps"},
+    "solver": {"poa", "psa", "ta", "rps"},
 }
 
 
 def overrides(duration_s: float) -> list[tuple[list[str], Any]]:
-    """Half of the default floor, six robots, bundles from the beginning."""
+    """Half of the default floor, six robots, few SKUs, bundles from the beginning."""
     return [
         (["layout", "robots"], 6),
         (["layout", "pick_stations", "east"], 2),
@@ -30,6 +31,7 @@ def overrides(duration_s: float) -> list[tuple[list[str], Any]]:
         (["layout", "horizontal_aisles"], 4),
         (["scenario", "warmup_s"], 0),
         (["scenario", "duration_s"], duration_s),
+        (["scenario", "skus", "count"], 200),
         (["scenario", "replenishment", "resume_below_share"], 0.8),
         (["scenario", "replenishment", "pause_above_share"], 0.9),
     ]
@@ -37,9 +39,13 @@ def overrides(duration_s: float) -> list[tuple[list[str], Any]]:
 
 def run(controllers: str, duration_s: float, **more: Any) -> Any:
     """Simulate, with the whole trace checked."""
-    made = rmfs.simulate(
-        "default", "default", controllers, seed=2, overrides=overrides(duration_s), **more
-    )
+    settings = overrides(duration_s)
+    if "rps" in DECIDES[controllers]:
+        settings += [
+            (["controllers", "rps", "work_s"], 0.003),
+            (["controllers", "rps", "bundles"], 15),
+        ]
+    made = rmfs.simulate("default", "default", controllers, seed=2, overrides=settings, **more)
     if more.get("trace"):
         report = check(made.layout, made.trace, round(made.end_s * 1e6))
         assert report.ok, report.summary()
@@ -49,14 +55,14 @@ def run(controllers: str, duration_s: float, **more: Any) -> Any:
 @pytest.mark.parametrize("controllers", DECIDES)
 def test_works_and_decides_by_its_model(controllers: str) -> None:
     """Units are picked, bundles stored, and nine of ten decisions come from a solution."""
-    made = run(controllers, 900.0, trace=True)
+    made = run(controllers, 600.0, trace=True)
     found = made.footprint
-    assert found["units_picked"] > 100
+    assert found["units_picked"] > 60
     assert found["bundles_stored"] > 5
     assert found["optimiser_decision_share"] >= 0.9
     assert found["optimiser_failures"] == 0
     asked = made.decisions[made.decisions["source"] == "optimiser"]
-    assert set(asked["problem"]) == {DECIDES[controllers]}
+    assert set(asked["problem"]) == DECIDES[controllers]
     assert asked["applied"].sum() > 10
     assert set(asked["status"]) <= {"optimal", "feasible"}
 
@@ -64,7 +70,7 @@ def test_works_and_decides_by_its_model(controllers: str) -> None:
 @pytest.mark.parametrize("controllers", DECIDES)
 def test_repeats_when_thinking_takes_time(controllers: str) -> None:
     """Under `work` pacing two runs agree, and what has become stale meanwhile is dropped."""
-    one, other = (run(controllers, 400.0, pacing="work") for _ in range(2))
+    one, other = (run(controllers, 300.0, pacing="work") for _ in range(2))
     columns = reproducible("footprint")
     assert one.footprint[columns].to_csv() == other.footprint[columns].to_csv()
     assert one.footprint["paced_s"] > 0.0
@@ -73,9 +79,9 @@ def test_repeats_when_thinking_takes_time(controllers: str) -> None:
 @pytest.mark.parametrize("controllers", DECIDES)
 def test_late_answers_are_applied_as_far_as_they_hold(controllers: str) -> None:
     """An answer that takes 20 s finds another world: the rest is dropped, the rule stands in."""
-    made = run(controllers, 900.0, pacing="fixed=20", trace=True)
+    made = run(controllers, 600.0, pacing="fixed=20", trace=True)
     asked = made.decisions[made.decisions["source"] == "optimiser"]
     assert asked["applied"].sum() > 0
-    assert made.footprint["units_picked"] > 50
-    if DECIDES[controllers] == "ta":
+    assert made.footprint["units_picked"] > 30
+    if "ta" in DECIDES[controllers]:
         assert made.footprint["heuristic_decision_share"] > 0.0
