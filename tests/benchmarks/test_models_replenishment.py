@@ -64,7 +64,7 @@ def site(bundles: int, pods: int, stations: int, skus: int) -> Replenishment:
 @pytest.mark.benchmark(group="replenishment")
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("size", SIZES)
-def test_replenishment(benchmark: Any, size: str, backend: str) -> None:
+def test_replenishment(benchmark: Any, note: Any, size: str, backend: str) -> None:
     data = best_pods(site(*SIZES[size]), pods=5, stations=2)
     start = solve_greedily(data)
     limits = Limits(deterministic_s=1.0, nodes=1, gap=0.05)
@@ -74,13 +74,8 @@ def test_replenishment(benchmark: Any, size: str, backend: str) -> None:
     # rules begin from nothing, so they may also be a little worse than the start
     assert solution.objective <= 0.95 * start.objective
     assert backend == "rule" or size != "large" or solution.build_s < solution.solve_s
-    benchmark.extra_info |= {
-        "model": "replenishment",
-        "backend": solution.backend,
-        "build_s": solution.build_s,
-        "solve_s": solution.solve_s,
-        "gap": solution.gap,
-    }
+    bundles, pods, stations, _ = SIZES[size]
+    note("replenishment", size, solution, f"{bundles} bundles, {pods} pods, {stations} stations")
 
 
 @pytest.mark.benchmark(group="replenishment: worth")
@@ -95,4 +90,3 @@ def test_worth(benchmark: Any, size: str) -> None:
         bundle_worth_s, stock, sku, units, wanted, affinity, visit_s=80.0, pile_on=2.5
     )
     assert worth_s.shape == (bundles, pods)
-    benchmark.extra_info |= {"model": "replenishment", "backend": "worth"}

@@ -47,15 +47,11 @@ def site(picking: int, refilling: int, pods: int, robots: int) -> RunBound:
 
 @pytest.mark.benchmark(group="run bound")
 @pytest.mark.parametrize("size", SIZES)
-def test_run_bound(benchmark: Any, size: str) -> None:
+def test_run_bound(benchmark: Any, note: Any, size: str) -> None:
     data = site(*SIZES[size])
     solution = benchmark(solve, data)
     assert solution.gap < 1e-6
     assert solution.bound <= min(single_bounds(data).values()) * (1 + 1e-9)
-    benchmark.extra_info |= {
-        "model": "run_bound",
-        "backend": solution.backend,
-        "build_s": solution.build_s,
-        "solve_s": solution.solve_s,
-        "gap": solution.gap,
-    }
+    picking, refilling, pods, robots = SIZES[size]
+    what = f"{picking} + {refilling} stations, {pods} pods, {robots} robots"
+    note("run_bound", size, solution, what)

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solvers.models import Limits, Solution, Status
+from solvers.models import Limits, Status
 from solvers.models.storage import placement, stays, zones
 
 PLACEMENT = {"small": (8, 30), "medium": (45, 210), "large": (128, 1400)}
@@ -18,17 +18,6 @@ STAYS = {"small": (60, 4), "medium": (200, 8), "large": (450, 12)}
 """Stays within half an hour, and zones."""
 
 
-def note(benchmark: Any, model: str, solution: Solution[Any]) -> None:
-    """Write down what the table of benchmarks shows."""
-    benchmark.extra_info |= {
-        "model": model,
-        "backend": solution.backend,
-        "build_s": solution.build_s,
-        "solve_s": solution.solve_s,
-        "gap": solution.gap,
-    }
-
-
 def free_places(pods: int, places: int) -> placement.Placement:
     rng = np.random.default_rng(7)
     return placement.Placement(
@@ -39,14 +28,19 @@ def free_places(pods: int, places: int) -> placement.Placement:
 @pytest.mark.benchmark(group="storage: placement")
 @pytest.mark.parametrize("solver", ["scipy", "min_cost_flow"])
 @pytest.mark.parametrize("size", PLACEMENT)
-def test_placement(benchmark: Any, size: str, solver: str) -> None:
+def test_placement(benchmark: Any, note: Any, size: str, solver: str) -> None:
     data = free_places(*PLACEMENT[size])
     solution = benchmark(placement.solve, data, solver=solver)
     rule = placement.solve_greedily(data)
     assert solution.gap < 1e-6
     assert solution.objective <= rule.objective + 1e-6
     assert size != "large" or solution.build_s < solution.solve_s
-    note(benchmark, "storage.placement", solution)
+    note(
+        "storage.placement",
+        size,
+        solution,
+        f"{PLACEMENT[size][0]} pods, {PLACEMENT[size][1]} places",
+    )
 
 
 def steady_state(classes: int, number: int) -> zones.Zones:
@@ -64,14 +58,14 @@ def steady_state(classes: int, number: int) -> zones.Zones:
 
 @pytest.mark.benchmark(group="storage: zones")
 @pytest.mark.parametrize("size", ZONES)
-def test_zones(benchmark: Any, size: str) -> None:
+def test_zones(benchmark: Any, note: Any, size: str) -> None:
     data = steady_state(*ZONES[size])
     zones.solve(data)  # compiles the programme of this size, once and for all
     solution = benchmark(zones.solve, data)
     assert solution.status is Status.OPTIMAL
     assert solution.objective <= zones.solve_greedily(data).objective * (1 + 1e-6)
     assert solution.build_s < solution.solve_s
-    note(benchmark, "storage.zones", solution)
+    note("storage.zones", size, solution, f"{ZONES[size][0]} classes, {ZONES[size][1]} zones")
 
 
 def half_an_hour(number: int, count: int) -> stays.Stays:
@@ -88,7 +82,7 @@ def half_an_hour(number: int, count: int) -> stays.Stays:
 @pytest.mark.benchmark(group="storage: stays")
 @pytest.mark.parametrize("backend", ["highs", "cp_sat"])
 @pytest.mark.parametrize("size", STAYS)
-def test_stays(benchmark: Any, size: str, backend: str) -> None:
+def test_stays(benchmark: Any, note: Any, size: str, backend: str) -> None:
     data = half_an_hour(*STAYS[size])
     start = stays.solve_greedily(data).required
     solve = {"highs": stays.solve_by_highs, "cp_sat": stays.solve_by_cp_sat}[backend]
@@ -97,15 +91,15 @@ def test_stays(benchmark: Any, size: str, backend: str) -> None:
     assert solution.objective <= stays.objective(data, start) + 1e-6
     assert solution.gap < 0.02
     assert size != "large" or solution.build_s < solution.solve_s
-    note(benchmark, "storage.stays", solution)
+    note("storage.stays", size, solution, f"{STAYS[size][0]} stays, {STAYS[size][1]} zones")
 
 
 @pytest.mark.benchmark(group="storage: two zones")
 @pytest.mark.parametrize("size", STAYS)
-def test_two_zones(benchmark: Any, size: str) -> None:
+def test_two_zones(benchmark: Any, note: Any, size: str) -> None:
     many = half_an_hour(*STAYS[size])
     data = stays.Stays(many.begin_s, many.end_s, many.cost_s[:, [0, -1]], [20, 500])
     solution = benchmark(stays.solve_by_flow, data)
     assert solution.gap < 1e-6
     assert size != "large" or solution.build_s < solution.solve_s
-    note(benchmark, "storage.stays", solution)
+    note("storage.stays", size, solution, f"{STAYS[size][0]} stays, 2 zones")

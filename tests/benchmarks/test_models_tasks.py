@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solvers.models import Limits, Solution
+from solvers.models import Limits
 from solvers.models.tasks import balance, matching, sequence
 
 SIZES = {"small": (10, 20), "medium": (45, 90), "large": (128, 256)}
@@ -17,17 +17,6 @@ ROUTES = {"small": (4, 8, 10), "medium": (45, 90, 210), "large": (128, 200, 300)
 STATIONS = 18
 
 
-def note(benchmark: Any, model: str, solution: Solution[Any]) -> None:
-    """Write down what the table of benchmarks shows."""
-    benchmark.extra_info |= {
-        "model": model,
-        "backend": solution.backend,
-        "build_s": solution.build_s,
-        "solve_s": solution.solve_s,
-        "gap": solution.gap,
-    }
-
-
 def pairs(robots: int, tasks: int) -> matching.Matching:
     rng = np.random.default_rng(7)
     return matching.Matching(rng.uniform(10, 150, (robots, tasks)), rng.uniform(60, 200, tasks))
@@ -36,18 +25,18 @@ def pairs(robots: int, tasks: int) -> matching.Matching:
 @pytest.mark.benchmark(group="tasks: matching")
 @pytest.mark.parametrize("solver", ["scipy", "min_cost_flow"])
 @pytest.mark.parametrize("size", SIZES)
-def test_matching(benchmark: Any, size: str, solver: str) -> None:
+def test_matching(benchmark: Any, note: Any, size: str, solver: str) -> None:
     data = pairs(*SIZES[size])
     solution = benchmark(matching.solve, data, solver=solver)
     assert solution.gap < 1e-6
     assert solution.objective <= matching.solve_greedily(data).objective + 1e-6
     assert size != "large" or solution.build_s < solution.solve_s
-    note(benchmark, "tasks.matching", solution)
+    note("tasks.matching", size, solution, f"{SIZES[size][0]} robots, {SIZES[size][1]} tasks")
 
 
 @pytest.mark.benchmark(group="tasks: balance")
 @pytest.mark.parametrize("size", SIZES)
-def test_balance(benchmark: Any, size: str) -> None:
+def test_balance(benchmark: Any, note: Any, size: str) -> None:
     rng = np.random.default_rng(8)
     flat = pairs(*SIZES[size])
     tasks = len(flat.leave_s)
@@ -64,7 +53,12 @@ def test_balance(benchmark: Any, size: str) -> None:
     assert solution.gap < 1e-6
     assert solution.objective <= balance.solve_greedily(data).objective + 1e-6
     assert size != "large" or solution.build_s < solution.solve_s
-    note(benchmark, "tasks.balance", solution)
+    note(
+        "tasks.balance",
+        size,
+        solution,
+        f"{SIZES[size][0]} robots, {SIZES[size][1]} tasks, {STATIONS} stations",
+    )
 
 
 def floor(robots: int, tasks: int, places: int) -> sequence.Sequence:
@@ -96,7 +90,7 @@ def floor(robots: int, tasks: int, places: int) -> sequence.Sequence:
 
 @pytest.mark.benchmark(group="tasks: sequence")
 @pytest.mark.parametrize("size", ROUTES)
-def test_sequence(benchmark: Any, size: str) -> None:
+def test_sequence(benchmark: Any, note: Any, size: str) -> None:
     data = floor(*ROUTES[size])
     rule = sequence.solve_greedily(data)
     near = sequence.short_ways(data, rule.required, tasks=3, places=2)
@@ -106,13 +100,23 @@ def test_sequence(benchmark: Any, size: str) -> None:
     assert solution.objective <= rule.objective + 1e-6
     assert solution.gap < (1e-6 if size == "small" else 0.3)
     assert size != "large" or solution.build_s < solution.solve_s
-    note(benchmark, "tasks.sequence", solution)
+    note(
+        "tasks.sequence",
+        size,
+        solution,
+        f"{ROUTES[size][0]} robots, {ROUTES[size][1]} tasks, {ROUTES[size][2]} places",
+    )
 
 
 @pytest.mark.benchmark(group="tasks: sequence")
 @pytest.mark.parametrize("size", ROUTES)
-def test_insertion(benchmark: Any, size: str) -> None:
+def test_insertion(benchmark: Any, note: Any, size: str) -> None:
     data = floor(*ROUTES[size])
     solution = benchmark.pedantic(sequence.solve_greedily, (data,), rounds=3)
     assert not sequence.violations(data, solution.required)
-    note(benchmark, "tasks.sequence", solution)
+    note(
+        "tasks.sequence",
+        size,
+        solution,
+        f"{ROUTES[size][0]} robots, {ROUTES[size][1]} tasks, {ROUTES[size][2]} places",
+    )

@@ -100,19 +100,21 @@ class RoutesParameters(TaskParameters, SearchParameters):
     """Limit of the search in deterministic seconds of CP-SAT: about the same in wall time."""
     gap: NotNegative = 0.01
     """Relative gap between value and bound at which the search ends."""
-    unit_value_s: NotNegative = 40.0
+    unit_value_s: NotNegative = 100.0
     """Seconds of a robot that a unit picked is worth."""
-    order_value_s: NotNegative = 40.0
+    order_value_s: NotNegative = 100.0
     """The same for an order completed."""
-    bundle_value_s: NotNegative = 80.0
+    bundle_value_s: NotNegative = 150.0
     """The same for a bundle stored."""
-    pods_per_station: Count = 3
+    late_weight: Annotated[int, pydantic.Field(ge=0)] = 1
+    """Seconds of driving that a second counts as in which a station has no work."""
+    pods_per_station: Count = 2
     """Pods that are looked at for each station."""
     places_per_robot: Count = 6
     """Empty places that are looked at for each pod to be stored, the nearest to its station."""
     places_per_task: Count = 3
     """Empty places that are looked at for each pod to be fetched, the nearest to it."""
-    ways_per_pod: Annotated[int, pydantic.Field(ge=0)] = 3
+    ways_per_pod: Annotated[int, pydantic.Field(ge=0)] = 2
     """Tasks after each pod that CP-SAT looks at; 0 for insertion alone."""
 
 
@@ -249,6 +251,7 @@ class RoutesControl(Asking[RoutesParameters]):
             latest_s=np.full(len(tasks), np.inf),
             due_s=np.array([job.due_s for job in tasks]),
             skip_s=np.array([job.worth_s for job in tasks]),
+            late_weight=self.parameters.late_weight,
         )
 
     def _ready_s(self, robot: Robot) -> float:

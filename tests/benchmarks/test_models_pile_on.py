@@ -1,0 +1,101 @@
+"""How long the pile-on models take at three sizes up to a real site's, and what pruning loses."""
+
+from typing import Any
+
+import pytest
+
+from solvers.models import Limits, Solution
+from solvers.models.pile_on import Pruning, cp_sat, greedy, hadgs, highs, joint, objective, prune
+from solvers.models.pile_on.relaxation import PileOnRelaxation
+from solvers.models.pile_on.sample import LARGE, MEDIUM, SMALL, Size, snapshot
+from solvers.models.solution import Status
+
+SIZES = {"small": SMALL, "medium": MEDIUM, "large": LARGE}
+
+RULES = {"pod match": greedy, "hadgs": hadgs}
+EXACT = {"cp_sat": cp_sat, "highs": highs}
+
+
+def what(size: Size) -> str:
+    return f"{size.stations} stations, {size.pods} pods, {size.skus} SKUs, {size.orders} orders"
+
+
+@pytest.mark.benchmark(group="pile-on: rules")
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("size", SIZES)
+def test_rules(benchmark: Any, note: Any, size: str, rule: str) -> None:
+    data = snapshot(SIZES[size], 7)
+    solution = benchmark.pedantic(RULES[rule].solve, (data,), rounds=3)
+    note("pile_on", size, solution, what(SIZES[size]))
+
+
+@pytest.mark.benchmark(group="pile-on: joint")
+@pytest.mark.parametrize("size", SIZES)
+def test_joint(benchmark: Any, note: Any, size: str) -> None:
+    data = snapshot(SIZES[size], 7)
+    solution = benchmark.pedantic(joint.solve, (data,), rounds=3)
+    assert solution.objective <= greedy.solve(data).objective + 1e-6
+    note("pile_on", size, solution, what(SIZES[size]))
+
+
+@pytest.mark.benchmark(group="pile-on: exact")
+@pytest.mark.parametrize("backend", EXACT)
+@pytest.mark.parametrize("size", SIZES)
+def test_exact(benchmark: Any, note: Any, size: str, backend: str) -> None:
+    """Over pruned pairs at the larger sizes, from what pod match finds."""
+    data = snapshot(SIZES[size], 7)
+    start = greedy.solve(data).required
+    given = {"start": start, "candidates": None if size == "small" else prune(data)}
+    limits = Limits(deterministic_s=1.0, nodes=1)
+    solution = benchmark.pedantic(EXACT[backend].solve, (data, limits), given, rounds=1)
+    assert solution.objective <= objective(data, start) + 1e-6
+    note("pile_on", size, solution, what(SIZES[size]))
+    assert size != "large" or solution.build_s < solution.solve_s
+
+
+@pytest.mark.benchmark(group="pile-on: relaxation")
+@pytest.mark.parametrize("size", ["small", "medium"])
+def test_relaxation(benchmark: Any, note: Any, size: str) -> None:
+    """The bound by Clarabel, compiled once and re-solved; not for large sites (see there)."""
+    data = snapshot(SIZES[size], 7)
+    relaxation = PileOnRelaxation()
+    relaxation.solve(data)
+    found = benchmark.pedantic(relaxation.solve, (data,), rounds=1)
+    rule = greedy.solve(data)
+    assert relaxation.compilations == 1
+    assert found.bound <= rule.objective
+    bounded = Solution(
+        rule.values,
+        rule.objective,
+        found.bound,
+        Status.FEASIBLE,
+        "clarabel",
+        found.wall_s,
+        found.build_s,
+        found.work,
+    )
+    note("pile_on", size, bounded, what(SIZES[size]))
+
+
+@pytest.mark.benchmark(group="pile-on: pruning")
+@pytest.mark.parametrize("pods_per_sku", [2, 4, 8])
+def test_what_pruning_loses(benchmark: Any, pods_per_sku: int) -> None:
+    """Objective over pruned pairs against that over all, each from the same rule and limit."""
+    limits = Limits(deterministic_s=2.0)
+
+    def lost() -> list[float]:
+        losses = []
+        for seed in range(5):
+            data = snapshot(SMALL, seed)
+            start = greedy.solve(data).required
+            every = cp_sat.solve(data, limits, start=start)
+            few = prune(data, Pruning(pods_per_sku=pods_per_sku))
+            kept = cp_sat.solve(data, limits, start=start, candidates=few)
+            losses.append(kept.objective - every.bound)
+            assert losses[-1] >= -1e-6
+        return losses
+
+    losses = benchmark.pedantic(lost, rounds=1)
+    benchmark.extra_info |= {"pods_per_sku": pods_per_sku, "lost": losses}
+    # a slot left empty costs 1,000: what is lost are metres of travel
+    assert max(losses) < 1000.0
