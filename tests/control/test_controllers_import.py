@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from rmfs.cli import main
+from rmfs.control.pp.far import Far
 from rmfs.control.problems import Problem
 from rmfs.control.rawsimo import read_xconf
 from rmfs.control.settings import load, load_with_notes
@@ -31,7 +32,9 @@ def block(tag: str, kind: str, **elements: object) -> str:
 def test_an_empty_file_is_what_rawsimo_does_by_default(tmp_path: Path):
     ours, theirs = load("default"), load(written(tmp_path))
     for problem in Problem:
-        assert theirs.choices[problem] == ours.choices[problem], problem
+        if problem is not Problem.PP:
+            assert theirs.choices[problem] == ours.choices[problem], problem
+    assert theirs.choices[Problem.PP].controller is Far
 
 
 def test_every_value_of_a_block_arrives(tmp_path: Path):
@@ -145,13 +148,38 @@ def test_wrong_values_are_one_clear_error(tmp_path: Path, body: str, message: st
 
 
 def test_import_writes_a_set_that_says_the_same(tmp_path: Path, capsys):
-    body = block("PodStorageConfig", "Random") + block("PathPlanningConfig", "BCP", Clocking=1)
+    body = block("PodStorageConfig", "Random") + block("PathPlanningConfig", "ODID", Clocking=1)
     path = written(tmp_path, body)
     target = tmp_path / "ours.toml"
     assert main(["controllers", "import", str(path), "--out", str(target)]) == 0
-    assert "BCP becomes time-windows" in capsys.readouterr().err
+    assert "ODID becomes time-windows" in capsys.readouterr().err
     assert load(target).choices == load(path).choices
     assert main(["controllers", "import", str(path), "--out", str(target)]) == 2
+
+
+@pytest.mark.parametrize(
+    ("method", "elements", "expected"),
+    [
+        ("FAR", {}, {"name": "far", "period_s": 1.0, "wait_s": 2.0, "reroute": True}),
+        (
+            "FAR",
+            {"Clocking": 3, "evadingStrategy": "EvadeToNextNode", "NoBackEvading": "false"},
+            {"name": "far", "period_s": 3.0, "reroute": False, "avoid_evading_back": False},
+        ),
+        ("WHCAvStar", {"LengthOfAWindow": 20}, {"name": "whca-v", "window_s": 20.0}),
+        ("WHCAnStar", {}, {"name": "whca-n", "window_s": 30.0, "period_s": 1.0}),
+        ("BCP", {"BiasedCostAmount": 6}, {"name": "bcp", "bias_m": 6.0}),
+        ("CBS", {"SearchMethod": "BestFirst"}, {"name": "cbs"}),
+    ],
+)
+def test_robots_drive_by_the_planner_that_the_file_names(
+    tmp_path: Path, method: str, elements: dict[str, object], expected: dict[str, object]
+):
+    path = written(tmp_path, block("PathPlanningConfig", method, **elements))
+    table = read_xconf(path).table["pp"]
+    assert expected.items() <= table.items()
+    assert table["runs_granted"] == 1
+    assert load(path).choices[Problem.PP].controller.parameters_model is not None
 
 
 @pytest.mark.skipif(not REFERENCE.is_dir(), reason="needs the published files")

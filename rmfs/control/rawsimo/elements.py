@@ -49,14 +49,14 @@ class Switch(NamedTuple):
 
 
 class Word(NamedTuple):
-    """One of several words, each with the one that we use for it."""
+    """One of several words, each with what it stands for here."""
 
     key: str
-    choices: Mapping[str, str]
+    choices: Mapping[str, str] | Mapping[str, bool]
     default: str
 
     def read(self, block: Settings, tag: str) -> Any:
-        """Return our word for the element's."""
+        """Return what the element's word stands for."""
         return block.choice(tag, self.choices, self.default)
 
 

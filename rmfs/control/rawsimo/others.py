@@ -1,4 +1,4 @@
-"""RAWSim-O's station activation, method management and path planning: SA, MM and PP."""
+"""RAWSim-O's station activation and method management: SA and MM."""
 
 from __future__ import annotations
 
@@ -41,9 +41,6 @@ _EXCHANGEABLE = {
     "Turnover": "turnover",
 }
 
-PP = ("FAR", "WHCAvStar", "WHCAnStar", "BCP", "CBS", "ODID", "PAS", "Simple", "Dummy")
-"""Their planners: we have one, which needs none of their parameters."""
-
 
 def sa(kind: str, block: Settings) -> Table:
     """Return our table for a station activation."""
@@ -75,14 +72,3 @@ def mm(kind: str, block: Settings) -> Table:
             "exchanges": [{key: at, "psa": {"name": name}} for at, name in planned],
         }
     return {"name": "none"}
-
-
-def pp(kind: str, block: Settings) -> Table:
-    """Return our table for a path planning: there is one planner here."""
-    tags = [tag for tag in block.tags if tag != "Name"]
-    block.note(
-        f"{kind} becomes time-windows, which plans each way once and without conflict, and is "
-        "limited by work, not by time"
-    )
-    block.leave(tags, "parameters of another planner")
-    return {"name": "time-windows"}

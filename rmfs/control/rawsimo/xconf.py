@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from rmfs.control.rawsimo import orders, others, pods, tasks
+from rmfs.control.rawsimo import orders, others, paths, pods, tasks
 from rmfs.scenario.rawsimo.settings import Settings
 from rmfs.xml import read_root
 
@@ -39,7 +39,7 @@ _BLOCKS = {
     "repositioning": _Block("RepositioningConfig", "Dummy", pods.REPOSITIONING, pods.repositioning),
     "sa": _Block("StationActivationConfig", "ActivateAll", others.SA, others.sa),
     "mm": _Block("MethodManagementConfig", "NoChange", others.MM, others.mm),
-    "pp": _Block("PathPlanningConfig", "FAR", others.PP, others.pp),
+    "pp": _Block("PathPlanningConfig", "FAR", paths.PP, paths.pp),
 }
 
 _OLD_TYPES = tuple(f"{block.tag.removesuffix('Config')}Type" for block in _BLOCKS.values())

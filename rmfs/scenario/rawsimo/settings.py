@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from rmfs.errors import InputError
 from rmfs.xml import SCHEMA_NAMESPACE
@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
     from xml.etree.ElementTree import Element
+
+_T = TypeVar("_T")
 
 
 class Settings:
@@ -69,7 +71,7 @@ class Settings:
         """Return the type an element names, or nothing; the element counts as unread."""
         return _kind(self._elements.get(tag))
 
-    def choice(self, tag: str, choices: Mapping[str, str], default: str) -> str:
+    def choice(self, tag: str, choices: Mapping[str, _T], default: str) -> _T:
         """Return what a word stands for."""
         word = self.text(tag, default)
         if word not in choices:
