@@ -252,12 +252,17 @@ def differences(
 
 def effects(found: pd.DataFrame, column: str) -> Table:
     """Return an analysis of variance (`experiments.statistics.anova`) as a table."""
-    chosen = ["sum_sq", "df", "f", "p", "eta_sq", "partial_eta_sq", "omega_sq"]
+    partial = ["partial_eta_sq", "partial_eta_sq_low", "partial_eta_sq_high"]
+    chosen = ["sum_sq", "df", "f", "p", "eta_sq", *partial, "omega_sq"]
     made = found[chosen].copy()
-    shown = [digits(made["sum_sq"] / 1000, made["sum_sq"]), 0, 2, 4, 3, 3, 3]
+    shown = [digits(made["sum_sq"] / 1000, made["sum_sq"]), 0, 2, 4, 3, 3, 3, 3, 3]
     made.columns = pd.MultiIndex.from_tuples([(name, "") for name in chosen])
     decimals = dict(zip(_columns(made), shown, strict=True))
-    return Table(made, decimals, f"Analysis of variance of {column} (type II sums of squares).")
+    caption = (
+        f"Analysis of variance of {column} (type II sums of squares); low and high are the ends of "
+        "the 95% confidence interval of partial eta squared."
+    )
+    return Table(made, decimals, caption)
 
 
 def _columns(frame: pd.DataFrame) -> list[tuple[str, str]]:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import itertools
+from math import isfinite
 from typing import TYPE_CHECKING
 
 import pandas as pd
+from scipy import optimize, stats
 
 from experiments.statistics.intervals import require
 from rmfs.errors import InputError
@@ -21,6 +23,7 @@ def anova(
     *,
     interactions: bool = False,
     block: str | None = "replication",
+    confidence: float = 0.95,
 ) -> pd.DataFrame:
     """Return the analysis-of-variance table of categorical factors.
 
@@ -36,11 +39,14 @@ def anova(
     block
         Column of the seeds, whose share of the spread is taken out of the residual (with common
         random numbers). Default `replication`.
+    confidence
+        Of the intervals of `partial_eta_sq`. Default 0.95.
 
     Returns
     -------
     One row per effect, strongest first, then seeds and residual: `sum_sq df f p`, effect sizes
-    `eta_sq` (share of the sum of all rows), `partial_eta_sq` and `omega_sq` (an estimate
+    `eta_sq` (share of the sum of all rows), `partial_eta_sq` with its interval
+    (`partial_eta_sq_low`, `partial_eta_sq_high`; Steiger 2004) and `omega_sq` (an estimate
     that does not grow with the number of levels; may fall below 0).
 
     Raises
@@ -64,7 +70,7 @@ def anova(
         )
     raw = statsmodels("stats.anova").anova_lm(model, typ=2)
     raw.index = pd.Index([*terms.values(), "residual"], name="effect")
-    return _with_sizes(raw, "seeds" if blocked else None)
+    return _with_sizes(raw, "seeds" if blocked else None, confidence)
 
 
 def _data(
@@ -88,7 +94,7 @@ def _data(
     return data.dropna(), terms
 
 
-def _with_sizes(raw: pd.DataFrame, seeds: str | None) -> pd.DataFrame:
+def _with_sizes(raw: pd.DataFrame, seeds: str | None, confidence: float) -> pd.DataFrame:
     made = raw.rename(columns={"F": "f", "PR(>F)": "p"})[["sum_sq", "df", "f", "p"]]
     rest, rest_df = float(made["sum_sq"]["residual"]), float(made["df"]["residual"])
     total, mean_square = made["sum_sq"].sum(), rest / rest_df
@@ -96,7 +102,36 @@ def _with_sizes(raw: pd.DataFrame, seeds: str | None) -> pd.DataFrame:
     made["partial_eta_sq"] = made["sum_sq"] / (made["sum_sq"] + rest)
     made["omega_sq"] = (made["sum_sq"] - made["df"] * mean_square) / (total + mean_square)
     made.loc["residual", ["partial_eta_sq", "omega_sq"]] = float("nan")
+    ends = [
+        _partial_interval(f, df, rest_df, confidence)
+        for f, df in zip(made["f"], made["df"], strict=True)
+    ]
+    made["partial_eta_sq_low"], made["partial_eta_sq_high"] = zip(*ends, strict=True)
     made["df"] = made["df"].round().astype(int)
     last = [name for name in (seeds, "residual") if name is not None]
     effects = made.drop(index=last).sort_values("sum_sq", ascending=False)
     return pd.concat([effects, made.loc[last]])
+
+
+def _partial_interval(
+    f: float, df: float, rest_df: float, confidence: float
+) -> tuple[float, float]:
+    """Return the interval of a partial eta squared, from that of the noncentrality of F.
+
+    Steiger (2004), Beyond the F test, Psychological Methods 9(2): the ends are the noncentralities
+    for which the F found is the upper and the lower quantile.
+    """
+    if not isfinite(f):
+        return float("nan"), float("nan")
+
+    def share(quantile: float) -> float:
+        def excess(noncentrality: float) -> float:
+            return float(stats.ncf.cdf(f, df, rest_df, noncentrality)) - quantile
+
+        if excess(0.0) <= 0:
+            return 0.0
+        most = 4 * f * df + 100
+        noncentrality = float(optimize.brentq(excess, 0.0, most))
+        return noncentrality / (noncentrality + df + rest_df + 1)
+
+    return share((1 + confidence) / 2), share((1 - confidence) / 2)

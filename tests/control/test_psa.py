@@ -160,6 +160,14 @@ class TestTurnover:
         class 0, where place 0 would be empty: 4."""
         assert self.place(0) == 4
 
+    def test_of_equals_the_first(self) -> None:
+        """The robot is at (5, 2), and another one rests at 5: places 4 and 6 are equally near."""
+        made = self.situation(2)
+        robot = made.world.robots[0]
+        robot.waypoint = 5
+        made.world.start_rest(made.world.robots[1], 5)
+        assert made.make(Turnover, class_borders=self.BORDERS).place(robot) == 4
+
     def test_any_place_of_the_class(self) -> None:
         made = self.situation(2)
         rule = made.make(Turnover, class_borders=self.BORDERS, within_class="random")

@@ -183,6 +183,18 @@ class TestBruteForce:
         far = situation.make(BruteForce, queue_cost_s=2.2)._best(robot, Answers())
         assert (near.station, far.station) == (0, 1)
 
+    def test_of_equal_stations_the_first(self) -> None:
+        """Pod 5 is 15 s from the stations at x = 0 and 10, which both want its SKU: station 0. A
+        robot under way to it makes the other one better."""
+        situation = Situation(small_layout(places=8, pods=6, robots=2, pick_stations=2))
+        situation.stock(5, s0=9)
+        for station in (1, 0):
+            situation.assigned(station, s0=1)
+        robot = situation.world.robots[0]
+        assert situation.make(BruteForce)._best(robot, Answers()).station == 0
+        situation.world.start_pick(situation.world.robots[1], pod=4, station=0)
+        assert situation.make(BruteForce, queue_cost_s=30.0)._best(robot, Answers()).station == 1
+
     def test_a_carried_pod_is_used_where_it_stands(self, situation) -> None:
         situation.stock(1, s0=9)
         served(situation)

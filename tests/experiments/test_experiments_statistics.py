@@ -178,6 +178,20 @@ def test_balanced_anova_is_the_textbook_decomposition():
     assert found.loc["f", "p"] == pytest.approx(f.pvalue)
 
 
+def test_intervals_of_partial_eta_squared_cover_what_was_put_in():
+    """Three levels at -1, 0, 1 with noise of deviation 2, seven runs each: the noncentrality is 7 *
+    2 / 4, and with 21 runs the share is 3.5 / (3.5 + 21). In 120 tables 95 % +- 5 cover it."""
+    rng, true = np.random.default_rng(0), 3.5 / 24.5
+    covered = 0
+    for _ in range(120):
+        level = np.repeat([-1.0, 0.0, 1.0], 7)
+        data = pd.DataFrame({"f": level.astype(str), "y": level + rng.normal(0, 2, 21)})
+        row = anova(data, "y", ["f"], block=None).loc["f"]
+        assert row["partial_eta_sq_low"] <= row["partial_eta_sq"]
+        covered += row["partial_eta_sq_low"] <= true <= row["partial_eta_sq_high"]
+    assert 0.90 <= covered / 120
+
+
 def test_rates_of_a_window_count_whole_intervals_only():
     series = pd.DataFrame(
         {
