@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import pydantic
 
-from rmfs.config import Model
+from rmfs.config import Model, Table
 from rmfs.control.decisions import Prepare
 
 if TYPE_CHECKING:
@@ -24,6 +24,31 @@ class Parameters(Model):
     """Base of the parameters of controllers; the text below a field explains it to users."""
 
     model_config = pydantic.ConfigDict(use_attribute_docstrings=True)
+
+
+class RuleTables(Parameters):
+    """Rules for some problems, each a table as in a controllers file."""
+
+    poa: Table | None = None
+    """The rule for pick order assignment."""
+    roa: Table | None = None
+    """The rule for replenishment order assignment."""
+    rps: Table | None = None
+    """The rule for replenishment pod selection."""
+    pps: Table | None = None
+    """The rule for pod selection."""
+    psa: Table | None = None
+    """The rule for pod storage assignment."""
+    ta: Table | None = None
+    """The rule for task allocation."""
+    sa: Table | None = None
+    """The rule for station activation."""
+    mm: Table | None = None
+    """The rule for method management."""
+    pp: Table | None = None
+    """The rule for path planning."""
+    repositioning: Table | None = None
+    """The rule for repositioning."""
 
 
 class NoParameters(Parameters):

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 import pydantic
 
 from rmfs import config, instances
-from rmfs.config import Model, Table
+from rmfs.config import Table
+from rmfs.control.base import RuleTables
 from rmfs.control.choices import DEFAULTS, Choice, check_together, choose
 from rmfs.control.problems import Problem
 from rmfs.control.rawsimo import read_xconf
@@ -42,22 +43,12 @@ class ControllerSettings:
         return head | {str(problem): choice.to_table() for problem, choice in self.choices.items()}
 
 
-class _File(Model):
+class _File(RuleTables):
     """The keys of a controllers file."""
 
     format: Literal["rmfs-controllers/1"]
     name: str = pydantic.Field(min_length=1)
     description: str = ""
-    poa: Table | None = None
-    roa: Table | None = None
-    rps: Table | None = None
-    pps: Table | None = None
-    psa: Table | None = None
-    ta: Table | None = None
-    sa: Table | None = None
-    mm: Table | None = None
-    pp: Table | None = None
-    repositioning: Table | None = None
 
 
 def load(

@@ -6,35 +6,13 @@ from typing import Any
 
 import pydantic
 
-from rmfs.config import Table
-from rmfs.control.base import Parameters
+from rmfs.control.base import RuleTables
 from rmfs.control.choices import Choice, choose
 from rmfs.control.problems import Problem
 
 
-class Rules(Parameters):
+class Rules(RuleTables):
     """Rules for some problems, each a table as in a controllers file, or a plain name."""
-
-    poa: Table | None = None
-    """The new rule for pick order assignment."""
-    roa: Table | None = None
-    """The new rule for replenishment order assignment."""
-    rps: Table | None = None
-    """The new rule for replenishment pod selection."""
-    pps: Table | None = None
-    """The new rule for pod selection."""
-    psa: Table | None = None
-    """The new rule for pod storage assignment."""
-    ta: Table | None = None
-    """The new rule for task allocation."""
-    sa: Table | None = None
-    """The new rule for station activation."""
-    mm: Table | None = None
-    """The new rule for method management itself."""
-    pp: Table | None = None
-    """The new rule for path planning."""
-    repositioning: Table | None = None
-    """The new rule for repositioning."""
 
     @pydantic.field_validator(*(problem.value for problem in Problem), mode="before")
     @classmethod

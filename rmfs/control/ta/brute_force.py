@@ -9,7 +9,6 @@ import numpy as np
 import pydantic
 
 from rmfs.control.decisions import Park, Prepare, TaskDecision
-from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
 from rmfs.control.problems import Problem
 from rmfs.control.ta.solo import Solo, SoloParameters
 from rmfs.control.ta.stations import bring, keeper_of
@@ -146,17 +145,9 @@ class BruteForce(Solo[BruteForceParameters]):
             wait_s = self.parameters.queue_cost_s * len(station.tasks) ** 2
             if robot.pod >= 0 and consult.serves(robot.pod, index):
                 yield _Job(max(to_station.item(robot.waypoint), wait_s), index, robot.pod)
-            pods = self._pods(robot, index)
+            pods = self.pods_for(robot, index)
             if len(pods):
                 on_s = np.maximum(to_station[view.storage.pod_waypoint[pods]], wait_s)
                 seconds = to_pods[pods] + on_s
                 best = int(seconds.argmin())
                 yield _Job(float(seconds[best]), index, int(pods[best]))
-
-    def _pods(self, robot: Robot, station: int) -> NDArray[np.intp]:
-        """Pods at hand with work at a station, ascending."""
-        view = self.view
-        if station < len(view.pick_stations):
-            return pick_candidates(view, robot, view.pick_stations[station]).pods
-        others = view.replenishment_stations
-        return replenishment_candidates(view, robot, others[station - len(view.pick_stations)]).pods

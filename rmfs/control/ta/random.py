@@ -8,7 +8,6 @@ import numpy as np
 import pydantic
 
 from rmfs.control.decisions import Prepare, Reposition, TaskDecision
-from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
 from rmfs.control.problems import Problem
 from rmfs.control.ta.rest import RestRule
 from rmfs.control.ta.solo import Solo, SoloParameters
@@ -16,8 +15,6 @@ from rmfs.control.ta.stations import bring, keeper_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-    from numpy.typing import NDArray
 
     from rmfs.control.ta import Consult
     from rmfs.control.view import View
@@ -91,7 +88,7 @@ class RandomTasks(Solo[RandomTasksParameters]):
             stations = [s.index for s in self._stations(picks) if self.view.has_open_work(s.index)]
             useful = np.zeros((len(stations), len(self.view.storage.is_at_hand)), np.bool_)
             for row, station in zip(useful, stations, strict=True):
-                row[self._pods(robot, station)] = True
+                row[self.pods_for(robot, station)] = True
             pods = np.flatnonzero(useful.any(axis=0))
             if len(pods):
                 pod = int(pods[self.draw(len(pods))])
@@ -99,14 +96,6 @@ class RandomTasks(Solo[RandomTasksParameters]):
                 station = self._any_of([stations[row] for row in rows], pod)
                 return bring(self.view, keeper_of(self.view, robot, pod), pod, station)
         return None
-
-    def _pods(self, robot: Robot, station: int) -> NDArray[np.intp]:
-        """Pods at hand that have work at a station."""
-        view = self.view
-        if station < len(view.pick_stations):
-            return pick_candidates(view, robot, view.pick_stations[station]).pods
-        others = view.replenishment_stations
-        return replenishment_candidates(view, robot, others[station - len(view.pick_stations)]).pods
 
     def _next_station(self, robot: Robot, consult: Consult) -> int:
         """Draw a station where the carried pod has work, or -1 if it is to be parked."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from rmfs.control.base import Parameters
 from rmfs.control.decisions import Park, Prepare, Rest, TaskDecision
+from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
 from rmfs.control.ta import Consult, TaskAllocation
 from rmfs.control.ta.rest import RestPlaces, RestRule
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import numpy as np
+    from numpy.typing import NDArray
 
     from rmfs.control.view import View
     from rmfs.world.robots import Robot
@@ -81,6 +83,14 @@ class Solo(TaskAllocation[P]):
         place = consult.place_for(robot)
         if place >= 0:
             yield Park(robot, place)
+
+    def pods_for(self, robot: Robot, station: int) -> NDArray[np.intp]:
+        """Return the pods at hand that have work at a station, ascending, shape (C,)."""
+        view = self.view
+        if station < len(view.pick_stations):
+            return pick_candidates(view, robot, view.pick_stations[station]).pods
+        others = view.replenishment_stations
+        return replenishment_candidates(view, robot, others[station - len(view.pick_stations)]).pods
 
     def _work_versions(self) -> tuple[tuple[int, ...], ...]:
         return tuple(self.view.work_version(station.index) for station in self.view.stations)
