@@ -70,8 +70,8 @@ class DispatchParameters(TaskParameters):
     be."""
     bundle_value_s: NotNegative = 300.0
     """The same for a pod at a replenishment station."""
-    service_s: NotNegative = 30.0
-    """Seconds that a pod is expected to keep a station."""
+    service_s: NotNegative = 60.0
+    """Seconds that a pod at, or on its way to, a station lets the next one wait."""
     late_weight: NotNegative = 0.02
     """Seconds of travel that a second of lateness of an order counts as."""
 

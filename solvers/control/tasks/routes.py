@@ -106,7 +106,7 @@ class RoutesParameters(TaskParameters, SearchParameters):
     """The same for an order completed."""
     bundle_value_s: NotNegative = 150.0
     """The same for a bundle stored."""
-    late_weight: Annotated[int, pydantic.Field(ge=0)] = 1
+    late_weight: Annotated[int, pydantic.Field(ge=0)] = 3
     """Seconds of driving that a second counts as in which a station has no work."""
     pods_per_station: Count = 2
     """Pods that are looked at for each station."""

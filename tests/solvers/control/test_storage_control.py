@@ -1,0 +1,137 @@
+"""PSA by models in a small warehouse by hand, and what pruning of places loses: nothing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from doubles import Situation, small_layout
+
+from rmfs.control.asks import Ask, Call
+from rmfs.control.problems import Problem
+from solvers.control.storage.bands import bands, means
+from solvers.control.storage.placement import PlacementControl, worth_looking_at
+from solvers.control.storage.prices import PricesControl
+from solvers.control.storage.stays import StaysControl
+from solvers.models.storage import placement
+
+ASKS_AHEAD = [PlacementControl, StaysControl]
+
+
+def ask(control: Any) -> list[Call]:
+    """Let a controller ask, and return its questions with their answers, not yet told."""
+    calls = []
+    for decision in control.decide():
+        assert isinstance(decision, Ask)
+        calls.append(Call(0, Problem.PSA, control, decision, 0, ""))
+        calls[-1].answer = decision.solve(decision.question)
+    return calls
+
+
+def tell(control: Any, call: Call) -> None:
+    """Tell a controller an answer."""
+    control.basis = call
+    assert list(control.answered(call)) == []
+    control.basis = None
+
+
+def carried(places: int = 8) -> Situation:
+    """Robot 0 stands with pod 3 at the station above place 0; places from 4 on are empty too."""
+    situation = Situation(small_layout(places=places, robots=1))
+    situation.stock(3, s1=5)
+    situation.assigned(s1=1)
+    situation.carry(0, 3)
+    return situation
+
+
+@pytest.mark.parametrize("control", [*ASKS_AHEAD, PricesControl])
+def test_one_pod_takes_the_place_nearest_to_the_only_station(control: type) -> None:
+    """Place 3, just left, is the nearest empty one; it costs least now and later."""
+    situation = carried()
+    made = situation.make(control)
+    for call in ask(made):
+        tell(made, call)
+    assert made.place(situation.world.robots[0]) == 3
+    assert made.basis is not None
+
+
+@pytest.mark.parametrize("control", [*ASKS_AHEAD, PricesControl])
+def test_without_an_answer_the_nearest_place(control: type) -> None:
+    situation = carried()
+    made = situation.make(control)
+    (call,) = ask(made)
+    assert made.place(situation.world.robots[0]) == 3
+    assert made.basis is None
+    call.answer = None
+    tell(made, call)
+    assert made.place(situation.world.robots[0]) == 3
+    assert made.basis is None
+
+
+@pytest.mark.parametrize("control", ASKS_AHEAD)
+def test_a_place_taken_meanwhile_is_stale(control: type) -> None:
+    """Somebody else comes to keep place 3: the call counts it, and the next place is taken."""
+    situation = carried()
+    robot = situation.world.robots[0]
+    made = situation.make(control)
+    (call,) = ask(made)
+    tell(made, call)
+    other = Situation(small_layout(places=8)).world.robots[1]
+    situation.world.storage.keep(other, 3)
+    assert made.place(robot) == 4
+    assert made.basis is None
+    assert call.stale == 1
+
+
+@pytest.mark.parametrize("control", ASKS_AHEAD)
+def test_an_answer_for_a_pod_no_longer_carried_is_stale(control: type) -> None:
+    situation = carried()
+    robot = situation.world.robots[0]
+    made = situation.make(control)
+    (call,) = ask(made)
+    robot.pod = -1
+    tell(made, call)
+    assert call.stale == 1
+
+
+def test_the_pod_wanted_more_gets_the_nearer_place() -> None:
+    """Two pods, two empty places: what orders wait for on pod 3 keeps it near the station."""
+    situation = Situation(small_layout(places=4, pods=4, robots=2, pick_stations=2))
+    situation.stock(2, s1=1)
+    situation.stock(3, s2=40)
+    situation.assigned(s1=1)
+    situation.assigned(1, s2=1)
+    situation.carry(0, 2, 0)
+    situation.carry(1, 3, 1)
+    for _ in range(20):
+        situation.order(s2=2)
+    made = situation.make(PlacementControl, later_weight=10.0)
+    (call,) = ask(made)
+    tell(made, call)
+    # both stations together are nearest to the higher places: see the ways
+    near = int((made.ways.fetch_s + made.ways.home_s)[[2, 3]].argmin()) + 2
+    if made.ways.fetch_s[2] == made.ways.fetch_s[3]:
+        pytest.skip("places are alike")
+    assert made.place(situation.world.robots[1]) == near
+
+
+def test_places_left_out_never_matter() -> None:
+    """On 200 random cases the best placement over the places kept is the best of all."""
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        pods, places = int(rng.integers(1, 6)), int(rng.integers(6, 20))
+        travel_s, access_s = rng.uniform(0, 90, (pods, places)), rng.uniform(0, 90, places)
+        visits = rng.uniform(0, 3, pods)
+        kept = worth_looking_at(travel_s + np.outer(visits, access_s))
+        every = placement.solve(placement.Placement(travel_s, access_s, visits))
+        few = placement.solve(placement.Placement(travel_s[:, kept], access_s[kept], visits))
+        assert few.objective == pytest.approx(every.objective)
+        assert len(kept) <= pods * pods
+
+
+def test_bands_are_of_equal_size_and_in_order() -> None:
+    values = np.array([5.0, 1.0, 3.0, 3.0, 9.0, 0.0])
+    assert bands(values, 3).tolist() == [2, 0, 1, 1, 2, 0]
+    assert means(values, bands(values, 3)).tolist() == [0.5, 3.0, 7.0]
+    assert bands(np.array([2.0, 1.0]), 5).tolist() == [1, 0]
