@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import takewhile
 from typing import Any
 
 import pytest
@@ -47,20 +46,25 @@ class Advice:
 def told(
     situation: Situation, control: Any, *, answer: bool = True
 ) -> tuple[list[Any], list[Call]]:
-    """Ask a TA controller, answer its question, and note what it says; nothing is done."""
+    """Ask a TA controller, answer its question, do what it says, and note it."""
     found: list[Any] = []
     calls: list[Call] = []
-    advice = Advice(situation)
+    advice, world = Advice(situation), situation.world
     for decision in control.decide(advice):
         assert isinstance(decision, Ask)
         call = Call(0, Problem.TA, control, decision, 0, "")
         calls.append(call)
         if answer:
             call.answer = decision.solve(decision.question)
-            found += control.carry_out(call, advice)
-        else:
-            # what it asks next is not answered, as nothing has been applied
-            found += takewhile(lambda said: not isinstance(said, Ask), control.answered(call))
+        for said in control.answered(call):
+            found.append(said)
+            if isinstance(said, BringForPicks):
+                world.start_pick(*said)
+            elif isinstance(said, Park):
+                world.start_park(*said)
+            else:
+                world.start_rest(*said)
+            world.asking.pop(said.robot.index, None)
     return found, calls
 
 
@@ -68,9 +72,11 @@ def two_robots() -> Situation:
     """Robots at x = 0 and 5, pods with what is wanted at x = 1 and 4, one station at x = 0."""
     layout = small_layout(robots=6)
     situation = Situation(layout)
-    for robot in situation.world.robots:
-        if robot.index in (0, 5):
-            situation.world.asking[robot.index] = robot
+    for index in (1, 2, 3, 4):
+        situation.world.start_rest(situation.world.robots[index], 6 + index)
+        situation.world.resting.pop(index)
+    for index in (0, 5):
+        situation.world.asking[index] = situation.world.robots[index]
     situation.stock(1, s1=5)
     return situation
 
@@ -99,18 +105,18 @@ def test_no_work_is_rest_and_nothing_else(control: type) -> None:
 @pytest.mark.parametrize("control", [DispatchControl, RoutesControl])
 def test_a_carried_pod_is_served_again_or_parked(control: type) -> None:
     """At the head of the queue with another unit to give: again; with none: to a place."""
-    situation = Situation(small_layout(robots=1))
-    situation.stock(1, s1=5)
-    situation.assigned(s1=1)
-    situation.carry(0, 1)
-    robot = situation.world.robots[0]
-    robot.task = None
-    situation.world.asking[0] = robot
-    found, _ = told(situation, situation.make(control))
-    assert [type(decision) for decision in found] == [Park]
-    situation.assigned(s1=1)
-    found, _ = told(situation, situation.make(control))
-    assert [(d.pod, d.station) for d in found] == [(1, 0)]
+    for more, expected in ((0, [Park]), (1, [BringForPicks])):
+        situation = Situation(small_layout(robots=1))
+        situation.stock(1, s1=5)
+        situation.assigned(s1=1)
+        situation.carry(0, 1)
+        robot = situation.world.robots[0]
+        robot.task = None
+        situation.world.asking[0] = robot
+        if more:
+            situation.assigned(s1=more)
+        found, _ = told(situation, situation.make(control))
+        assert [type(decision) for decision in found] == expected
 
 
 def test_what_was_done_meanwhile_is_stale() -> None:
@@ -130,7 +136,7 @@ def test_what_was_done_meanwhile_is_stale() -> None:
 def test_jobs_cover_requests_with_few_pods() -> None:
     """Pod 2 completes an order alone and comes first; pod 0 comes for what is left, pod 1 not."""
     situation = Situation()
-    situation.stock(0, s1=5, s3=1)
+    situation.stock(0, s3=1)
     situation.stock(1, s2=5)
     situation.stock(2, s1=2, s2=5)
     situation.assigned(s1=2, s2=1)
