@@ -111,10 +111,9 @@ class _Filling:
         missing = np.maximum(self._line_units[lines] - left[sku], 0)
         covered = self._data.stock[np.ix_(pods, sku)] >= missing
         self.scored += covered.size
-        complete = np.zeros((len(pods), len(self._size)), np.int64)
-        np.add.at(complete.T, order, ~covered.T)
-        of_lines = np.isin(np.arange(len(self._size)), order)
-        completes = ((complete == 0) & of_lines).sum(axis=1)
+        # lines are sorted by order, so those of an order are a range
+        first = np.flatnonzero(np.diff(order, prepend=-1))
+        completes = np.logical_and.reduceat(covered, first, axis=1).sum(axis=1)
         if completes.any():
             return int(pods[completes.argmax()])
         adds = (np.minimum(self._data.stock[np.ix_(pods, sku)], missing) > 0).sum(axis=1)
