@@ -41,7 +41,7 @@ ORIGIN = ("run", "arm_digest", "replication", "arm", "design", "design_hash")
 """Columns of a stored row, before the footprint, that say which run it is."""
 
 CODE = ("rmfs_version", "git_commit", "code")
-PROVENANCE = (*CODE, "host", "elapsed_s", "finished")
+PROVENANCE = (*CODE, "host", "elapsed_s", "cpu_s", "finished")
 """Columns of a stored row, after the footprint, that say how it was made; they do not repeat."""
 
 COLUMNS = [*ORIGIN, *names("footprint"), *PROVENANCE]
@@ -284,6 +284,7 @@ def _row(job: Job, outcome: Outcome, code: Mapping[str, Any]) -> pd.DataFrame:
         **{name: str(code.get(name, "")) for name in CODE},
         "host": outcome.host,
         "elapsed_s": outcome.elapsed_s,
+        "cpu_s": outcome.cpu_s,
         "finished": _now(),
     }
     parts = [
@@ -297,4 +298,4 @@ def _row(job: Job, outcome: Outcome, code: Mapping[str, Any]) -> pd.DataFrame:
 def _now() -> str:
     import datetime
 
-    return datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+    return datetime.datetime.now(datetime.UTC).isoformat(timespec="milliseconds")

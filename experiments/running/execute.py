@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 def execute(job: Job) -> Outcome:
     """Do a job; whatever goes wrong in it becomes part of the outcome."""
-    begun = time.perf_counter()
+    begun, begun_cpu = time.perf_counter(), time.process_time()
     host = platform.node()
     try:
         made = _simulated(job)
@@ -39,7 +39,13 @@ def execute(job: Job) -> Outcome:
             host=host,
         )
     footprint = made.pop("footprint")
-    return Outcome(footprint, made, elapsed_s=time.perf_counter() - begun, host=host)
+    return Outcome(
+        footprint,
+        made,
+        elapsed_s=time.perf_counter() - begun,
+        cpu_s=time.process_time() - begun_cpu,
+        host=host,
+    )
 
 
 def _simulated(job: Job) -> dict[str, pd.DataFrame]:

@@ -66,6 +66,8 @@ class Outcome:
         Whether the worker was gone before it could say anything.
     elapsed_s
         Wall time of the job, loading and tables included.
+    cpu_s
+        Processor time of the same.
     host
         Where it ran.
     """
@@ -76,6 +78,7 @@ class Outcome:
     traceback: str = ""
     died: bool = False
     elapsed_s: float = 0.0
+    cpu_s: float = 0.0
     host: str = ""
 
 
