@@ -206,7 +206,10 @@ def measure(runs: int, duration_s: float, jobs: int, folder: Path) -> Cost:
         driver = psutil.Process(command.pid)
         while command.poll() is None:
             try:
-                memory_mb.append(driver.memory_info().rss / 1e6)
+                rss = driver.memory_info().rss
+                if not rss:
+                    break  # it has ended
+                memory_mb.append(rss / 1e6)
                 cpu_s = sum(sum(one.cpu_times()[:2]) for one in (driver, *_servers(driver)))
                 command.wait(LOOK_S)
             except (subprocess.TimeoutExpired, psutil.NoSuchProcess):

@@ -82,5 +82,4 @@ def _tables(run: Run, job: Job) -> dict[str, pd.DataFrame]:
     report = check(run.layout, run.trace, until_us=round(run.end_s * 1e6)) if job.check else None
     if report is not None and not report.ok:
         raise RuntimeError(f"unsafe motion: {report.summary()}")
-    made = tables.all_tables(run, report)
-    return {name: made[name] for name in ("footprint", *job.keep)}
+    return tables.some_tables(run, job.keep, report)

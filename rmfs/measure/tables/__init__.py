@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from rmfs.measure.tables.connections import connections as connections
@@ -25,6 +26,8 @@ from rmfs.measure.tables.stock import pods as pods
 from rmfs.measure.tables.stock import skus as skus
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
     import pandas as pd
 
     from rmfs.measure.checker import CheckReport
@@ -50,8 +53,40 @@ MAKERS = {
 """How each table but the footprint is made from what happened."""
 
 
+class Made(Mapping[str, "pd.DataFrame"]):
+    """The tables but the footprint, each made when it is first asked for.
+
+    Parameters
+    ----------
+    logs
+        What happened.
+    """
+
+    def __init__(self, logs: Logs) -> None:
+        self._logs = logs
+        self._made: dict[str, pd.DataFrame] = {}
+
+    def __getitem__(self, name: str) -> pd.DataFrame:
+        if name not in self._made:
+            self._made[name] = MAKERS[name](self._logs)
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(MAKERS)
+
+    def __len__(self) -> int:
+        return len(MAKERS)
+
+
 def all_tables(run: Measured, report: CheckReport | None = None) -> dict[str, pd.DataFrame]:
     """Make every table of a run, by name; `report` fills the footprint's `collisions`."""
+    return some_tables(run, MAKERS, report)
+
+
+def some_tables(
+    run: Measured, names: Iterable[str], report: CheckReport | None = None
+) -> dict[str, pd.DataFrame]:
+    """Make the footprint of a run and the tables of these names, and nothing that is not needed."""
     logs = Logs(run.recorder)
-    made = {name: make(logs) for name, make in MAKERS.items()}
-    return {"footprint": footprint(run, logs, made, report), **made}
+    made = Made(logs)
+    return {"footprint": footprint(run, logs, made, report), **{name: made[name] for name in names}}

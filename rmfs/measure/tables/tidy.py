@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
@@ -12,6 +13,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 
+@cache
+def _dtype(name: str) -> Any:
+    """Return the type of that name; to look it up takes pandas longer than to convert to it."""
+    return pd.api.types.pandas_dtype(name)
+
+
 def tidy(table: str, columns: Mapping[str, Any] | pd.DataFrame) -> pd.DataFrame:
     """Return a frame with exactly the columns of the dictionary.
 
@@ -20,7 +27,7 @@ def tidy(table: str, columns: Mapping[str, Any] | pd.DataFrame) -> pd.DataFrame:
     ValueError
         If a column is missing or not in the dictionary: nothing is written that is not described.
     """
-    described = {column.name: column.dtype for column in TABLES[table]}
+    described = {column.name: _dtype(column.dtype) for column in TABLES[table]}
     wrong = described.keys() ^ set(columns.keys())
     if wrong:
         raise ValueError(f"table {table} and its dictionary differ in {', '.join(sorted(wrong))}")
