@@ -5,6 +5,8 @@ word of a block's info string is its language; further words:
 
     file=NAME       the block is written to a file instead of being run
     output          (text) what the block before has printed; a line `...` stands for any lines
+    serves          (sh) each command is a server: it runs until it has told its address
+    reference       (sh) needs the public instances of RAWSim-O, in the folder $RAWSIMO
     slow            runs only in the slow suite
     skip="WHY"      never runs; the reason is for the reader of the source
 
@@ -20,6 +22,7 @@ import json
 import os
 import re
 import shlex
+import signal
 import subprocess
 import sys
 import traceback
@@ -30,9 +33,10 @@ from typing import Any
 
 from markdown_it import MarkdownIt
 
-from rmfs.cli import main
+from rmfs.cli import INTERRUPTED, main
 
-WORDS = ("file", "output", "slow", "skip")
+RAWSIMO = Path(__file__).resolve().parents[3] / "shared" / "reference" / "instances"
+WORDS = ("file", "output", "reference", "serves", "slow", "skip")
 CELL = "{code-cell}"
 """A cell of a notebook page."""
 
@@ -120,7 +124,10 @@ def _shell(block: Block, session: Session) -> None:
         words = shlex.split(command, comments=True)
         if not words:
             continue
-        code, told = _ours(words) if _is_ours(command, words) else _foreign(command)
+        if "serves" in block.options:
+            code, told = _served(command)
+        else:
+            code, told = _ours(words) if _is_ours(command, words) else _foreign(command)
         assert code == 0, f"{block}: {command}: exit code {code}\n{told}"
         printed.append(told)
     session.printed = "".join(printed)
@@ -141,14 +148,35 @@ def _ours(words: list[str]) -> tuple[int, str]:
 
 def _foreign(command: str) -> tuple[int, str]:
     told = subprocess.run(
-        ["bash", "-c", command],
-        capture_output=True,
-        text=True,
-        check=False,
-        # beside the interpreter of the tests is the `rmfs` of the tests
-        env=os.environ | {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"},
+        ["bash", "-c", command], capture_output=True, text=True, check=False, env=_environment()
     )
     return told.returncode, told.stdout + told.stderr
+
+
+def _served(command: str) -> tuple[int, str]:
+    """Run a server until it tells its address, then interrupt it."""
+    with subprocess.Popen(
+        ["bash", "-c", f"exec {command}"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env=_environment() | {"BROWSER": "true", "PYTHONUNBUFFERED": "1"},
+    ) as server:
+        assert server.stdout is not None
+        told = ""
+        for line in server.stdout:
+            told += line
+            if "http://" in line:
+                server.send_signal(signal.SIGINT)
+                break
+        told += server.stdout.read()
+        code = server.wait()
+    return (0 if "http://" in told and code in (0, INTERRUPTED) else code or 1), told
+
+
+def _environment() -> dict[str, str]:
+    # beside the interpreter of the tests is the `rmfs` of the tests
+    return os.environ | {"RAWSIMO": str(RAWSIMO), "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
 
 
 def _toml(block: Block, session: Session) -> None:
