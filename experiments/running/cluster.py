@@ -7,7 +7,9 @@ file system); every worker compares the hashes of the inputs. Start workers with
 
 from __future__ import annotations
 
+import argparse
 import queue
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -71,8 +73,7 @@ class DaskWorkers:
         self._cluster: Any = None
         target: Any = address
         if Path(address).suffix == ".toml":
-            profile = validate(Profile, read_toml(Path(address)), address)
-            target = self._cluster = _started(profile, address)
+            target = self._cluster = started(read_profile(Path(address)), address)
         try:
             self.client = self._distributed.Client(target, timeout=CONNECT_S, set_as_default=False)
         except (OSError, ValueError) as error:
@@ -120,8 +121,42 @@ class DaskWorkers:
         return job, Outcome(error=f"{type(error).__name__}: {error}".splitlines()[0], died=True)
 
 
-def _started(profile: Profile, source: str) -> Any:
-    """Start a cluster.
+def read_profile(path: Path) -> Profile:
+    """Read a cluster profile.
+
+    Raises
+    ------
+    InputError
+        If it is missing or wrong.
+    """
+    return validate(Profile, read_toml(path), str(path))
+
+
+def job_script(path: Path) -> str:
+    """Return what a batch system will be given for each of its jobs; nothing is submitted.
+
+    Raises
+    ------
+    InputError
+        If the profile is wrong, is of no batch system, or dask-jobqueue is not installed.
+    """
+    profile = read_profile(path)
+    if profile.cluster == "local":
+        raise InputError(f'{path}: cluster = "local" has no job script: no batch system is asked')
+    cluster = started(profile.model_copy(update={"workers": 0}), str(path))
+    try:
+        return str(cluster.job_script())
+    finally:
+        cluster.close()
+
+
+def started(profile: Profile, source: str) -> Any:
+    """Start a cluster; a batch system is asked for as many jobs as hold the workers.
+
+    Parameters
+    ----------
+    source
+        Named in errors.
 
     Raises
     ------
@@ -155,3 +190,20 @@ def _work_of(work: Callable[[Job], Outcome] | None) -> Callable[[Job], Outcome]:
     from experiments.running.execute import execute
 
     return execute
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Print the job script of a profile: `python -m experiments.running.cluster PROFILE.toml`."""
+    parser = argparse.ArgumentParser(prog="python -m experiments.running.cluster")
+    parser.add_argument("profile", type=Path, help="a cluster profile (.toml)")
+    given = parser.parse_args(arguments)
+    try:
+        print(job_script(given.profile))
+    except InputError as error:
+        print(f"cluster: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

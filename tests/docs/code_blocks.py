@@ -176,7 +176,10 @@ def _served(command: str) -> tuple[int, str]:
 
 def _environment() -> dict[str, str]:
     # beside the interpreter of the tests is the `rmfs` of the tests
-    return os.environ | {"RAWSIMO": str(RAWSIMO), "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    return os.environ | {
+        "RAWSIMO": str(RAWSIMO),
+        "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
+    }
 
 
 def _toml(block: Block, session: Session) -> None:

@@ -11,7 +11,8 @@ import pytest
 
 import experiments
 from experiments.results import reproducible_table
-from experiments.running.cluster import DaskWorkers
+from experiments.running.cluster import DaskWorkers, job_script
+from experiments.running.cluster import main as cluster_main
 from rmfs.errors import InputError
 
 distributed = pytest.importorskip("distributed")
@@ -96,7 +97,7 @@ def test_a_wrong_profile_is_refused(tmp_path, text, told):
 
 def test_a_batch_system_is_told_to_start_single_threaded_workers(monkeypatch, tmp_path):
     jobqueue = pytest.importorskip("dask_jobqueue")
-    from experiments.running.cluster import Profile, _started
+    from experiments.running.cluster import Profile, started
 
     made = []
 
@@ -114,7 +115,7 @@ def test_a_batch_system_is_told_to_start_single_threaded_workers(monkeypatch, tm
         workers=40,
         options={"queue": "short", "memory": "4GB", "cores": 8},
     )
-    _started(profile, "cluster.toml")
+    started(profile, "cluster.toml")
     assert made == [{"queue": "short", "memory": "4GB", "cores": 8, "processes": 8}, 40]
 
 
@@ -122,3 +123,53 @@ def test_a_scheduler_that_does_not_answer_is_told(monkeypatch):
     monkeypatch.setattr("experiments.running.cluster.CONNECT_S", 0.2)
     with pytest.raises(InputError, match="no scheduler answers"):
         DaskWorkers("tcp://127.0.0.1:9")
+
+
+SCRIPTS = {
+    "slurm": ("#SBATCH -p short", "#SBATCH --cpus-per-task=8", "#SBATCH -t 02:00:00"),
+    "pbs": ("#PBS -q short", "#PBS -l select=1:ncpus=8:mem=15GB", "#PBS -l walltime=02:00:00"),
+    "sge": ("#$ -q short", "#$ -l h_rt=02:00:00"),
+    "lsf": ("#BSUB -q short", "#BSUB -n 8", "#BSUB -W 02:00"),
+    "oar": ("#OAR -q short", "walltime=02:00:00"),
+    "htcondor": ("RequestCpus = MY.DaskWorkerCores", "MY.DaskWorkerCores = 8"),
+}
+"""What must be in the job script of each batch system, by its own manual."""
+
+
+@pytest.mark.parametrize("cluster", SCRIPTS)
+def test_the_job_script_of_each_batch_system(tmp_path, cluster, capsys):
+    """Resources are asked for, and eight single-threaded workers begun in each job."""
+    pytest.importorskip("dask_jobqueue")
+    options = ["cores = 8", 'memory = "16GB"']
+    if cluster == "htcondor":
+        options += ['disk = "1GB"']
+    else:
+        options += [
+            'queue = "short"',
+            f'walltime = "{"02:00" if cluster == "lsf" else "02:00:00"}"',
+        ]
+    profile = tmp_path / "cluster.toml"
+    head = f'format = "rmfs-cluster/1"\ncluster = "{cluster}"\nworkers = 40\n[options]\n'
+    profile.write_text(head + "\n".join(options))
+    assert cluster_main([str(profile)]) == 0
+    script = capsys.readouterr().out
+    for line in (*SCRIPTS[cluster], "--nthreads 1", "--nworkers 8"):
+        assert line in script, script
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ('cluster = "local"\nworkers = 2', "has no job script"),
+        ('cluster = "slurm"\nworkers = 2\n[options]\nquue = "x"\nmemory = "1GB"', "options: "),
+        ('cluster = "slurm"\nworkers = 2', "options: "),
+    ],
+)
+def test_a_profile_without_a_job_script_is_refused(tmp_path, text, told, capsys):
+    pytest.importorskip("dask_jobqueue")
+    profile = tmp_path / "cluster.toml"
+    profile.write_text(f'format = "rmfs-cluster/1"\n{text}\n')
+    with pytest.raises(InputError, match=told):
+        job_script(profile)
+    assert cluster_main([str(profile)]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
