@@ -60,8 +60,13 @@ soak: setup ## Run the long tests: whole days, comparisons with other systems
 	$(BIN)/python -m pytest -m slow -n $(JOBS)
 
 .PHONY: docs
-docs: setup ## Draw the pictures of the documentation
+docs: $(VENV)/.docs ## Build the documentation: docs/_build/index.html
+	$(BIN)/sphinx-build -W --keep-going -q -E -b html docs docs/_build
+
+.PHONY: pictures
+pictures: setup ## Draw the pictures of the documentation (needs LaTeX and Poppler)
 	$(BIN)/rmfs layout show default --out docs/images/default-layout.png
+	$(BIN)/python -m experiments.typeset results/published/figure-5a.tex docs/images/figure-5a-table.png
 
 .PHONY: viewer
 viewer: ## Build the page of `rmfs view` from its sources (needs Node; its users do not)
@@ -72,11 +77,14 @@ lock: $(VENV)/.installed ## Pin the newest packages that pyproject.toml allows: 
 	$(PIP) install $(UV)
 	$(BIN)/uv pip compile pyproject.toml --quiet --extra dev --universal --python-version 3.11 \
 	  --generate-hashes --upgrade --custom-compile-command "make lock" --output-file requirements.txt
+	$(BIN)/uv pip compile pyproject.toml --quiet --extra docs --constraint requirements.txt --universal \
+	  --python-version 3.11 --generate-hashes --custom-compile-command "make lock" \
+	  --output-file docs/requirements.txt
 
 .PHONY: clean
 clean: ## Remove what was installed and built; results/ stays
 	rm -rf $(VENV) .rust $(CRATE)/target $(CRATE)/_core*.so $(CRATE)/_core*.pyd dist
-	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache
+	rm -rf docs/_build .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache
 	find rmfs solvers experiments tests .ci -name __pycache__ -prune -exec rm -rf {} +
 
 .PHONY: rust
@@ -89,6 +97,11 @@ $(VENV)/.installed: requirements.txt
 	@echo "installing the packages of requirements.txt into $(VENV)"
 	@$(PYTHON) -m venv $(VENV)
 	@$(PIP) install --require-hashes -r requirements.txt
+	@touch $@
+
+$(VENV)/.docs: $(VENV)/.built docs/requirements.txt
+	@echo "installing the packages of docs/requirements.txt into $(VENV)"
+	@$(PIP) install --require-hashes -r docs/requirements.txt
 	@touch $@
 
 # No Python package is fetched here: those installed above are all that is needed.

@@ -1,6 +1,8 @@
 """How Sphinx builds the documentation: `make docs`."""
 
+import re
 from importlib.metadata import version as installed
+from typing import Any
 
 project = "rmfs"
 author = "The rmfs developers"
@@ -33,3 +35,16 @@ autodoc_default_options = {"members": True, "show-inheritance": True}
 autodoc_mock_imports = ["distributed", "dask_jobqueue"]
 napoleon_google_docstring = False
 napoleon_use_rtype = False
+napoleon_use_ivar = True  # attributes are documented once, in their class
+# words of signatures, such as Outcome, name more than one thing
+suppress_warnings = ["ref.python"]
+
+
+def _links_out(app: object, name: str, source: list[str]) -> None:
+    """Turn links to files beside the documentation into their names: they are not part of it."""
+    source[0] = re.sub(r"\[([^\]]*)\]\(\.\./([^)\s]*)\)", r"\1 (`\2`)", source[0])
+
+
+def setup(app: Any) -> None:
+    """Called by Sphinx."""
+    app.connect("source-read", _links_out)

@@ -107,8 +107,8 @@ def per_arm(
 
     Returns
     -------
-    One row per arm, in the order of their first appearance: `count mean low high half_width
-    relative_half_width sd`.
+    One row per arm, in the order of their first appearance: `count`, `mean`, `low`, `high`,
+    `half_width`, `relative_half_width` and `sd`.
     """
     require(frame, by, column)
     rows = {}

@@ -158,9 +158,9 @@ class Solution(Generic[V_co]):
 
     @property
     def gap(self) -> float:
-        """Relative distance of objective and bound: |objective - bound| / |objective|; inf if open.
+        """Relative distance of objective and bound, ``|objective - bound| / |objective|``.
 
-        A bound that passes the objective by rounding counts as met.
+        It is inf if open. A bound that passes the objective by rounding counts as met.
         """
         if not self.found or math.isinf(self.bound):
             return math.inf

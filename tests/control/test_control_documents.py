@@ -1,7 +1,6 @@
 """The page on writing controllers is executed; the catalogue is what the code says."""
 
 import re
-import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -19,8 +18,8 @@ def page():
 
 
 def test_the_example_runs(page, tmp_path, monkeypatch):
-    """Its code blocks, in their order, in a folder of their own."""
-    rule, comparison = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    """What it compares is different; that all of its blocks run, tests/docs finds."""
+    rule, comparison = re.findall(r"```python.*?\n(.*?)```", page, re.DOTALL)
     (tmp_path / "my_rules.py").write_text(rule)
     (tmp_path / "compare.py").write_text(comparison)
     done = subprocess.run(
@@ -32,32 +31,10 @@ def test_the_example_runs(page, tmp_path, monkeypatch):
     assert near.split()[1:] != ours.split()[1:]
 
 
-def test_the_commands_run(page, tmp_path):
-    """The rule and the one it replaces, then the comparison, which names the rule that differs."""
-    rule = re.search(r"```python\n(.*?)```", page, re.DOTALL)[1]
-    (tmp_path / "my_rules.py").write_text(rule)
-    blocks = re.findall(r"```sh\n(.*?)\n```", page, re.DOTALL)
-    commands = [line.removeprefix("PYTHONPATH=. ") for b in blocks for line in b.splitlines()]
-    told = [
-        subprocess.run(
-            [sys.executable, "-m", *shlex.split(command)],
-            cwd=tmp_path,
-            check=True,
-            capture_output=True,
-            text=True,
-        ).stdout
-        for command in commands
-    ]
-    assert (tmp_path / "results/wanted-near/footprint.csv").is_file()
-    assert [command.split()[1] for command in commands] == ["run", "run", "compare"]
-    assert "my_rules:WantedNear" in told[-1]
-    assert "units_per_h" in told[-1]
-
-
 @pytest.mark.parametrize("pacing", ["instant", "fixed=2", "wall"])
 def test_the_controller_that_asks_runs(pacing, tmp_path):
     page = (DOCS / "optimisers-in-the-loop.md").read_text("utf-8")
-    code = re.search(r"```python\n(.*?)```", page, re.DOTALL)[1]
+    code = re.search(r"```python.*?\n(.*?)```", page, re.DOTALL)[1]
     (tmp_path / "asks_for_orders.py").write_text(code)
     (tmp_path / "run.py").write_text(
         "import rmfs\n"

@@ -4,6 +4,7 @@ A page is one session: its blocks run in order, in one folder and one Python nam
 word of a block's info string is its language; further words:
 
     file=NAME       the block is written to a file instead of being run
+    from=PATH       the block is part of a file of the project, word for word
     output          (text) what the block before has printed; a line `...` stands for any lines
     serves          (sh) each command is a server: it runs until it has told its address
     reference       (sh) needs the public instances of RAWSim-O, in the folder $RAWSIMO
@@ -35,10 +36,13 @@ from markdown_it import MarkdownIt
 
 from rmfs.cli import INTERRUPTED, main
 
-RAWSIMO = Path(__file__).resolve().parents[3] / "shared" / "reference" / "instances"
-WORDS = ("file", "output", "reference", "serves", "slow", "skip")
+ROOT = Path(__file__).resolve().parents[2]
+RAWSIMO = ROOT.parent / "shared" / "reference" / "instances"
+WORDS = ("file", "from", "output", "reference", "serves", "slow", "skip")
+HERE = "PYTHONPATH=."
+"""What the folder of a page is for the tests anyway."""
 CELL = "{code-cell}"
-"""A cell of a notebook page."""
+"""A cell of a notebook page: slow, and `make docs` runs it, too."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +79,7 @@ def blocks(page: Path) -> list[Block]:
             language, *words = shlex.split(token.info) or [""]
             options = {k: v for k, _, v in (word.partition("=") for word in words)}
             if language == CELL:
-                language, options = "python", {}
+                language, options = "python", {"slow": ""}
             found.append(Block(page, token.map[0] + 1, language, options, token.content))
     return found
 
@@ -98,6 +102,9 @@ def run(block: Block, session: Session) -> None:
         path = session.folder / block.options["file"]
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(block.content, encoding="utf-8")
+    if "from" in block.options:
+        assert block.content in (ROOT / block.options["from"]).read_text("utf-8"), f"{block}"
+        return
     {"python": _python, "sh": _shell, "toml": _toml, "json": _json, "text": _text}[block.language](
         block, session
     )
@@ -136,13 +143,13 @@ def _shell(block: Block, session: Session) -> None:
 def _is_ours(command: str, words: list[str]) -> bool:
     """Whether a command can be run in this process, which has everything imported."""
     plain = not re.search(r"[|;&><$*?]", command.split(" #")[0])
-    return plain and words[0] == "rmfs" and "--jobs" not in words
+    return plain and next(word for word in words if word != HERE) == "rmfs"
 
 
 def _ours(words: list[str]) -> tuple[int, str]:
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
-        code = main(words[1:])
+        code = main(words[1 + words.index("rmfs") :])
     return code, printed.getvalue()
 
 

@@ -1,10 +1,6 @@
 """What the texts tell a reader to type works, and what they point to is there."""
 
 import re
-import shlex
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 from project_files import ROOT, make_targets, text, tracked
@@ -25,32 +21,6 @@ def test_targets_named_can_be_made(name: str) -> None:
 
 def test_the_two_commands_are_named() -> None:
     assert "    make demo\n    make test\n" in README
-
-
-def test_commands_work_as_written(tmp_path: Path) -> None:
-    commands = [line for block in blocks("sh") for line in block.splitlines()]
-    assert commands
-    for command in commands:
-        name, *arguments = shlex.split(command)
-        assert name == "rmfs"
-        told = subprocess.run(
-            [sys.executable, "-m", "rmfs", *arguments],
-            cwd=tmp_path,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        assert told.returncode == 0, f"{command}\n{told.stderr}"
-    assert (tmp_path / "results" / "sixteen" / "run.json").is_file()
-
-
-@pytest.mark.parametrize("code", blocks("python"))
-def test_python_works_as_written(code: str, tmp_path: Path) -> None:
-    told = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
-    assert told.returncode == 0, told.stderr
-    assert "units_per_h" in told.stdout
 
 
 def test_the_python_experiment_is_the_one_on_the_command_line() -> None:
