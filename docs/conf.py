@@ -6,7 +6,7 @@ from typing import Any
 
 project = "rmfs"
 author = "The rmfs developers"
-copyright = "The rmfs developers"  # noqa: A001 - the name Sphinx wants
+copyright = "The rmfs developers"
 version = release = installed("rmfs")
 
 extensions = [
