@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Any
 from experiments.extras import optional
 from experiments.running.driver import Silent
 from rmfs.errors import InputError
+from rmfs.files import write_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -176,7 +177,9 @@ def _mean(values: Sequence[float]) -> float:
     return sum(values) / len(values)
 
 
-def measure(runs: int, duration_s: float, jobs: int, folder: Path) -> Cost:
+def measure(
+    runs: int, duration_s: float, jobs: int, folder: Path, file: Path | None = None
+) -> Cost:
     """Do an experiment of real runs by the command of users.
 
     Parameters
@@ -189,6 +192,8 @@ def measure(runs: int, duration_s: float, jobs: int, folder: Path) -> Cost:
         Runs at a time.
     folder
         Where design and results go; empty or absent.
+    file
+        A .csv table to write, with its provenance. Default: none.
 
     Raises
     ------
@@ -219,7 +224,7 @@ def measure(runs: int, duration_s: float, jobs: int, folder: Path) -> Cost:
         raise InputError(f"{path}: the experiment ended with code {command.returncode}")
     rows = load(folder / "out").sort_values("finished", kind="stable")
     inside = rows["cpu_s"] * rows["wall_s"] / rows["elapsed_s"]
-    return Cost(
+    cost = Cost(
         runs,
         jobs,
         wall_s,
@@ -229,6 +234,29 @@ def measure(runs: int, duration_s: float, jobs: int, folder: Path) -> Cost:
         cpu_s + float((rows["cpu_s"] - inside).sum()),
         memory_mb,
     )
+    if file is not None:
+        _publish(cost, rows, path, file)
+    return cost
+
+
+def _publish(cost: Cost, rows: pd.DataFrame, design: Path, file: Path) -> None:
+    """Write what it has cost as a table, with its provenance."""
+    from experiments.design.planning import plan
+    from experiments.provenance import write
+
+    figures = {
+        "runs": cost.runs,
+        "shortest run, s": min(cost.simulating_s),
+        "wall time, s": cost.wall_s,
+        "overhead by the clock, %": 100 * cost.overhead,
+        "overhead in processor time, %": 100 * cost.overhead_cpu,
+        "memory of the driver at most, MB": max(cost.memory_mb),
+    }
+    lines = ["figure,value", *(f'"{name}",{value}' for name, value in figures.items())]
+    write_text(file, "\n".join(lines) + "\n")
+    made = plan(design)
+    columns = ["wall_s"]
+    write(file, rows, design=made.design.name, design_hash=made.hash, columns=columns)
 
 
 def _servers(driver: Any) -> list[Any]:
@@ -347,13 +375,14 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument(
         "--asleep", type=float, metavar="S", help="runs that take so long and simulate nothing"
     )
+    parser.add_argument("--file", type=Path, help="a .csv table of the figures of real runs")
     given = parser.parse_args(arguments)
     try:
         if given.asleep is not None:
             print(measure_asleep(given.runs, given.asleep, given.jobs))
         else:
             with tempfile.TemporaryDirectory() as folder:
-                print(measure(given.runs, given.duration, given.jobs, Path(folder)))
+                print(measure(given.runs, given.duration, given.jobs, Path(folder), given.file))
     except InputError as error:
         print(f"overhead: {error}", file=sys.stderr)
         return 2

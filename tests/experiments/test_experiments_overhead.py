@@ -69,7 +69,11 @@ def test_sleeping_runs_go_the_whole_way():
 
 @pytest.mark.slow
 def test_real_runs_are_done_by_the_command(tmp_path):
-    cost = measure(10, 900.0, 1, tmp_path / "runs")
+    cost = measure(10, 900.0, 1, tmp_path / "runs", tmp_path / "cost.csv")
+    figures = pd.read_csv(tmp_path / "cost.csv", index_col=0)["value"]
+    assert figures["runs"] == 10
+    assert figures["overhead by the clock, %"] == pytest.approx(100 * cost.overhead)
+    assert (tmp_path / "cost.csv.provenance.json").is_file()
     assert len(cost.simulating_s) == 10 and len(cost.gaps_s) == 9
     assert 0 < sum(cost.simulating_s) + sum(cost.gaps_s) < cost.wall_s
     with pytest.raises(InputError, match="holds something already"):

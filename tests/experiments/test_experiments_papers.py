@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from experiments.papers import demonstrator, figure_5b
+from experiments.papers import demonstrator, figure_5b, fleet_size
 from experiments.papers.study import WRONG_INPUT, command
 
 
@@ -109,3 +109,59 @@ def test_a_folder_without_the_layout_is_refused(tmp_path, capsys):
 def test_a_missing_design_lists_the_shipped_ones(study, capsys):
     assert command(study.main, ["--design", "nothing"]) == WRONG_INPUT
     assert "shipped: demonstrator" in capsys.readouterr().err
+
+
+def fleets() -> pd.DataFrame:
+    """Two rules, three fleets, two seeds; the second seed is 2 units better throughout."""
+    units = {
+        ("near", 8): 100,
+        ("near", 16): 180,
+        ("near", 32): 176,
+        ("far", 8): 90,
+        ("far", 16): 150,
+    }
+    rows = [
+        {
+            "arm": f"robots={robots},psa={rule}",
+            "controllers.psa": rule,
+            "layout.robots": robots,
+            "robots": robots,
+            "replication": seed,
+            "units_per_h": float(base + 2 * (seed - 1) + (4 if robots == 16 and seed == 2 else 0)),
+        }
+        for (rule, robots), base in units.items()
+        for seed in (1, 2)
+    ]
+    return pd.DataFrame(rows)
+
+
+def test_what_a_further_robot_adds_is_paired_by_seed():
+    table = fleet_size.added(fleets()).frame
+    assert list(table.index) == [
+        "near, 8 to 16 robots", "near, 16 to 32 robots", "far, 8 to 16 robots",
+    ]  # fmt: skip
+    # (80, 84) / 8 and (-4, -8) / 16: means 10.25 and -0.375
+    assert list(table["units_per_h", "mean"]) == [10.25, -0.375, 7.75]
+    # half width for two seeds: 12.7062 sd / sqrt(2), sd = 0.5 / sqrt(2)
+    assert table["units_per_h", "±"].iloc[0] == pytest.approx(12.7062 * 0.25, rel=1e-4)
+    assert list(table["seeds", ""]) == [2, 2, 2]
+
+
+def test_fleets_that_others_beat_are_not_on_the_front():
+    table = fleet_size.unbeaten(fleets())
+    assert list(table.frame.index) == ["robots=8,psa=near", "robots=16,psa=near"]
+    assert list(table.frame["robots", "mean"]) == [8.0, 16.0]
+    assert "no other one beats" in table.caption
+
+
+def test_the_fleet_size_study_is_published(design, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = design(seeds=[1, 2], factors={"layout.robots": [8, 12], "controllers.psa": ["nearest"]})
+    given = ["--design", str(path), "--out", "runs", "--published", "out", "--jobs", "2"]
+    assert command(fleet_size.main, given) == 0
+    written = sorted(p.name for p in (tmp_path / "out").iterdir() if "provenance" not in p.name)
+    assert written == sorted(
+        ["fleet-size.png"]
+        + [f"fleet-size{part}.{form}" for part in ("", "-added", "-front") for form in
+           ("csv", "md", "tex")]
+    )  # fmt: skip

@@ -1,0 +1,101 @@
+"""How many robots a warehouse needs: throughput over the fleet, and what each further robot adds.
+
+The design `fleet-size` runs fleets of different sizes with two storage rules. Three things are
+published: units per hour of every fleet; what a further robot adds between one fleet and the next,
+seed by seed; and the arms that no other one beats, with fewer robots or with more units.
+"""
+
+from __future__ import annotations
+
+import sys
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from experiments.figures import pareto
+from experiments.figures.pareto import front
+from experiments.figures.style import saving
+from experiments.papers.study import command, done, parser
+from experiments.statistics import interval, per_arm
+from experiments.tables import HALF, Table, digits, means
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from experiments.papers.study import Study
+
+ROBOTS, RULE = "layout.robots", "controllers.psa"
+UNITS = "units_per_h"
+COLUMNS = (UNITS, "distance_per_unit_m", "robot_queueing_share", "pick_station_idle_share")
+
+
+def added(frame: pd.DataFrame, rule: str = RULE, column: str = UNITS) -> Table:
+    """Return what a robot more adds, from each fleet to the next one, paired by seed.
+
+    Parameters
+    ----------
+    frame
+        Results of a design with the factor `layout.robots`.
+    rule
+        The other factor: every level of it has fleets of its own.
+    column
+        What is counted. Default units per hour.
+
+    Returns
+    -------
+    A row per step, `RULE, FEWER to MORE robots`: mean and half width of (more - fewer) / robots.
+    """
+    rows: dict[str, dict[tuple[str, str], float]] = {}
+    for level, runs in frame.groupby(rule, sort=False):
+        wide = runs.pivot_table(index="replication", columns=ROBOTS, values=column)
+        fleets = [int(fleet) for fleet in sorted(wide.columns)]
+        for fewer, more in pairwise(fleets):
+            found = interval((wide[more] - wide[fewer]).dropna() / (more - fewer))
+            rows[f"{level}, {fewer} to {more} robots"] = {
+                (column, "mean"): found.mean,
+                (column, HALF): found.half_width,
+                ("seeds", ""): float(found.count),
+            }
+    columns = [(column, "mean"), (column, HALF), ("seeds", "")]
+    made = pd.DataFrame(list(rows.values()), index=pd.Index(list(rows), name="step"))
+    made.columns = pd.MultiIndex.from_tuples(columns)
+    shown = digits(made[column, HALF], made[column, "mean"])
+    caption = (
+        f"What one robot more adds to {column}, from each fleet to the next, seed by seed, with "
+        "95% confidence intervals (Student's t)."
+    )
+    decimals = {(column, "mean"): shown, (column, HALF): shown, ("seeds", ""): 0}
+    return Table(made, decimals, caption)
+
+
+def unbeaten(frame: pd.DataFrame, column: str = UNITS) -> Table:
+    """Return the arms that no other arm beats in robots or units, the smallest fleet first."""
+    robots = per_arm(frame, "robots")["mean"]
+    best = front(robots, per_arm(frame, column)["mean"])
+    chosen = frame.set_index("arm").loc[best].reset_index()
+    table = means(chosen, ["robots", *(c for c in COLUMNS if c in frame)])
+    caption = f"Arms that no other one beats, with fewer robots or more {column}. {table.caption}"
+    return Table(table.frame, table.decimals, caption)
+
+
+def picture(study: Study) -> Path:
+    """Draw every arm, robots against units per hour, and the front."""
+    path = study.place("fleet-size.png")
+    with saving(path, 6.4, 4.2) as figure:
+        pareto(study.frame, "robots", UNITS, figure.subplots())
+    study.record(path, ["robots", UNITS], kind="pareto", confidence=0.95)
+    return path
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the study and publish it."""
+    study = done(parser("fleet-size", __doc__).parse_args(arguments))
+    study.publish(means(study.frame, COLUMNS), "fleet-size", COLUMNS)
+    study.publish(added(study.frame), "fleet-size-added", [UNITS])
+    study.publish(unbeaten(study.frame), "fleet-size-front", COLUMNS)
+    print(picture(study))
+
+
+if __name__ == "__main__":
+    sys.exit(command(main))
