@@ -186,7 +186,6 @@ def run(
 
     overrides = [parse_override(text) for text in set_ or []]
     inputs = {"layout": layout, "scenario": scenario, "controllers": controllers}
-    overrides = [*asked_of_layout(inputs), *overrides]
     target = out or Path("results") / default_name(inputs, seed)
     streams = None if record is None else StreamRecorder()
     with reserved(target) as folder:
@@ -347,33 +346,15 @@ def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
     from rmfs.simulation.run import simulate
     from rmfs.simulation.simulation import StalledError
 
+    def told(part: str, note: str) -> None:
+        print(f"rmfs: {inputs[part]}: {note}", file=sys.stderr)
+
     with progress(f"simulating {', '.join(inputs.values())}, seed {seed}") as advance:
         try:
-            return simulate(*inputs.values(), seed=seed, progress=advance, **options)
+            return simulate(*inputs.values(), seed=seed, progress=advance, remark=told, **options)
         except (StalledError, OptimiserError, ReplayError) as error:
             print(f"rmfs: {error}", file=sys.stderr)
             raise typer.Exit(GIVEN_UP) from None
-
-
-def asked_of_layout(inputs: dict[str, str]) -> list[tuple[list[str], Any]]:
-    """Say what imports of RAWSim-O's files leave out or do differently.
-
-    Returns
-    -------
-    What a scenario of RAWSim-O asks of the layout, as overrides.
-    """
-    from rmfs import control, layout, scenario
-    from rmfs.scenario.rawsimo import read_xsett
-
-    loaders = {"layout": layout, "scenario": scenario, "controllers": control.settings}
-    asked: list[tuple[list[str], Any]] = []
-    for part, given in inputs.items():
-        if Path(given).suffix.lower() in (".xinst", ".xlayo", ".xsett", ".xconf"):
-            for note in loaders[part].load_with_notes(given)[1]:
-                print(f"rmfs: {given}: {note}", file=sys.stderr)
-        if part == "scenario" and Path(given).suffix.lower() == ".xsett":
-            asked = read_xsett(Path(given)).layout
-    return asked
 
 
 def default_name(inputs: dict[str, str], seed: int) -> str:

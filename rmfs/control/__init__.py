@@ -11,4 +11,5 @@ from rmfs.control.problems import Problem as Problem
 from rmfs.control.problems import Trigger as Trigger
 from rmfs.control.settings import ControllerSettings as ControllerSettings
 from rmfs.control.settings import load as load
+from rmfs.control.settings import load_with_notes as load_with_notes
 from rmfs.control.view import View as View

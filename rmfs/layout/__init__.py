@@ -20,6 +20,7 @@ from rmfs.layout.model import PickStation as PickStation
 from rmfs.layout.model import ReplenishmentStation as ReplenishmentStation
 from rmfs.layout.model import RobotKind as RobotKind
 from rmfs.layout.model import Tier as Tier
+from rmfs.layout.overrides import override as override
 from rmfs.layout.parameters import LayoutParameters as LayoutParameters
 
 if TYPE_CHECKING:

@@ -69,6 +69,7 @@ def describe(
             "parameters": run.controllers.to_table(),
         },
         "overrides": {".".join(path): value for path, value in run.overrides},
+        "notes": run.notes,
         "seed": run.seed,
         "pacing": run.pacing,
         "pacing_parameters": run.pacing_settings.model_dump(mode="json"),

@@ -21,7 +21,7 @@ TEMPLATE = Path(__file__).with_name("report.html.jinja")
 SHOWN = ("stations", "controllers")
 """Tables that are short enough to be shown whole."""
 
-INPUTS = ("layout", "scenario", "controllers", "overrides")
+INPUTS = ("layout", "scenario", "controllers", "overrides", "notes")
 """What of `run.json` was simulated; the rest says where it comes from."""
 
 

@@ -15,6 +15,7 @@ from rmfs.scenario.intake import State as State
 from rmfs.scenario.intake import bundle_intake as bundle_intake
 from rmfs.scenario.intake import export_stream as export_stream
 from rmfs.scenario.intake import order_intake as order_intake
+from rmfs.scenario.loading import asked_of_layout as asked_of_layout
 from rmfs.scenario.loading import load as load
 from rmfs.scenario.loading import load_with_notes as load_with_notes
 from rmfs.scenario.loading import named_files as named_files

@@ -60,6 +60,18 @@ def load_with_notes(
     return validate(Scenario, table, str(path)), notes
 
 
+def asked_of_layout(name_or_path: str | Path) -> list[tuple[list[str], Any]]:
+    """Return what a scenario of RAWSim-O asks of the layout, as overrides; ours ask nothing.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read.
+    """
+    path = locate("scenarios", str(name_or_path))
+    return read_xsett(path).layout if path.suffix.lower() == ".xsett" else []
+
+
 def named_files(scenario: Scenario) -> dict[str, Path]:
     """Return the files that a scenario names, by their keys, such as `demand.file`."""
     found = {f"{name}.{key}": getattr(getattr(scenario, name), key, None) for name, key in _FILES}

@@ -5,36 +5,33 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rmfs import control, measure
 from rmfs import layout as layouts
-from rmfs import scenario as scenarios
+from rmfs import measure
 from rmfs.control.pp import planner_settings
 from rmfs.control.problems import Problem
-from rmfs.control.settings import ControllerSettings
 from rmfs.errors import InputError
-from rmfs.layout.model import Layout
-from rmfs.scenario import Scenario
+from rmfs.simulation.inputs import Overrides, load_inputs, name_of
 from rmfs.simulation.pacing import pacing_settings
 from rmfs.simulation.simulation import Simulation
 from rmfs.traffic import Traffic
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from pathlib import Path
 
     import pandas as pd
     from numpy.typing import NDArray
 
+    from rmfs.control.settings import ControllerSettings
+    from rmfs.layout.model import Layout
     from rmfs.measure import EventLog, Recorder
     from rmfs.measure.observer import Observer
-    from rmfs.scenario import StreamRecorder
+    from rmfs.scenario import Scenario, StreamRecorder
     from rmfs.simulation.pacing import PacingSettings
     from rmfs.simulation.statistics import DecisionStatistics
     from rmfs.world import World
-
-Overrides = list[tuple[list[str], Any]]
 
 
 @dataclass
@@ -48,7 +45,9 @@ class Run:
     names
         Layout, scenario and controllers as the user named them.
     overrides
-        The overrides given, as pairs of path and value.
+        As pairs of path and value: those given, and what a scenario of RAWSim-O asks of the layout.
+    notes
+        Per part, what an import of RAWSim-O's file left out or does differently.
     pacing, pacing_settings
         The pacing as it was given, and with all its parameters.
     warmup_s, duration_s, end_s
@@ -70,6 +69,7 @@ class Run:
     controllers: ControllerSettings
     names: tuple[str, str, str]
     overrides: Overrides
+    notes: dict[str, list[str]]
     seed: int
     pacing: str
     pacing_settings: PacingSettings
@@ -116,6 +116,7 @@ def simulate(
     trace: bool = False,
     streams: StreamRecorder | None = None,
     progress: Callable[[float, float], None] | None = None,
+    remark: Callable[[str, str], None] | None = None,
     allow_not_well_formed: bool = False,
 ) -> Run:
     """Simulate a warehouse.
@@ -140,6 +141,9 @@ def simulate(
         Keeps all orders and bundles that come, to be written by `rmfs.scenario.write_stream`.
     progress
         Called with the simulated time so far and in total, about a hundred times.
+    remark
+        Called, before the run begins, with part (`layout`, ...) and text of each remark on a file
+        of RAWSim-O: what is left out or done differently.
     allow_not_well_formed
         Whether to run a layout in which robots may block each other for ever.
 
@@ -148,14 +152,17 @@ def simulate(
     InputError
         If something given is wrong; names what and says what would be valid.
     """
-    given = _split(overrides)
-    plan = _loaded(layout, Layout, layouts.load, given["layout"])
-    work = _loaded(scenario, Scenario, scenarios.load, given["scenario"])
-    rules = _loaded(controllers, ControllerSettings, control.load, given["controllers"])
     if seed < 0:
         raise InputError(f"seed {seed}: must be 0 or greater")
-    pace = pacing_settings(pacing, given["pacing"])
-    layouts.refuse(plan, _name(layout), allow_not_well_formed=allow_not_well_formed)
+    inputs = load_inputs(layout, scenario, controllers, overrides)
+    plan, work, rules = inputs.layout, inputs.scenario, inputs.controllers
+    names = name_of(layout), name_of(scenario), name_of(controllers)
+    pace = pacing_settings(pacing, inputs.pacing)
+    layouts.refuse(plan, names[0], allow_not_well_formed=allow_not_well_formed)
+    if remark is not None:
+        for part, notes in inputs.notes.items():
+            for note in notes:
+                remark(part, note)
     recorder = measure.Recorder()
     events = measure.EventLog() if trace else None
     planner = planner_settings(rules.choices[Problem.PP], seed)
@@ -177,8 +184,9 @@ def simulate(
         layout=plan,
         scenario=work,
         controllers=rules,
-        names=(_name(layout), _name(scenario), _name(controllers)),
-        overrides=list(overrides),
+        names=names,
+        overrides=inputs.overrides,
+        notes=inputs.notes,
         seed=seed,
         pacing=pacing,
         pacing_settings=pace,
@@ -192,30 +200,3 @@ def simulate(
         recorder=recorder,
         events=events,
     )
-
-
-def _split(overrides: Sequence[tuple[list[str], Any]]) -> dict[str, Overrides]:
-    """Sort overrides by the part they are for."""
-    parts: dict[str, Overrides] = {"layout": [], "scenario": [], "controllers": [], "pacing": []}
-    for path, value in overrides:
-        if path[0] not in parts or len(path) < 2:
-            raise InputError(
-                f"--set {'.'.join(path)}: must begin with layout., scenario., controllers. "
-                "or pacing."
-            )
-        parts[path[0]].append((path[1:], value))
-    return parts
-
-
-def _loaded(given: Any, kind: type, load: Callable[..., Any], overrides: Overrides) -> Any:
-    """Load a part unless it is an object already, which overrides cannot change."""
-    if not isinstance(given, kind):
-        return load(str(given), overrides)
-    if overrides:
-        path = ".".join(overrides[0][0])
-        raise InputError(f"--set {path}: {kind.__name__} was given as an object, not as a file")
-    return given
-
-
-def _name(given: Any) -> str:
-    return Path(given).stem if isinstance(given, str | Path) else str(given.name)

@@ -291,6 +291,7 @@ def run():
         controllers=Settings(),
         names=("fake-layout", "fake-scenario", "fake-controllers"),
         overrides=[(["layout", "robots"], 2)],
+        notes={"layout": ["Bot.Colour is unknown and was left out"]},
         seed=3,
         pacing="instant",
         pacing_settings=Settings(),

@@ -59,6 +59,15 @@ def test_progression_is_in_units_and_km_per_hour(folder):
     assert units.get_xdata()[0] * 3600 == pytest.approx(130.0)
 
 
+def test_the_bound_is_drawn_where_there_is_one(folder):
+    series = load_run(folder).table("series")
+    for bound, lines in ((738.0, 2), (float("inf"), 1), (None, 1)):
+        ax = Figure().add_subplot()
+        plots.progression(series, ax, bound_per_h=bound)
+        assert len(ax.lines) == lines
+        assert bound != 738.0 or ax.get_ylim()[1] > 738.0
+
+
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [

@@ -18,8 +18,13 @@ from rmfs.measure.checker import check
 pytestmark = pytest.mark.slow
 
 REFERENCE = Path(__file__).resolve().parents[3] / "shared" / "reference" / "instances"
-PLACES = {".xinst": 0, ".xlayo": 0, ".xsett": 1, ".xgenc": 1, ".xconf": 2}
-FILES = sorted(path for path in REFERENCE.rglob("*") if path.suffix in PLACES)
+PLACES = {".xinst": 0, ".xlayo": 0, ".xsett": 1, ".xconf": 2}
+PARTS = {**PLACES, ".xgenc": None, ".xitem": None, ".txt": None}
+FILES = sorted(
+    path
+    for path in REFERENCE.rglob("*")
+    if path.suffix in PARTS and not path.name.startswith("LICENSE")
+)
 
 ISOLATED = r"no aisle leads to the entrance of its queue"
 REFUSED = {
@@ -31,6 +36,19 @@ REFUSED = {
 
 HALF_AN_HOUR = [(["scenario", "warmup_s"], 0), (["scenario", "duration_s"], 1800.0)]
 FEW_LINES = {"distribution": "normal", "mean": 1, "sd": 0.5, "min": 1, "max": 2}
+
+
+def about_skus(path: Path) -> list:
+    """What makes a scenario of a SKU set, an order list or a list of words."""
+    file = str(path)
+    if path.suffix == ".xgenc":
+        changes = {"skus": {"file": file}, "orders.lines": FEW_LINES}
+    elif path.suffix == ".xitem":
+        stream = {"mode": "stream", "file": file}
+        changes = {"skus": {"file": file}, "demand": stream, "replenishment": stream}
+    else:
+        changes = {"skus": {"words": file}}
+    return [(["scenario", *key.split(".")], value) for key, value in changes.items()]
 
 
 @pytest.fixture(scope="module")
@@ -49,11 +67,11 @@ def test_a_published_file_runs_or_is_refused(path: Path, rows):
     name = path.relative_to(REFERENCE).as_posix()
     parts = ["basic", "pp-minimal", "default"]
     overrides = list(HALF_AN_HOUR)
-    if path.suffix == ".xgenc":
-        skus = [(["scenario", "skus"], {"file": str(path)})]
-        overrides += [*skus, (["scenario", "orders", "lines"], FEW_LINES)]
-    else:
+    if path.suffix in PLACES:
         parts[PLACES[path.suffix]] = str(path)
+    else:
+        parts[1] = "letters" if path.suffix == ".txt" else parts[1]
+        overrides += about_skus(path)
     if name in REFUSED:
         with pytest.raises(InputError, match=REFUSED[name]) as refused:
             rmfs.simulate(*parts, seed=1, overrides=overrides)

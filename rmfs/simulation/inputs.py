@@ -1,0 +1,121 @@
+"""What a run is made of: layout, scenario and controllers, from files, names or objects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rmfs import control, scenario
+from rmfs import layout as layouts
+from rmfs.control.settings import ControllerSettings
+from rmfs.errors import InputError
+from rmfs.layout.model import Layout
+from rmfs.scenario import Scenario
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+Overrides = list[tuple[list[str], Any]]
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """The parts of a run, after overrides.
+
+    Attributes
+    ----------
+    overrides
+        All of them: those that a scenario of RAWSim-O asks of the layout, and those given.
+    pacing
+        The ones that are for pacing, without their first key.
+    notes
+        Per part, what an import of RAWSim-O's file left out or does differently.
+    """
+
+    layout: Layout
+    scenario: Scenario
+    controllers: ControllerSettings
+    overrides: Overrides
+    pacing: Overrides
+    notes: dict[str, list[str]]
+
+
+def load_inputs(
+    layout: str | Path | Layout,
+    work: str | Path | Scenario,
+    rules: str | Path | ControllerSettings,
+    overrides: Sequence[tuple[list[str], Any]] = (),
+) -> Inputs:
+    """Load the parts of a run; see `rmfs.simulate`.
+
+    What a scenario of RAWSim-O asks of the layout comes before the overrides given, which win.
+
+    Raises
+    ------
+    InputError
+        If something given is wrong; names what and says what would be valid.
+    """
+    given = _split(overrides)
+    asked = [] if isinstance(work, Scenario) else scenario.asked_of_layout(work)
+    of_layout = [*_split(asked)["layout"], *given["layout"]]
+    notes: dict[str, list[str]] = {}
+    if isinstance(layout, Layout) and not given["layout"]:
+        plan = layouts.override(layout, of_layout, layout.name)
+    else:
+        plan = _loaded("layout", layout, Layout, layouts.load_with_notes, of_layout, notes)
+    return Inputs(
+        layout=plan,
+        scenario=_loaded(
+            "scenario", work, Scenario, scenario.load_with_notes, given["scenario"], notes
+        ),
+        controllers=_loaded(
+            "controllers",
+            rules,
+            ControllerSettings,
+            control.load_with_notes,
+            given["controllers"],
+            notes,
+        ),
+        overrides=[*asked, *overrides],
+        pacing=given["pacing"],
+        notes=notes,
+    )
+
+
+def name_of(given: Any) -> str:
+    """Return the name of a part as the user gave it."""
+    return Path(given).stem if isinstance(given, str | Path) else str(given.name)
+
+
+def _split(overrides: Sequence[tuple[list[str], Any]]) -> dict[str, Overrides]:
+    """Sort overrides by the part they are for."""
+    parts: dict[str, Overrides] = {"layout": [], "scenario": [], "controllers": [], "pacing": []}
+    for path, value in overrides:
+        if path[0] not in parts or len(path) < 2:
+            raise InputError(
+                f"--set {'.'.join(path)}: must begin with layout., scenario., controllers. "
+                "or pacing."
+            )
+        parts[path[0]].append((path[1:], value))
+    return parts
+
+
+def _loaded(
+    part: str,
+    given: Any,
+    kind: type,
+    load: Callable[..., Any],
+    overrides: Overrides,
+    notes: dict[str, list[str]],
+) -> Any:
+    """Load a part unless it is an object already, which overrides cannot change."""
+    if not isinstance(given, kind):
+        loaded, remarks = load(str(given), overrides)
+        if remarks:
+            notes[part] = remarks
+        return loaded
+    if overrides:
+        path = ".".join(overrides[0][0])
+        raise InputError(f"--set {path}: {kind.__name__} was given as an object, not as a file")
+    return given
