@@ -295,6 +295,32 @@ def view(
         print(export)
 
 
+@app.command("import")
+def import_command(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            metavar="DIR", help="A folder with files of RAWSim-O, or one such file.", exists=False
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder to make. [default: below results/imported/]", show_default=False),
+    ] = None,
+) -> None:
+    """Turn RAWSim-O's files into ours; list what differs, is dead, unknown or refused."""
+    from rmfs.importing import LIST, Imported, import_files
+
+    def told(one: Imported) -> None:
+        print(*one.lines(), sep="\n", flush=True)
+
+    target = out or Path("results") / "imported" / source.resolve().stem
+    done = import_files(source, target, told)
+    print(target / LIST)
+    if any(one.refused for one in done):
+        raise typer.Exit(WRONG_INPUT)
+
+
 @app.command(hidden=True)
 def docs(
     folder: Annotated[Path, typer.Argument(help="Folder of the pages.")] = Path("docs"),

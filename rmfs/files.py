@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
@@ -42,3 +43,87 @@ def write_text(path: Path, text: str) -> None:
     """Write a text file whole or not at all (UTF-8)."""
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
+
+
+@contextmanager
+def replacing_folder(target: Path, mark: str, what: str) -> Iterator[Path]:
+    """Yield a temporary folder beside `target`, which takes that name if all goes well.
+
+    The folder is made at once, so that a target that cannot be written is noticed before any work
+    is done. On an error or an interruption it is removed again, with the folders made on the way.
+
+    Parameters
+    ----------
+    mark
+        A file that every such folder holds: only these, and empty ones, are replaced.
+    what
+        What such a folder is called.
+
+    Raises
+    ------
+    InputError
+        If the target cannot be written, or exists and is not such a folder.
+    """
+    target = target.absolute()
+    _refuse_strangers(target, mark, what)
+    made = _missing_parents(target)
+    try:
+        temporary = _temporary_beside(target)
+        try:
+            yield temporary
+            temporary.chmod(0o755)
+            _put_in_place(temporary, target)
+        finally:
+            shutil.rmtree(temporary, ignore_errors=True)
+    except BaseException:
+        _remove_empty(made)
+        raise
+
+
+def _refuse_strangers(target: Path, mark: str, what: str) -> None:
+    """Refuse to replace anything but an empty folder or one of the kind."""
+    try:
+        if target.exists() and not target.is_dir():
+            raise InputError(f"{target}: is not a folder")
+        if target.is_dir() and any(target.iterdir()) and not (target / mark).is_file():
+            raise InputError(f"{target}: exists and is not a {what}; it is left alone")
+    except OSError as error:
+        raise InputError(f"{target}: cannot be written ({error.strerror})") from None
+
+
+def _missing_parents(target: Path) -> list[Path]:
+    """Return the folders above `target` that do not exist, innermost first."""
+    return [parent for parent in target.parents if not parent.exists()]
+
+
+def _temporary_beside(target: Path) -> Path:
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        return Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}."))
+    except OSError as error:
+        raise InputError(f"{target}: cannot be written ({error.strerror})") from None
+
+
+def _put_in_place(temporary: Path, target: Path) -> None:
+    """Rename the finished folder; an older one of that name is kept until this has succeeded."""
+    if not target.exists():
+        temporary.replace(target)
+        return
+    aside = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}.old."))
+    try:
+        target.replace(aside / target.name)
+        try:
+            temporary.replace(target)
+        except BaseException:
+            (aside / target.name).replace(target)
+            raise
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)
+
+
+def _remove_empty(folders: list[Path]) -> None:
+    for folder in folders:
+        try:
+            folder.rmdir()
+        except OSError:
+            return

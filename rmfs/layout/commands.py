@@ -15,11 +15,9 @@ from rmfs.config import apply_overrides, parse_override, validate
 from rmfs.errors import InputError
 from rmfs.files import write_text
 from rmfs.layout.checks import IMPOSSIBLE, check
-from rmfs.layout.explicit import save_json
+from rmfs.layout.importing import SUFFIXES, import_layout
 from rmfs.layout.loading import load_with_notes
 from rmfs.layout.parameters import LayoutParameters
-from rmfs.layout.rawsimo.xinst import read_xinst
-from rmfs.layout.rawsimo.xlayo import read_xlayo
 from rmfs.layout.toml import to_toml
 
 app = typer.Typer(help="Layouts: make, look at, check, import.", no_args_is_help=True)
@@ -104,21 +102,9 @@ def import_command(
     force: Force = False,
 ) -> None:
     """Turn a RAWSim-O layout into one of ours: .xinst to .json, .xlayo to .toml."""
-    match path.suffix.lower():
-        case ".xinst":
-            target = out if out is not None else Path(f"{path.stem}.json")
-            _suffix(target, ".json")
-            _vacant(target, force=force)
-            layout, notes = read_xinst(path)
-            save_json(layout, target)
-        case ".xlayo":
-            target = out if out is not None else Path(f"{path.stem}.toml")
-            _suffix(target, ".toml")
-            _vacant(target, force=force)
-            parameters, notes = read_xlayo(path)
-            write_text(target, to_toml(parameters))
-        case _:
-            raise InputError(f"{path}: expected a .xinst or .xlayo file")
+    target = out if out is not None else Path(path.stem + SUFFIXES.get(path.suffix.lower(), ""))
+    _vacant(target, force=force)
+    notes = import_layout(path, target)
     _print_notes(notes)
     typer.echo(f"{target}: written")
 

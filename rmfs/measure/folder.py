@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import json
 import math
-import shutil
-import tempfile
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rmfs.errors import InputError
-from rmfs.files import replacing
+from rmfs.files import replacing, replacing_folder
 from rmfs.measure.dictionary import TABLES, names
 from rmfs.measure.trace import read_events, read_layout, read_motion, write_trace
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Mapping
+    from contextlib import AbstractContextManager
 
     import pandas as pd
 
@@ -57,6 +55,11 @@ def write_run(
     """
     with reserved(target) as folder:
         fill(folder, run, report=report, trace=trace, inputs=inputs)
+
+
+def reserved(target: Path) -> AbstractContextManager[Path]:
+    """Return the context in which a run folder is written; see `rmfs.files.replacing_folder`."""
+    return replacing_folder(target, PARAMETERS, "run folder")
 
 
 def fill(
@@ -118,83 +121,6 @@ def plain(value: Any) -> Any:
 
 def _write_table(path: Path, frame: pd.DataFrame) -> None:
     frame.to_parquet(path, index=False, compression="zstd")
-
-
-@contextmanager
-def reserved(target: Path) -> Iterator[Path]:
-    """Yield a temporary folder beside `target`, which takes that name if all goes well.
-
-    The folder is made at once, so that a target that cannot be written is noticed before any work
-    is done. On an error or an interruption it is removed again, with the folders made on the way.
-
-    Raises
-    ------
-    InputError
-        If the target cannot be written, or exists and is not a run folder.
-    """
-    target = target.absolute()
-    _refuse_strangers(target)
-    made = _missing_parents(target)
-    try:
-        temporary = _temporary_beside(target)
-        try:
-            yield temporary
-            temporary.chmod(0o755)
-            _put_in_place(temporary, target)
-        finally:
-            shutil.rmtree(temporary, ignore_errors=True)
-    except BaseException:
-        _remove_empty(made)
-        raise
-
-
-def _refuse_strangers(target: Path) -> None:
-    """Refuse to replace anything but an empty folder or a run."""
-    try:
-        if target.exists() and not target.is_dir():
-            raise InputError(f"{target}: is not a folder")
-        if target.is_dir() and any(target.iterdir()) and not (target / PARAMETERS).is_file():
-            raise InputError(f"{target}: exists and is not a run folder; it is left alone")
-    except OSError as error:
-        raise InputError(f"{target}: cannot be written ({error.strerror})") from None
-
-
-def _missing_parents(target: Path) -> list[Path]:
-    """Return the folders above `target` that do not exist, innermost first."""
-    return [parent for parent in target.parents if not parent.exists()]
-
-
-def _temporary_beside(target: Path) -> Path:
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        return Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}."))
-    except OSError as error:
-        raise InputError(f"{target}: cannot be written ({error.strerror})") from None
-
-
-def _put_in_place(temporary: Path, target: Path) -> None:
-    """Rename the finished folder; an older run of that name is kept until this has succeeded."""
-    if not target.exists():
-        temporary.replace(target)
-        return
-    aside = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}.old."))
-    try:
-        target.replace(aside / target.name)
-        try:
-            temporary.replace(target)
-        except BaseException:
-            (aside / target.name).replace(target)
-            raise
-    finally:
-        shutil.rmtree(aside, ignore_errors=True)
-
-
-def _remove_empty(folders: list[Path]) -> None:
-    for folder in folders:
-        try:
-            folder.rmdir()
-        except OSError:
-            return
 
 
 @dataclass(frozen=True, slots=True)

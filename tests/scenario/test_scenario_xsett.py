@@ -2,45 +2,18 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
-from xml.etree import ElementTree
 
-import numpy as np
 import pytest
+from rawsimo_files import XGENC
+from rawsimo_files import xsett as xsett_file
 from scenario_tools import DAY_US, SITE, FakeState, drive
-from typer.testing import CliRunner
 
-from rmfs.config import validate
 from rmfs.errors import InputError
-from rmfs.scenario import Scenario, bundle_intake, initial_stock, load, order_intake, sku_set
-from rmfs.scenario.commands import app
+from rmfs.scenario import Scenario, bundle_intake, order_intake, sku_set
 from rmfs.scenario.loading import load_with_notes
-from rmfs.scenario.parameters import SkuFile, StreamDemand
-from rmfs.scenario.rawsimo import read_xitem, read_xsett, xsett
+from rmfs.scenario.rawsimo import read_xsett
 from rmfs.scenario.rawsimo.arrivals import down_periods, steps
-from rmfs.scenario.sources import order_stream
-
-XGENC = (
-    "<SimpleItemGeneratorConfiguration><ItemDescriptions>"
-    + "".join(f"<A><Key>{k}</Key><Value>1</Value></A>" for k in range(9))
-    + "</ItemDescriptions></SimpleItemGeneratorConfiguration>"
-)
-XITEM = """<OrderList Type="Letter">
-  <ItemDescriptions>
-    <ItemDescription ID="4" Type="Letter" Weight="5" Letter="97" Color="Blue" />
-    <ItemDescription ID="9" Type="Letter" Weight="2" Letter="98" Color="Red" />
-  </ItemDescriptions>
-  <ItemBundles><ItemBundle TimeStamp="1.5" ItemDescription="9" Size="3" /></ItemBundles>
-  <Orders>
-    <Order TimeStamp="2"><Positions>
-      <Position ItemDescriptionID="9" Count="2" /><Position ItemDescriptionID="4" Count="1" />
-    </Positions></Order>
-    <Order TimeStamp="3.25"><Positions>
-      <Position ItemDescriptionID="9" Count="1" />
-    </Positions></Order>
-  </Orders>
-</OrderList>"""
 
 
 def pairs(tag: str, values: dict[object, object]) -> str:
@@ -50,15 +23,7 @@ def pairs(tag: str, values: dict[object, object]) -> str:
 
 def read(folder: Path, inventory: str = "", general: str = "") -> tuple[Scenario, list[str]]:
     """Write a settings file with its SKUs, words and order list beside it, and read it."""
-    (folder / "Mu-1000.xgenc").write_text(XGENC)
-    (folder / "Small.txt").write_text("ab\nba\n")
-    (folder / "list.xitem").write_text(XITEM)
-    path = folder / "test.xsett"
-    path.write_text(
-        f"<SettingConfiguration>{general}<InventoryConfiguration>{inventory}"
-        "</InventoryConfiguration></SettingConfiguration>"
-    )
-    return load_with_notes(path)
+    return load_with_notes(xsett_file(folder, general=general, inventory=inventory))
 
 
 def noted(notes: list[str], text: str) -> bool:
@@ -331,178 +296,3 @@ def test_files_are_looked_for_as_rawsimo_does(tmp_path: Path):
     (tmp_path / "a/c/Own.xgenc").write_text(XGENC)
     scenario, _ = read(folder, named)
     assert scenario.skus.file == (tmp_path / "a/c/Own.xgenc").resolve()
-
-
-# --- .xitem -------------------------------------------------------------------------------------
-
-BROKEN_LISTS = [
-    ('Count="2"', 'Count="-2"', "order 1: quantity must be from 1"),
-    ('ItemDescriptionID="4"', 'ItemDescriptionID="5"', "order 1: sku 5 is unknown"),
-    ('ItemDescriptionID="4"', 'ItemDescriptionID="9"', "order 1: sku 9 comes twice in order 1"),
-    ('TimeStamp="3.25"', 'TimeStamp="1"', "order 2: time 1 is before that of the order before"),
-    ('TimeStamp="3.25"', "", "order 2: time must be a number (empty)"),
-    ('<Position ItemDescriptionID="9" Count="1" />', "", "order 2: sku must be a number (empty)"),
-    ('Weight="2"', 'Weight="0"', "ItemDescription 9: Weight must be a positive number"),
-    ('ID="9" Type', 'ID="4" Type', "ItemDescription 4 comes twice"),
-    ('ID="9" Type', 'ID="x" Type', "ItemDescription: ID must be a whole number (given: 'x')"),
-]
-
-
-@pytest.mark.parametrize(("old", "new", "problem"), BROKEN_LISTS)
-def test_broken_order_lists(tmp_path: Path, old: str, new: str, problem: str):
-    assert old in XITEM
-    path = tmp_path / "list.xitem"
-    path.write_text(XITEM.replace(old, new, 1))
-    with pytest.raises(InputError) as caught:
-        order_stream(StreamDemand(file=path), sku_set(SkuFile(file=path)))
-    assert str(caught.value).startswith(f"{path}: {problem}")
-
-
-# --- all published files ------------------------------------------------------------------------
-
-PUBLISHED = {
-    "basic/BasicInstance": ("backlog", 1000),
-    "core/jenPP": ("backlog", 100),
-    "core/jenkinsObsolete": ("backlog", 18),
-    "core/jenkinssetting1": ("backlog", 100),
-    "core/jenkinssetting2": ("poisson", 100),
-    "core/jenkinssetting3": ("backlog", 100),
-    "demonstrator/steadysetting": ("backlog", 2),
-    "fastlane/SimpleItem-Fill-200-200-172800": ("backlog", 1000),
-    "mati/MaTi-SKU10": ("backlog", 10),
-    "mati/MaTi-SKU100": ("backlog", 100),
-    "mati/MaTi-SKU1000": ("backlog", 1000),
-    "pp/PPMinimal": ("backlog", 1000),
-}
-DEAD = {
-    "core/jenkinsObsolete": "HeatMode",
-    "demonstrator/steadysetting": "HeatMode",
-    "fastlane/SimpleItem-Fill-200-200-172800": "OrderTimestampDueDateOffsetMean",
-    "pp/PPMinimal": "PPInstanceDumpFrequency",
-}
-
-
-def test_all_published_scenarios_are_imported(reference: Path):
-    found = {}
-    for path in sorted(reference.glob("*/*.xsett")):
-        name = f"{path.parent.name}/{path.stem}"
-        scenario, notes = load_with_notes(path)
-        skus = sku_set(scenario.skus)
-        found[name] = (scenario.demand.mode, len(skus))
-        assert not noted(notes, "unknown"), name
-        assert name not in DEAD or noted(notes, DEAD[name])
-        initial_stock(skus, np.full(20, 500.0), scenario.stock.initial_share, seed=1)
-        state = FakeState(len(skus))
-        assert drive(order_intake(scenario, skus, SITE, 1), state, 7200 * 10**6), name
-        bundle_intake(scenario, skus, SITE, 1)
-    assert found == PUBLISHED
-
-
-LISTS = ("ColorProbabilities", "TimeDependentOrderWeights", "TimeDependentBundleWeights")
-
-
-def test_no_element_of_the_published_scenarios_is_dropped_silently(
-    reference: Path, monkeypatch: pytest.MonkeyPatch
-):
-    """An element more in any block that is used is noted as unknown, so all others are known."""
-    for path in sorted(reference.glob("*/*.xsett")):
-        root = ElementTree.parse(path).getroot()
-        monkeypatch.setattr(xsett, "read_root", lambda _path, _tag, given=root: given)
-        for block in [block for block in root.iter() if len(block) and block.tag not in LISTS]:
-            if block[0].tag == "Key":
-                continue
-            added = ElementTree.SubElement(block, "Unheard")
-            notes = read_xsett(path).notes
-            block.remove(added)
-            used = not any(note.startswith(f"{block.tag} not used") for note in notes)
-            assert noted(notes, "Unheard unknown") == used, (path, block.tag)
-
-
-def test_the_published_order_list(reference: Path):
-    path = reference / "resources/Letter-18-34-100-3518.56.xitem"
-    order_list = read_xitem(path)
-    assert order_list.notes == ()
-    skus = sku_set(SkuFile(file=path))
-    assert (len(skus), len(order_list.orders(skus)), len(order_list.bundles(skus))) == (18, 100, 34)
-    assert skus.names[0] == "r blue"
-
-
-# --- from the command line ----------------------------------------------------------------------
-
-
-def run(*arguments: object) -> str:
-    result = CliRunner().invoke(app, [str(a) for a in arguments], catch_exceptions=False)
-    assert result.exit_code == 0
-    return result.output
-
-
-def test_import_writes_a_scenario_that_needs_no_other_files(tmp_path: Path):
-    source, target = tmp_path / "source", tmp_path / "target/mine.toml"
-    source.mkdir()
-    fixed = "<FixedInventoryConfiguration><OrderFile>list.xitem</OrderFile>"
-    cases = {
-        "simple": "",
-        "letters": "<ItemType>Letter</ItemType><ColoredWordConfiguration><WordFile>Small.txt"
-        "</WordFile></ColoredWordConfiguration>",
-        "fixed": f"<OrderMode>Fixed</OrderMode>{fixed}</FixedInventoryConfiguration>",
-        "poisson": "<OrderMode>Poisson</OrderMode>",
-    }
-    for name, inventory in cases.items():
-        imported, _ = read(source, inventory, "<Moon>full</Moon>")
-        output = run("import", source / "test.xsett", "--out", target, "--force")
-        assert f"{target}: written" in output
-        assert "note: Moon unknown" in output
-        again = load(target)
-        assert tomllib.loads(target.read_text())["name"] == "test"
-        skus = sku_set(imported.skus)
-        assert sku_set(again.skus).digest() == skus.digest(), name
-        for intake_of in (order_intake, bundle_intake):
-            come = [
-                drive(intake_of(given, skus, SITE, 1), FakeState(len(skus)), DAY_US)
-                for given in (imported, again)
-            ]
-            assert come[0] == come[1], name
-    with pytest.raises(InputError, match="exists already; --force replaces it"):
-        run("import", source / "test.xsett", "--out", target)
-    with pytest.raises(InputError, match=r"expected a \.xsett file"):
-        run("import", target)
-
-
-def test_a_settings_file_serves_wherever_a_scenario_does(tmp_path: Path):
-    read(tmp_path)
-    path = tmp_path / "test.xsett"
-    shown = run("show", path, "--set", "scenario.duration_s=60")
-    table = tomllib.loads(shown[shown.index("format") :])
-    assert validate(Scenario, table, "shown").duration_s == 60
-    assert "ok, 9 SKUs" in run("check", path)
-
-
-def test_sku_sets_from_the_command_line(tmp_path: Path):
-    (tmp_path / "list.xitem").write_text(XITEM)
-    out, picture = tmp_path / "skus.json", tmp_path / "curve.svg"
-    told = run("sku-set", tmp_path / "list.xitem", "--out", out, "--picture", picture)
-    assert "2 SKUs" in told
-    assert picture.read_text().startswith("<?xml")
-    assert run("sku-set", out).split("digest ")[1] == told.split("digest ")[1].split("\n")[0] + "\n"
-    assert "1000 SKUs" in run("sku-set", "default", "--set", "scenario.skus.seed=4")
-    with pytest.raises(InputError, match="exists already"):
-        run("sku-set", "default", "--out", out)
-    with pytest.raises(InputError, match=r"none\.json: no such file"):
-        run("sku-set", tmp_path / "none.json")
-
-
-def test_export_from_the_command_line(tmp_path: Path):
-    path = tmp_path / "orders.csv"
-    told = run("export", "poisson", path, "--seed", 3, "--set", "scenario.duration_s=60")
-    digest = told.rsplit(" ", 1)[1].strip()
-    replay = ["--set", f"scenario.demand={{mode='stream', file='{path}', digest='{digest}'}}"]
-    assert f"orders, digest {digest}" in run("check", "default", *replay)
-    bundles = tmp_path / "bundles.parquet"
-    poisson = "scenario.replenishment={mode='poisson'}"
-    assert "bundles, digest" in run(
-        "export", "default", bundles, "--what", "bundles", "--set", poisson
-    )
-    stream = f"scenario.replenishment={{mode='stream', file='{bundles}'}}"
-    assert "bundles, digest" in run("check", "default", "--set", stream)
-    with pytest.raises(InputError, match="default: demand: its orders depend"):
-        run("export", "default", tmp_path / "none.csv")

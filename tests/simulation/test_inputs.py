@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
+from rawsimo_files import xsett
 
 import rmfs
 from rmfs import layout as layouts
@@ -12,27 +13,17 @@ from rmfs.cli import main
 from rmfs.errors import InputError
 from rmfs.simulation.inputs import load_inputs
 
-XSETT = """<?xml version="1.0"?>
-<SettingConfiguration>
-  <Name>asking</Name>
-  <SimulationWarmupTime>0</SimulationWarmupTime>
-  <SimulationDuration>120</SimulationDuration>
-  <Colour>red</Colour>
-  <OverrideConfig>
-    <OverrideBotCountPerOStation>true</OverrideBotCountPerOStation>
-    <OverrideBotCountPerOStationValue>2</OverrideBotCountPerOStationValue>
-    <OverrideOutputStationItemPickTime>true</OverrideOutputStationItemPickTime>
-    <OverrideOutputStationItemPickTimeValue>4.5</OverrideOutputStationItemPickTimeValue>
-  </OverrideConfig>
-</SettingConfiguration>
-"""
+GENERAL = """<Name>asking</Name><SimulationWarmupTime>0</SimulationWarmupTime>
+<SimulationDuration>120</SimulationDuration><Colour>red</Colour>"""
+ASKED = """<OverrideBotCountPerOStation>true</OverrideBotCountPerOStation>
+<OverrideBotCountPerOStationValue>2</OverrideBotCountPerOStationValue>
+<OverrideOutputStationItemPickTime>true</OverrideOutputStationItemPickTime>
+<OverrideOutputStationItemPickTimeValue>4.5</OverrideOutputStationItemPickTimeValue>"""
 
 
 @pytest.fixture
 def asking(tmp_path):
-    path = tmp_path / "asking.xsett"
-    path.write_text(XSETT)
-    return path
+    return xsett(tmp_path, general=GENERAL, layout=ASKED)
 
 
 def test_what_a_scenario_asks_of_the_layout_is_done_and_said(asking):

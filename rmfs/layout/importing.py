@@ -1,0 +1,46 @@
+"""RAWSim-O's layouts as files of ours."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.errors import InputError
+from rmfs.files import write_text
+from rmfs.layout.explicit import save_json
+from rmfs.layout.rawsimo.xinst import read_xinst
+from rmfs.layout.rawsimo.xlayo import read_xlayo
+from rmfs.layout.toml import to_toml
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SUFFIXES = {".xinst": ".json", ".xlayo": ".toml"}
+"""Endings of their files and of ours."""
+
+
+def import_layout(path: Path, target: Path) -> list[str]:
+    """Write a layout of RAWSim-O as one of ours; return remarks on what differs.
+
+    Parameters
+    ----------
+    path
+        A .xinst, which becomes .json, or a .xlayo, which becomes .toml.
+
+    Raises
+    ------
+    InputError
+        If the file is of another kind or not valid, or the target has another ending or cannot be
+        written.
+    """
+    suffix = SUFFIXES.get(path.suffix.lower())
+    if suffix is None:
+        raise InputError(f"{path}: expected a .xinst or .xlayo file")
+    if target.suffix.lower() != suffix:
+        raise InputError(f"{target}: the name must end in {suffix}")
+    if suffix == ".json":
+        layout, notes = read_xinst(path)
+        save_json(layout, target)
+    else:
+        parameters, notes = read_xlayo(path)
+        write_text(target, to_toml(parameters))
+    return notes
