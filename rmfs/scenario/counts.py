@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class _Range(Block):
+class _Range(Block, ABC):
     """Whole numbers from `min` to `max`, both included."""
 
     distribution: str
@@ -30,9 +31,9 @@ class _Range(Block):
     def _in_order(cls, value: int, info: pydantic.ValidationInfo) -> int:
         return not_below(value, info, "min")
 
+    @abstractmethod
     def probabilities(self) -> NDArray[np.float64]:
         """Probability of `min`, `min` + 1, ..., `max`."""
-        raise NotImplementedError
 
     def sampler(self) -> Callable[[float], int]:
         """Return the function that turns a number in [0, 1) into a count."""

@@ -7,6 +7,7 @@ to [min, max] only narrows the range of that number. The values therefore follow
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
@@ -52,7 +53,7 @@ class Uniform(Block):
         return self.min + np.asarray(uniform) * (self.max - self.min)
 
 
-class _Cut(Block):
+class _Cut(Block, ABC):
     """A distribution of which only the part between `min` and `max` is used."""
 
     distribution: str
@@ -88,21 +89,21 @@ class _Cut(Block):
             values = self._above_inverse(low - share * (low - high))
         return np.clip(values, *self._limits).astype(np.float64)
 
+    @abstractmethod
     def _below(self, x: Floats) -> Floats:
         """Probability of a value below x."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _above(self, x: Floats) -> Floats:
         """Probability of a value above x."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _below_inverse(self, p: Floats) -> Floats:
         """Value that another is below with probability p."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _above_inverse(self, p: Floats) -> Floats:
         """Value that another is above with probability p."""
-        raise NotImplementedError
 
 
 class Normal(_Cut):

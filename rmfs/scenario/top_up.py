@@ -33,7 +33,31 @@ class Hysteresis:
         return self.on
 
 
-class OrderTopUp:
+class _TopUp:
+    """A backlog that rests for a while after something could not be made.
+
+    Parameters
+    ----------
+    capacity
+        Space units of all pods together.
+    retry_s
+        How long it rests.
+    switch
+        What pauses it, or ends the pause.
+    """
+
+    def __init__(self, capacity: float, retry_s: float, switch: Hysteresis) -> None:
+        self._capacity = capacity
+        self._retry_s = retry_s
+        self._switch = switch
+        self.blocked_until_s = 0.0
+
+    def failed(self, time_s: float) -> None:
+        """Take note that nothing could be made: nothing is wanted for a while."""
+        self.blocked_until_s = time_s + self._retry_s
+
+
+class OrderTopUp(_TopUp):
     """Says when the next order of a constant backlog is to be made.
 
     Parameters
@@ -45,10 +69,9 @@ class OrderTopUp:
     """
 
     def __init__(self, config: BacklogDemand, capacity: float) -> None:
+        enough = Hysteresis(config.resume_above_share, config.pause_below_share, on=True)
+        super().__init__(capacity, config.retry_s, enough)
         self._config = config
-        self._capacity = capacity
-        self._enough = Hysteresis(config.resume_above_share, config.pause_below_share, on=True)
-        self.blocked_until_s = 0.0
 
     def wants(self, time_s: float, waiting: int, stored: float) -> bool:
         """Say whether an order is to be made now.
@@ -65,15 +88,11 @@ class OrderTopUp:
         stored
             Space units stored on all pods.
         """
-        enough = self._enough.update(stored / self._capacity) or not self._config.pause_by_stock
+        enough = self._switch.update(stored / self._capacity) or not self._config.pause_by_stock
         return enough and waiting < self._config.orders and time_s >= self.blocked_until_s
 
-    def failed(self, time_s: float) -> None:
-        """Take note that no order could be drawn: none is wanted for a while."""
-        self.blocked_until_s = time_s + self._config.retry_s
 
-
-class BundleTopUp:
+class BundleTopUp(_TopUp):
     """Says when the next bundle of a constant backlog is to be made.
 
     All loads are in space units. (RAWSim-O adds a number of units to a load in space units when it
@@ -88,16 +107,12 @@ class BundleTopUp:
     """
 
     def __init__(self, config: BacklogReplenishment, capacity: float) -> None:
+        full = Hysteresis(config.pause_above_share, config.resume_below_share, on=False)
+        super().__init__(capacity, config.retry_s, full)
         self._config = config
-        self._capacity = capacity
-        self._full = Hysteresis(config.pause_above_share, config.resume_below_share, on=False)
-        self.blocked_until_s = 0.0
 
     def wants(self, time_s: float, waiting: int, load: float) -> bool:
-        """Say whether a bundle is to be made now.
-
-        To be asked after every change of load or backlog, since a pause begins when the level is
-        crossed.
+        """Say whether a bundle is to be made now; to be asked like `OrderTopUp.wants`.
 
         Parameters
         ----------
@@ -108,13 +123,9 @@ class BundleTopUp:
         load
             Space units of stored units, bundles assigned to pods, and waiting bundles.
         """
-        full = self._full.update(load / self._capacity) and self._config.pause_by_stock
+        full = self._switch.update(load / self._capacity) and self._config.pause_by_stock
         return not full and waiting < self._config.bundles and time_s >= self.blocked_until_s
 
     def accepts(self, load: float, space: float) -> bool:
         """Say whether a bundle of so much space may join the load; if not, call `failed`."""
         return load + space <= self._config.load_limit_share * self._capacity
-
-    def failed(self, time_s: float) -> None:
-        """Take note that a bundle was not accepted: none is wanted for a while."""
-        self.blocked_until_s = time_s + self._config.retry_s

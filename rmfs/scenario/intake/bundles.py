@@ -6,14 +6,12 @@ from typing import TYPE_CHECKING
 
 from rmfs.random import Stream
 from rmfs.scenario.bundles import BundleSource
-from rmfs.scenario.clock import Openings, first_us
+from rmfs.scenario.intake.assembly import Assembly
 from rmfs.scenario.intake.backlog import BacklogBundles
 from rmfs.scenario.intake.batches import Batch, Batches, add
 from rmfs.scenario.intake.contents import BATCHES, INITIAL, REGULAR
 from rmfs.scenario.intake.intake import BundleArrival, Intake, Process
 from rmfs.scenario.intake.needed import NeededBundles
-from rmfs.scenario.intake.rates import rate_of
-from rmfs.scenario.intake.thinning import Candidate, poisson
 from rmfs.scenario.intake.timed import Timed, at_zero, share_of
 from rmfs.scenario.parameters import (
     BacklogReplenishment,
@@ -22,13 +20,13 @@ from rmfs.scenario.parameters import (
     StreamReplenishment,
 )
 from rmfs.scenario.sources import bundle_stream
-from rmfs.scenario.substreams import Substreams
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from rmfs.scenario.intake.state import Site, State
-    from rmfs.scenario.parameters import BundleBatches, Scenario
+    from rmfs.scenario.intake.thinning import Candidate
+    from rmfs.scenario.parameters import Scenario
     from rmfs.scenario.skus import SkuSet
     from rmfs.scenario.streams import StreamRecorder
 
@@ -58,28 +56,15 @@ def bundle_intake(
     InputError
         If a file is broken, or a bundle fits into no pod.
     """
-    return _Bundles(scenario, skus, site, seed).intake(recorder)
+    bundles = _Bundles(scenario, skus, site, seed, scenario.replenishment.down)
+    if recorder is None:
+        return bundles.intake(None)
+    keep = recorder.bundles.add
+    return bundles.intake(lambda bundle: keep(bundle.time_us, bundle.sku, bundle.units))
 
 
-class _Bundles:
+class _Bundles(Assembly[BundleArrival]):
     """Puts the intake of bundles together."""
-
-    def __init__(self, scenario: Scenario, skus: SkuSet, site: Site, seed: int) -> None:
-        self._scenario = scenario
-        self._skus = skus
-        self._site = site
-        self._seed = seed
-        self._gone_s = scenario.time_of_day_s
-        self._openings = Openings(scenario.replenishment.down, self._gone_s)
-
-    def intake(self, recorder: StreamRecorder | None) -> Intake[BundleArrival]:
-        processes = list(self._regular())
-        if self._scenario.replenishment.batches is not None:
-            processes.append(self._batches(self._scenario.replenishment.batches))
-        if recorder is None:
-            return Intake(processes)
-        keep = recorder.bundles.add
-        return Intake(processes, lambda bundle: keep(bundle.time_us, bundle.sku, bundle.units))
 
     def _regular(self) -> Iterator[Process[BundleArrival]]:
         config, capacity = self._scenario.replenishment, self._site.capacity
@@ -97,33 +82,29 @@ class _Bundles:
 
     def _poisson(self, config: PoissonReplenishment) -> Timed[BundleArrival]:
         scale = float(self._site.replenishment_stations) if config.per_station else 1.0
-        rate = rate_of(config.profile, config.bundles_per_h, scale, self._gone_s, self._seed)
-        until_us = first_us(self._scenario.warmup_s + self._scenario.duration_s)
-        substreams = Substreams(self._seed, Stream.BUNDLE_ARRIVALS)
-        return Timed(
-            poisson(rate, substreams, self._openings, until_us),
-            _drawn(self._source(REGULAR)),
-            share_of(config.tied_to),
-        )
+        come = self._arrivals(config.profile, config.bundles_per_h, scale, Stream.BUNDLE_ARRIVALS)
+        return Timed(come, _drawn(self._source(REGULAR)), share_of(config.tied_to))
 
     def _from_file(self, config: StreamReplenishment) -> Timed[BundleArrival]:
         stream = bundle_stream(config, self._skus, self._site.largest_pod)
         space_per_unit: list[float] = self._skus.space_per_unit.tolist()
-        times_us = [self._openings.open_from_us(time_us) for time_us in stream.time_us.tolist()]
 
         def make(candidate: Candidate, _state: State) -> BundleArrival:
             sku, units = int(stream.sku[candidate.ordinal]), int(stream.units[candidate.ordinal])
             return BundleArrival(candidate.time_us, sku, units, units * space_per_unit[sku])
 
-        return Timed((Candidate(*which) for which in enumerate(times_us)), make)
+        return Timed(self._at_times(stream.time_us.tolist()), make)
 
-    def _batches(self, config: BundleBatches) -> Batches[BundleArrival]:
+    def _batches(self) -> Iterator[Process[BundleArrival]]:
+        config = self._scenario.replenishment.batches
+        if config is None:
+            return
         source = self._source(BATCHES)
         batches = [
             *(_up_to(time_s, share * self._site.capacity) for time_s, share in config.fill_to),
             *(add(time_s, number) for time_s, number in config.add),
         ]
-        return Batches(
+        yield Batches(
             batches,
             config.cycle_s,
             self._gone_s,

@@ -1,0 +1,71 @@
+"""What the intakes of orders and of bundles have in common: how they are put together."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Generic, TypeVar
+
+from rmfs.scenario.clock import Openings, first_us
+from rmfs.scenario.intake.intake import Intake, Process
+from rmfs.scenario.intake.rates import rate_of
+from rmfs.scenario.intake.thinning import Candidate, poisson
+from rmfs.scenario.substreams import Substreams
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from rmfs.random import Stream
+    from rmfs.scenario.intake.state import Site
+    from rmfs.scenario.parameters import Scenario
+    from rmfs.scenario.parameters.calendar import DownPeriods
+    from rmfs.scenario.parameters.rates import AnyRate
+    from rmfs.scenario.skus import SkuSet
+
+T = TypeVar("T")
+
+
+class Assembly(ABC, Generic[T]):
+    """Puts an intake together: a regular process and batches, with the doors closed at times.
+
+    Parameters
+    ----------
+    scenario, skus, site, seed
+        As for `order_intake`.
+    down
+        When the doors are closed.
+    """
+
+    def __init__(
+        self, scenario: Scenario, skus: SkuSet, site: Site, seed: int, down: DownPeriods | None
+    ) -> None:
+        self._scenario = scenario
+        self._skus = skus
+        self._site = site
+        self._seed = seed
+        self._gone_s = scenario.time_of_day_s
+        self._openings = Openings(down, self._gone_s)
+
+    def intake(self, record: Callable[[T], None] | None) -> Intake[T]:
+        """Return the intake, which tells `record` of all that comes."""
+        return Intake([*self._regular(), *self._batches()], record)
+
+    @abstractmethod
+    def _regular(self) -> Iterator[Process[T]]:
+        """Yield what comes over time."""
+
+    @abstractmethod
+    def _batches(self) -> Iterator[Process[T]]:
+        """Yield what comes all at once, if anything does."""
+
+    def _arrivals(
+        self, profile: AnyRate, per_h: float, scale: float, stream: Stream
+    ) -> Iterator[Candidate]:
+        """Return the times of a Poisson process up to the end of the run."""
+        rate = rate_of(profile, per_h, scale, self._gone_s, self._seed)
+        until_us = first_us(self._scenario.warmup_s + self._scenario.duration_s)
+        return poisson(rate, Substreams(self._seed, stream), self._openings, until_us)
+
+    def _at_times(self, times_us: Iterable[int]) -> Iterator[Candidate]:
+        """Yield candidates at the times of a file, or when the doors open next."""
+        opens_us = map(self._openings.open_from_us, times_us)
+        return (Candidate(*which) for which in enumerate(opens_us))
