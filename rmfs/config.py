@@ -12,6 +12,10 @@ from typing import Any, TypeVar
 import pydantic
 
 from rmfs.errors import InputError
+from rmfs.files import read_bounded
+
+LARGEST_MIB = 4
+"""Most that a TOML file may have: they are written by hand."""
 
 
 class Model(pydantic.BaseModel):
@@ -30,17 +34,15 @@ def read_toml(path: Path) -> Table:
     Raises
     ------
     InputError
-        If the file is missing, unreadable or not TOML.
+        If the file is missing, unreadable, larger than `LARGEST_MIB` or not TOML.
     """
+    content = read_bounded(path, LARGEST_MIB)
     try:
-        with path.open("rb") as file:
-            return tomllib.load(file)
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such file") from None
-    except (OSError, UnicodeDecodeError) as error:
+        return tomllib.loads(content.decode("utf-8"))
+    except UnicodeDecodeError as error:
         raise InputError(f"{path}: cannot be read ({error})") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{path}: not valid TOML: {error}") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise InputError(f"{path}: not valid TOML: {error!s:.200}") from None
 
 
 def parse_override(text: str) -> tuple[list[str], Any]:

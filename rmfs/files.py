@@ -1,4 +1,4 @@
-"""Writing output so that nothing half-written is ever seen."""
+"""Reading what anybody gives us, and writing so that nothing half-written is ever seen."""
 
 from __future__ import annotations
 
@@ -13,6 +13,35 @@ from rmfs.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+
+LARGEST_MIB = 64
+"""Most that is read of a file that is read whole; the largest published layout takes 4."""
+
+
+def read_bounded(path: Path, largest_mib: int = LARGEST_MIB) -> bytes:
+    """Read a file whole, unless it is so large that it would take the memory.
+
+    Parameters
+    ----------
+    largest_mib
+        Most mebibytes it may have.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, cannot be read, or is too large.
+    """
+    try:
+        with path.open("rb") as file:
+            content = file.read((largest_mib << 20) + 1)
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+    if len(content) > largest_mib << 20:
+        raise InputError(f"{path}: larger than {largest_mib} MiB")
+    return content
 
 
 @contextmanager

@@ -9,6 +9,7 @@ import numpy as np
 
 from rmfs.config import Table, validate
 from rmfs.errors import InputError
+from rmfs.files import read_bounded
 from rmfs.layout.explicit.schema import FORMAT, ExplicitElevator, ExplicitLayout
 from rmfs.layout.graph import compressed
 from rmfs.layout.model import (
@@ -58,12 +59,9 @@ def build(table: Table, source: str) -> Layout:
 
 
 def _parse(path: Path) -> Table:
+    content = read_bounded(path)
     try:
-        table = json.loads(path.read_text(encoding="utf-8"), object_pairs_hook=_once)
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such file") from None
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+        table = json.loads(content, object_pairs_hook=_once)
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: not valid JSON: {error}") from None
     if not isinstance(table, dict):

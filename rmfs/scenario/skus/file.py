@@ -11,7 +11,7 @@ from pydantic import Field
 
 from rmfs.config import Table, validate
 from rmfs.errors import InputError
-from rmfs.files import write_text
+from rmfs.files import read_bounded, write_text
 from rmfs.scenario import exact
 from rmfs.scenario.quantities import Block, Count, NotNegative, Positive, Share
 from rmfs.scenario.skus.affinity import Affinity
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 FORMAT = "rmfs-skus/1"
 
-LARGEST_MIB = 256
 """A million SKUs take 60 MiB, a million pairs as much."""
 
 # a wrong value ends the reading, so that a message cannot be as long as the file
@@ -159,18 +158,9 @@ def _check_lengths(columns: dict[str, Sequence[Any]], length: int, source: str) 
 
 
 def _parsed(path: Path) -> Table:
+    content = read_bounded(path)
     try:
-        with path.open("rb") as file:
-            content = file.read((LARGEST_MIB << 20) + 1)
-        if len(content) > LARGEST_MIB << 20:
-            raise InputError(f"{path}: larger than {LARGEST_MIB} MiB")
         table = json.loads(content)
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such file") from None
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror})") from None
-    except InputError:
-        raise
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: not valid JSON: {error}") from None
     if not isinstance(table, dict):
