@@ -3,28 +3,18 @@
 from __future__ import annotations
 
 import pytest
+from assigning import assign as decide
+from assigning import stocked
 from doubles import Situation, small_layout
 
 from rmfs.control.poa.order_rules import RandomOrder
 from rmfs.control.poa.pod_match import PodMatch
 
 
-def decide(situation: Situation, controller) -> list[tuple[int, int]]:
-    """Apply all decisions, as the simulation does; returns order and station of each."""
-    made = []
-    for order, station in controller.decide():
-        situation.world.assign_order(order, station)
-        made.append((order.index, station))
-    return made
-
-
 @pytest.fixture
 def situation() -> Situation:
-    """Two pick stations with four slots, robots 0 and 1; SKU k on pod k, ten units each."""
-    made = Situation(small_layout(pods=4, pick_stations=2, slots=4))
-    for pod in range(4):
-        made.stock(pod, **{f"s{pod}": 10})
-    return made
+    """Two stations, four pods; see `stocked`."""
+    return stocked()
 
 
 class TestPodMatch:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from assigning import assign as decide
+from assigning import stocked
 from doubles import Situation, small_layout
 
 from rmfs.control.poa.near_best_pod import NearBestPod
@@ -11,22 +13,10 @@ from rmfs.control.poa.related import Related
 from rmfs.control.poa.workload import Workload
 
 
-def decide(situation: Situation, controller) -> list[tuple[int, int]]:
-    """Apply all decisions, as the simulation does; returns order and station of each."""
-    made = []
-    for order, station in controller.decide():
-        situation.world.assign_order(order, station)
-        made.append((order.index, station))
-    return made
-
-
 @pytest.fixture
 def situation() -> Situation:
-    """Two pick stations with four slots, at x = 0 and 10; ten units of SKU k on pod k at x = k."""
-    made = Situation(small_layout(pods=4, pick_stations=2, slots=4))
-    for pod in range(4):
-        made.stock(pod, **{f"s{pod}": 10})
-    return made
+    """Two stations, four pods; see `stocked`."""
+    return stocked()
 
 
 class TestWhichOrder:

@@ -3,19 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from assigning import send as decide
 from doubles import Situation, small_layout
 
 from rmfs.control.roa.random import RandomStation
 from rmfs.control.roa.same_pod import SamePod
-
-
-def decide(situation: Situation, controller) -> list[tuple[int, int]]:
-    """Apply all decisions; returns bundle and station of each."""
-    made = []
-    for bundle, station in controller.decide():
-        situation.world.choose_station(bundle, station)
-        made.append((bundle.index, station))
-    return made
 
 
 @pytest.fixture

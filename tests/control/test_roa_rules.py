@@ -6,19 +6,11 @@ import dataclasses
 
 import numpy as np
 import pytest
+from assigning import send as decide
 from doubles import Situation, small_layout
 
 from rmfs.control.roa.same_pod import SamePod
 from rmfs.layout.model import Tier
-
-
-def decide(situation: Situation, controller) -> list[tuple[int, int]]:
-    """Apply all decisions; returns bundle and station of each."""
-    made = []
-    for bundle, station in controller.decide():
-        situation.world.choose_station(bundle, station)
-        made.append((bundle.index, station))
-    return made
 
 
 def released(situation: Situation, pod: int, *units: int) -> None:

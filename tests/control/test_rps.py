@@ -5,25 +5,12 @@ from __future__ import annotations
 from math import inf
 
 import pytest
+from assigning import promise as decide
 from doubles import Situation, small_layout
 
-from rmfs.control.decisions import PromiseBundle
 from rmfs.control.problems import Trigger
 from rmfs.control.rps.emptiest import Emptiest
 from rmfs.control.rps.random import RandomPod
-
-
-def decide(situation: Situation, controller) -> list[tuple]:
-    """Apply all decisions; returns ("promise", bundle, pod) and ("release", pod)."""
-    made = []
-    for decision in controller.decide():
-        if isinstance(decision, PromiseBundle):
-            situation.world.promise(decision.bundle, decision.pod)
-            made.append(("promise", decision.bundle.index, decision.pod))
-        else:
-            situation.world.release_bundles(decision.pod)
-            made.append(("release", decision.pod))
-    return made
 
 
 @pytest.fixture

@@ -5,27 +5,14 @@ from __future__ import annotations
 from math import inf
 
 import pytest
+from assigning import promise as decide
 from doubles import Situation, small_layout
 
-from rmfs.control.decisions import PromiseBundle
 from rmfs.control.problems import Trigger
 from rmfs.control.rps.correlative import Correlative
 from rmfs.control.rps.least_demand import LeastDemand
 from rmfs.control.rps.located import Nearest, Reactive
 from rmfs.control.rps.turnover import Turnover, outward
-
-
-def decide(situation: Situation, controller) -> list[tuple]:
-    """Apply all decisions; returns ("promise", bundle, pod) and ("release", pod)."""
-    made = []
-    for decision in controller.decide():
-        if isinstance(decision, PromiseBundle):
-            situation.world.promise(decision.bundle, decision.pod)
-            made.append(("promise", decision.bundle.index, decision.pod))
-        else:
-            situation.world.release_bundles(decision.pod)
-            made.append(("release", decision.pod))
-    return made
 
 
 def pods(situation: Situation, controller) -> list[int]:
