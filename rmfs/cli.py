@@ -33,6 +33,14 @@ SUB_COMMANDS = {
 }
 """Module and help of each group of commands; its module is imported when it is called."""
 
+COMMANDS = {
+    "demonstrate": ("rmfs.demonstrator.commands", "Run a warehouse with real robots."),
+    "emulate": ("rmfs.demonstrator.commands", "Emulate a room with robots like real ones."),
+}
+"""The same of commands that are no groups."""
+
+ELSEWHERE = {**SUB_COMMANDS, **COMMANDS}
+
 UNSAFE = 1
 """Exit code where the checker finds a trace unsafe, or a bound is exceeded: a defect."""
 
@@ -49,26 +57,26 @@ class LazyGroup(TyperGroup):
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Name all commands, loaded or not."""
-        return [*super().list_commands(ctx), *(n for n in SUB_COMMANDS if n not in self.commands)]
+        return [*super().list_commands(ctx), *(n for n in ELSEWHERE if n not in self.commands)]
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return a command, or what help needs to know of it if it is not loaded."""
-        if cmd_name in SUB_COMMANDS and cmd_name not in self.commands:
-            return TyperGroup(name=cmd_name, help=SUB_COMMANDS[cmd_name][1])
+        if cmd_name in ELSEWHERE and cmd_name not in self.commands:
+            return TyperGroup(name=cmd_name, help=ELSEWHERE[cmd_name][1])
         return super().get_command(ctx, cmd_name)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Load the command that is called."""
-        if args and args[0] in SUB_COMMANDS:
+        if args and args[0] in ELSEWHERE:
             self.add_command(_loaded(args[0]), args[0])
         return super().resolve_command(ctx, args)
 
 
 def _loaded(name: str) -> Any:
-    """Import a group of commands; it is put below another so that it gets no options of its own."""
-    module = importlib.import_module(SUB_COMMANDS[name][0])
+    """Import a command or group; it is put below another so that it gets no options of its own."""
+    module = importlib.import_module(ELSEWHERE[name][0])
     above = typer.Typer(add_completion=False)
-    above.add_typer(module.app, name=name)
+    above.add_typer(module.app, name=name if name in SUB_COMMANDS else None)
     return typer.main.get_group(above).commands[name]
 
 

@@ -2,12 +2,11 @@
 
 The paper drives four small robots on a grid of 36 cells of 0.45 m, with one replenishment station,
 one pick station and six pods; they reach 0.21 m/s at 0.5 m/s2 and turn once around in 5.5 s. It
-gives no figures. Here the same warehouse, of our own design where the paper leaves it open, is
-simulated with one to four robots: the table says what each further one adds, and the independent
-checker proves every run safe.
+gives no figures. Here the same warehouse is simulated with one to four robots: the table says what
+each further one adds, and the independent checker proves every run safe.
 
-With `--reference DIR` (the public instances of RAWSim-O) the layout `office-4bot`, which has the
-paper's kinematics, is taken instead; its robots then start at drawn places.
+With `--reference DIR` (the public instances of RAWSim-O) the layout `office-4bot` is taken instead:
+the same waypoints and robots, but four pods and more order slots.
 """
 
 from __future__ import annotations

@@ -118,6 +118,7 @@ def simulate(
     progress: Callable[[float, float], None] | None = None,
     remark: Callable[[str, str], None] | None = None,
     allow_not_well_formed: bool = False,
+    traffic_maker: Callable[..., Traffic] = Traffic,
 ) -> Run:
     """Simulate a warehouse.
 
@@ -146,6 +147,8 @@ def simulate(
         of RAWSim-O: what is left out or done differently.
     allow_not_well_formed
         Whether to run a layout in which robots may block each other for ever.
+    traffic_maker
+        Makes the traffic layer, from what `Traffic` is made from: the demonstrator has its own.
 
     Raises
     ------
@@ -166,7 +169,7 @@ def simulate(
     recorder = measure.Recorder()
     events = measure.EventLog() if trace else None
     planner = planner_settings(rules.choices[Problem.PP], seed)
-    traffic = Traffic(plan, record_trace=trace, planner=planner)
+    traffic = traffic_maker(plan, record_trace=trace, planner=planner)
     simulation = Simulation(
         plan,
         work,

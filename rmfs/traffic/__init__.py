@@ -14,7 +14,7 @@ import numpy as np
 from rmfs.traffic._core import Core, Motion
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -221,7 +221,7 @@ class Traffic:
             record_trace,
         )
         # the two calls of the hot path, without a frame in between
-        self.advance = self._core.advance
+        self.advance: Callable[[int], list[tuple[int, int, int, int]]] = self._core.advance
         self.command = self._core.command
 
     @property

@@ -1,0 +1,1 @@
+"""Robots outside the simulation in place of simulated ones (paper, section 4)."""

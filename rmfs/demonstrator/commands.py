@@ -1,0 +1,268 @@
+"""`rmfs demonstrate` and `rmfs emulate`.
+
+The command line prints an `InputError` as one line and exits with code 2; these functions just
+raise it.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import secrets
+import shutil
+import subprocess
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rmfs import layout as layouts
+from rmfs.config import parse_override
+from rmfs.demonstrator import settings
+from rmfs.demonstrator.server.clock import RoomGoneError
+from rmfs.demonstrator.server.demonstration import Demonstration, expected
+from rmfs.demonstrator.server.hub import Hub
+from rmfs.errors import InputError
+from rmfs.files import write_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.demonstrator.emulator.room import Room
+
+app = typer.Typer()
+
+EMULATED = "emulated"
+"""What is given for the address of robots in a room that is started along."""
+
+GIVEN_UP = 1
+TRUTH = "room.json"
+JOURNAL = "journal.jsonl"
+
+Layout = Annotated[str, typer.Option(help="Name of a shipped layout, or a file.")]
+Real = Annotated[
+    str | None,
+    typer.Option(
+        metavar="I,J,...", help="Indices of the real robots. [default: all]", show_default=False
+    ),
+]
+Tags = Annotated[
+    Path | None,
+    typer.Option(
+        help="Floor tags, one line WAYPOINT;TAG each. [default: W0, W1, ...]", show_default=False
+    ),
+]
+Secret = Annotated[
+    Path | None,
+    typer.Option(
+        help=f"File of the shared secret. [default: variable {settings.SECRET}]",
+        show_default=False,
+    ),
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Override a parameter; may be repeated."),
+]
+Share = Annotated[float, typer.Option(min=0.0, max=0.5)]
+
+
+@app.command()
+def demonstrate(
+    robots: Annotated[
+        str,
+        typer.Option(
+            metavar="URL",
+            help="Where robots come to: tcp://HOST:PORT; room://HOST:PORT for an emulated room "
+            "that keeps the clock; `emulated` starts such a room along with it.",
+        ),
+    ],
+    layout: Layout = "demonstrator",
+    scenario: Annotated[
+        str, typer.Option(help="Name of a shipped scenario, or a file.")
+    ] = "demonstrator",
+    controllers: Annotated[
+        str, typer.Option(help="Name of a shipped set of controllers, or a file.")
+    ] = "default",
+    real: Real = None,
+    tags: Tags = None,
+    secret: Secret = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all random streams.")] = 0,
+    out: Annotated[
+        Path | None, typer.Option(help="Run folder. [default: below results/]", show_default=False)
+    ] = None,
+    set_: Settings = None,
+    trace: Annotated[bool, typer.Option("--trace", help="Write the trace of all motion.")] = False,
+    allow_not_well_formed: Annotated[
+        bool,
+        typer.Option(
+            "--allow-not-well-formed", help="Use a layout in which robots may block each other."
+        ),
+    ] = False,
+) -> None:
+    """Run a warehouse with real robots and write a run folder.
+
+    Killed and called again in the same way, it goes on where it was.
+    """
+    from rmfs.cli import conclude, default_name, progress, step
+    from rmfs.measure.folder import fill, reserved
+    from rmfs.simulation.pacing import OptimiserError
+    from rmfs.simulation.simulation import StalledError
+
+    _log_to_stderr()
+    inputs = {"layout": layout, "scenario": scenario, "controllers": controllers}
+    overrides = [parse_override(text) for text in set_ or []]
+    of_layout = [(path[1:], value) for path, value in overrides if path[0] == "layout"]
+    plan = layouts.load(layout, of_layout)
+    chosen = settings.robots(plan, real)
+    is_own = robots == EMULATED
+    scheme, host, port = (
+        (settings.ROOM, "127.0.0.1", 0) if is_own else settings.address(robots, "--robots")
+    )
+    is_emulated = scheme == settings.ROOM
+    known = secrets.token_hex(16).encode() if is_own else settings.secret(secret)
+    target = out or Path("results") / f"demonstration-{default_name(inputs, seed)}"
+    journal = target.parent / f".{target.name}.{JOURNAL}"
+    hub = _hub(host, port, known, expected(chosen, is_emulated=is_emulated), robots)
+    demonstration = Demonstration(
+        hub, chosen, settings.tags(plan, tags), journal, is_emulated=is_emulated
+    )
+    with reserved(target) as folder:
+        asked = ["--layout", layout, "--seed", str(seed), *(["--real", real] if real else [])]
+        asked += [
+            part for text in set_ or [] if text.startswith("layout.") for part in ("--set", text)
+        ]
+        with (
+            _room_of_its_own(hub, known, folder / TRUTH, asked, is_wanted=is_own),
+            progress(f"demonstrating {', '.join(inputs.values())}, seed {seed}") as advance,
+        ):
+            step("robots are expected at {}:{}".format(*hub.address))
+            try:
+                done = demonstration.run(
+                    *inputs.values(),
+                    seed=seed,
+                    overrides=overrides,
+                    trace=trace,
+                    progress=advance,
+                    allow_not_well_formed=allow_not_well_formed,
+                )
+            except (StalledError, OptimiserError, RoomGoneError) as error:
+                print(f"rmfs: {error}", file=sys.stderr)
+                raise typer.Exit(GIVEN_UP) from None
+        step("writing the tables")
+        fill(folder, done, trace=trace, inputs=inputs)
+        shutil.move(journal, folder / JOURNAL)
+    conclude(target, None)
+
+
+@app.command()
+def emulate(
+    server: Annotated[
+        str,
+        typer.Option(
+            metavar="URL",
+            help="Of the server: room://HOST:PORT to keep the clock for it, faster than real time; "
+            "tcp://HOST:PORT in real time.",
+        ),
+    ],
+    layout: Layout = "demonstrator",
+    real: Real = None,
+    tags: Tags = None,
+    secret: Secret = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all that goes wrong.")] = 0,
+    set_: Settings = None,
+    speed_error: Share = 0.05,
+    slip: Share = 0.01,
+    missed_tags: Share = 0.02,
+    lost_messages: Share = 0.01,
+    delay_s: Annotated[float, typer.Option(min=0.0, max=1.0)] = 0.04,
+    memory: Annotated[
+        Path | None,
+        typer.Option(help="Folder where robots remember their orders.", show_default=False),
+    ] = None,
+    duration_s: Annotated[
+        float | None,
+        typer.Option(min=0.0, help="Ends then. [default: with the server]", show_default=False),
+    ] = None,
+    report: Annotated[
+        Path | None,
+        typer.Option(help="JSON file of what really happened.", show_default=False),
+    ] = None,
+) -> None:
+    """Emulate a room with robots that are as unkind as real ones."""
+    try:
+        from rmfs.demonstrator.emulator.pace import RealTime
+        from rmfs.demonstrator.emulator.room import Address, Room
+        from rmfs.demonstrator.emulator.unkind import Unkindness
+    except ImportError as error:
+        raise InputError(f"{error}: install the extra `demonstrator`") from None
+
+    _log_to_stderr()
+    overrides = [parse_override(text) for text in set_ or []]
+    plan = layouts.load(layout, [(path[1:], value) for path, value in overrides])
+    scheme, host, port = settings.address(server, "--server")
+    room = Room(
+        plan,
+        settings.robots(plan, real),
+        settings.tags(plan, tags),
+        Address(host, port, settings.secret(secret)),
+        Unkindness(speed_error, slip, missed_tags, lost_messages, round(delay_s * 1e6)),
+        seed,
+        memory,
+        RealTime() if scheme == settings.TCP else None,
+    )
+    try:
+        room.run(None if duration_s is None else round(duration_s * 1e6))
+    finally:
+        room.close()
+    text = json.dumps(_truth(room), indent=2)
+    print(text)
+    if report is not None:
+        write_text(report, text + "\n")
+
+
+def _truth(room: Room) -> dict[str, Any]:
+    truth = room.truth
+    return {
+        "emulated_s": room.now_us / 1e6,
+        "driven_m": round(truth.driven_m, 3),
+        "nearest_m": round(truth.nearest_m, 4) if len(room.robots) > 1 else None,
+        "lateral_error_mean_m": round(truth.lateral_mean_m, 5),
+        "lateral_error_max_m": round(truth.lateral_max_m, 5),
+    }
+
+
+def _hub(host: str, port: int, secret: bytes, names: list[str], given: str) -> Hub:
+    try:
+        return Hub(host, port, secret, names)
+    except OSError as error:
+        raise InputError(f"--robots {given}: cannot listen there ({error.strerror})") from None
+
+
+@contextmanager
+def _room_of_its_own(
+    hub: Hub, secret: bytes, truth: Path, asked: list[str], *, is_wanted: bool
+) -> Iterator[None]:
+    """Run an emulated room in a process of its own meanwhile."""
+    if not is_wanted:
+        yield
+        return
+    url = "{}://{}:{}".format(settings.ROOM, *hub.address)
+    command = [sys.executable, "-m", "rmfs", "emulate", "--server", url, *asked]
+    room = subprocess.Popen(
+        [*command, "--report", str(truth)],
+        env={**os.environ, settings.SECRET: secret.decode()},
+        stdout=subprocess.DEVNULL,
+    )
+    try:
+        yield
+        room.wait(60.0)
+    finally:
+        room.kill()
+        room.wait()
+
+
+def _log_to_stderr() -> None:
+    logging.basicConfig(level=logging.WARNING, format="rmfs: %(message)s", stream=sys.stderr)

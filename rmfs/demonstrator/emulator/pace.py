@@ -1,0 +1,97 @@
+"""How an emulated room keeps time: in step with the server, or as the wall clock does."""
+
+from __future__ import annotations
+
+import time
+from functools import partial
+from typing import TYPE_CHECKING, Protocol
+
+from rmfs.demonstrator.robot.client import Link, TcpWire
+from rmfs.demonstrator.server.clock import ROOM
+from rmfs.demonstrator.server.guide import TICK_US
+
+if TYPE_CHECKING:
+    from rmfs.demonstrator.emulator.room import Address, Room
+
+
+class Pace(Protocol):
+    """Says when a tick is over."""
+
+    has_ended: bool
+    """Whether the demonstration is over."""
+
+    def begin(self) -> None:
+        """Return when the first tick may begin."""
+
+    def tick(self, room: Room) -> bool:
+        """Return when what belongs to the present tick has been done; false if nothing follows."""
+
+    def close(self) -> None:
+        """End the connection, if there is one."""
+
+
+class RealTime:
+    """A tick lasts as long as it says; the server has a clock of its own."""
+
+    has_ended = False
+
+    def begin(self) -> None:
+        """Begin now."""
+        self._zero = time.monotonic()
+
+    def tick(self, room: Room) -> bool:
+        """Sleep until it is time."""
+        time.sleep(max(0.0, self._zero + room.now_us / 1e6 - time.monotonic()))
+        return True
+
+    def close(self) -> None:
+        """Nothing to end."""
+
+
+class InStep:
+    """The room keeps the clock, and the server does at each tick what belongs to it.
+
+    Parameters
+    ----------
+    address
+        Of the server.
+    """
+
+    def __init__(self, address: Address) -> None:
+        connect = partial(TcpWire, address.host, address.port)
+        self._link = Link(connect, address.secret, ROOM)
+        self._waited_us = 0
+        self._tock_us = -1
+        self.has_ended = False
+
+    def begin(self) -> None:
+        """Wait for the server: time begins when it is there."""
+        while not self._link.is_up:
+            self._greet(0)
+
+    def tick(self, room: Room) -> bool:
+        """Tell the server the time and wait until it has done what belongs to it."""
+        if not self._link.is_up:
+            self._greet(room.now_us)  # nobody there: time goes on as it does
+            return True
+        self._link.send({"type": "tick", "time_us": room.now_us, "sent": room.sent()})
+        self._link.flush(room.now_us)
+        while self._link.is_up and self._tock_us < room.now_us and not self.has_ended:
+            self._link.wait(0.2)
+            for message in self._link.poll(room.now_us):
+                if message["type"] == "tock":
+                    self._tock_us = message["time_us"]
+                    room.fetch(message["sent"])
+                self.has_ended = self.has_ended or message["type"] == "end"
+        return self._tock_us >= room.now_us or not self.has_ended
+
+    def close(self) -> None:
+        """End the connection."""
+        self._link.close()
+
+    def _greet(self, now_us: int) -> None:
+        """Try to reach the server, for a tick of real time."""
+        self._waited_us = max(self._waited_us, now_us) + TICK_US
+        self._link.poll(self._waited_us)
+        if not self._link.is_up:
+            time.sleep(TICK_US / 1e6)

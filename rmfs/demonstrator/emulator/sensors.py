@@ -1,0 +1,73 @@
+"""What emulated robots see: the camera and the tag reader, over the emulated floor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.demonstrator.emulator.base import EmulatedBase
+    from rmfs.demonstrator.emulator.floor import Floor
+
+REACH_M = 0.02
+
+
+@dataclass(frozen=True)
+class FloorCamera:
+    """A camera over the floor."""
+
+    floor: Floor
+    base: EmulatedBase
+    rng: np.random.Generator
+
+    def frame(self) -> NDArray[np.uint8]:
+        """Return what it sees now."""
+        return self.floor.view(self.base.x_m, self.base.y_m, self.base.heading_rad, self.rng)
+
+
+class FloorTags:
+    """A tag reader over the floor.
+
+    Parameters
+    ----------
+    tags, x_m, y_m
+        The tags, and where they are; shape (N,).
+    base
+        The robot above them.
+    missed
+        Share of passages in which nothing is found.
+    rng
+        Draws them.
+    """
+
+    def __init__(
+        self,
+        tags: list[str],
+        x_m: NDArray[np.float64],
+        y_m: NDArray[np.float64],
+        base: EmulatedBase,
+        missed: float,
+        rng: np.random.Generator,
+    ) -> None:
+        self._tags, self._x, self._y = tags, x_m, y_m
+        self._base, self._missed, self._rng = base, missed, rng
+        self._above: int | None = None
+        self._found: str | None = None
+
+    def look(self) -> None:
+        """Notice a tag that has come into reach; called whenever the robot has moved."""
+        distance = np.hypot(self._x - self._base.x_m, self._y - self._base.y_m)
+        nearest = int(distance.argmin())
+        above = nearest if distance[nearest] <= REACH_M else None
+        if above is not None and above != self._above and self._rng.random() >= self._missed:
+            self._found = self._tags[above]
+        self._above = above
+
+    def read(self) -> str | None:
+        """Return a tag that was not there the last time, or None."""
+        found, self._found = self._found, None
+        return found

@@ -1,0 +1,135 @@
+"""What a robot has been told to do, and how far it has come."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .create2 import Counts
+from .protocol import Message, ProtocolError
+
+TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "around": math.pi}
+"""Radians, anticlockwise, of the actions that turn."""
+STRAIGHT = "straight"
+
+
+@dataclass
+class Order:
+    """A turn on the spot, possibly none, and a straight run over waypoints.
+
+    Attributes
+    ----------
+    number
+        Of the order.
+    turn_rad
+        Anticlockwise.
+    start
+        Tag of the waypoint where it begins.
+    tags, metres
+        Of the waypoints ahead; how far each is from the one before.
+    granted
+        How many of them the robot may drive to.
+    turned
+        Whether the turn is done.
+    passed
+        How many waypoints have been reached.
+    since
+        The wheels' counters when the turn began, or at the last waypoint.
+    ahead_m
+        How far the robot was past that waypoint then (negative: before it).
+    """
+
+    number: int
+    turn_rad: float
+    start: str
+    tags: list[str]
+    metres: list[float]
+    granted: int
+    turned: bool = False
+    passed: int = 0
+    since: Counts | None = None
+    ahead_m: float = 0.0
+
+    @classmethod
+    def of(cls, message: Message) -> Order:
+        """Return the order of a message.
+
+        Raises
+        ------
+        ProtocolError
+            If it is not one.
+        """
+        try:
+            actions = [str(action) for action in message["actions"]]
+            turn = TURNS[actions.pop(0)] if actions and actions[0] in TURNS else 0.0
+            if set(actions) - {STRAIGHT} or not len(actions) == len(message["tags"]) == len(
+                message["metres"]
+            ):
+                raise ValueError("actions, tags and metres do not go together")
+            return cls(
+                number=int(message["id"]),
+                turn_rad=turn,
+                start=str(message["start"]),
+                tags=[str(tag) for tag in message["tags"]],
+                metres=[float(metres) for metres in message["metres"]],
+                granted=int(message["granted"]),
+                turned=bool(message["turned"]),
+                passed=int(message["passed"]),
+            )
+        except (KeyError, TypeError, ValueError) as error:
+            raise ProtocolError(f"no order: {error!r}") from None
+
+    @property
+    def is_done(self) -> bool:
+        """Whether nothing is left to do."""
+        return self.turned and self.passed == len(self.tags)
+
+    def cut(self, upto: int) -> None:
+        """End it after so many waypoints, or where the robot is."""
+        upto = max(upto, self.passed)
+        del self.tags[upto:], self.metres[upto:]
+
+    def to_stop_m(self, rolled_m: float) -> float:
+        """How far it is to the last waypoint granted, after rolling since the last one."""
+        granted = min(self.granted, len(self.tags))
+        return sum(self.metres[self.passed : granted]) - rolled_m - self.ahead_m
+
+
+@dataclass
+class Memory:
+    """What a robot's program knows after it was killed: the order and the last one done."""
+
+    path: Path | None = None
+    order: Order | None = None
+    last_done: int = 0
+    _written: str = field(default="", repr=False)
+
+    def save(self) -> None:
+        """Write it down, if it has changed and there is a place for it."""
+        if self.path is None:
+            return
+        order = None if self.order is None else vars(self.order)
+        text = json.dumps({"order": order, "last_done": self.last_done})
+        if text == self._written:
+            return
+        draft = self.path.with_suffix(".draft")
+        draft.write_text(text, encoding="utf-8")
+        draft.replace(self.path)
+        self._written = text
+
+    @classmethod
+    def load(cls, path: Path | None) -> Memory:
+        """Read what was written down; nothing, if that is not possible."""
+        memory = cls(path)
+        try:
+            known = json.loads(path.read_text(encoding="utf-8")) if path is not None else {}
+            memory.last_done = int(known.get("last_done", 0))
+            if known.get("order"):
+                order = Order(**known["order"])
+                order.since = None if order.since is None else Counts(*order.since)
+                memory.order = order
+        except (OSError, ValueError, TypeError):
+            return cls(path)
+        return memory

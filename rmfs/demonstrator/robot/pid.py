@@ -1,0 +1,39 @@
+"""A PID controller: the error, its sum and its change, weighted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass
+class Pid:
+    """Steers an error to zero.
+
+    Attributes
+    ----------
+    proportional, integral, derivative
+        Weights of the error, of its integral over time (per second) and of its change (seconds).
+    limit
+        The output stays within plus and minus this; the sum stands still where it is reached.
+    """
+
+    proportional: float
+    integral: float
+    derivative: float
+    limit: float
+    _sum: float = 0.0
+    _last: float | None = None
+
+    def output(self, error: float, seconds: float) -> float:
+        """Return the correction for an error, `seconds` after the one before."""
+        change = 0.0 if self._last is None or seconds <= 0 else (error - self._last) / seconds
+        self._last = error
+        total = self._sum + error * seconds
+        wanted = self.proportional * error + self.integral * total + self.derivative * change
+        if abs(wanted) <= self.limit:
+            self._sum = total
+        return max(-self.limit, min(self.limit, wanted))
+
+    def reset(self) -> None:
+        """Forget the past, as at the beginning of a new line."""
+        self._sum, self._last = 0.0, None

@@ -1,0 +1,97 @@
+"""Frames on the wire: a length, a code that proves who wrote it, and a JSON object.
+
+    frame := length (4 bytes, big-endian) code (32 bytes, HMAC-SHA256) text (length bytes, UTF-8)
+
+The code covers the text and, so that no frame counts twice in another place, a label: the nonce of
+the server while a robot introduces itself, the direction afterwards. Both sides know a secret; the
+key of a session comes from it and from a nonce of each side.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import json
+from collections.abc import Iterator
+from typing import Any
+
+VERSION = 1
+LARGEST = 65_536
+"""Bytes of the longest text; a longer one is refused before it is read."""
+WELCOME, HELLO, SERVER, ROBOT = b"welcome", b"hello/", b"server", b"robot"
+"""Labels: of the server's first frame, the robot's first (with a nonce), and of the directions."""
+_LENGTH, _HEAD = 4, 36
+
+Message = dict[str, Any]
+
+
+class ProtocolError(Exception):
+    """The other side does not keep the protocol; the connection is to be closed."""
+
+
+def code(key: bytes, label: bytes, text: bytes) -> bytes:
+    """Return what proves that somebody who knows the key wrote a text."""
+    return hmac.digest(key, len(label).to_bytes(2, "big") + label + text, hashlib.sha256)
+
+
+def session_key(secret: bytes, server_nonce: str, robot_nonce: str) -> bytes:
+    """Return the key of a session."""
+    return code(secret, b"session", f"{server_nonce}/{robot_nonce}".encode())
+
+
+def pack(message: Message, key: bytes, label: bytes) -> bytes:
+    """Return a message as a frame; raises ValueError if it is longer than a frame may be."""
+    text = json.dumps(message, separators=(",", ":"), allow_nan=False).encode()
+    if len(text) > LARGEST:
+        raise ValueError(f"a message of {len(text)} bytes; at most {LARGEST}")
+    return len(text).to_bytes(_LENGTH, "big") + code(key, label, text) + text
+
+
+class Unpacker:
+    """Cuts what arrives into frames; what has not fully arrived waits in `rest`."""
+
+    def __init__(self, rest: bytes = b"") -> None:
+        self.rest = bytearray(rest)
+
+    def feed(self, data: bytes, key: bytes, label: bytes) -> Iterator[Message]:
+        """Yield the messages that are complete.
+
+        Raises
+        ------
+        ProtocolError
+            If a frame is too long, was not written by somebody who knows the key, or is not JSON.
+        """
+        self.rest += data
+        while len(self.rest) >= _LENGTH:
+            size = int.from_bytes(self.rest[:_LENGTH], "big")
+            if size > LARGEST:
+                raise ProtocolError(f"a frame of {size} bytes; at most {LARGEST}")
+            if len(self.rest) < _HEAD + size:
+                return
+            proof, text = bytes(self.rest[_LENGTH:_HEAD]), bytes(self.rest[_HEAD : _HEAD + size])
+            del self.rest[: _HEAD + size]
+            if not hmac.compare_digest(proof, code(key, label, text)):
+                raise ProtocolError("a frame that nobody with the secret wrote for this place")
+            try:
+                message = json.loads(text)
+            except (ValueError, RecursionError) as error:
+                raise ProtocolError(f"not JSON: {error}") from None
+            if not isinstance(message, dict):
+                raise ProtocolError("not a JSON object")
+            yield message
+
+
+def text_of(message: Message, name: str, longest: int = 64) -> str:
+    """Return a text in a message; raises ProtocolError if there is none."""
+    value = message.get(name)
+    if not isinstance(value, str) or not 0 < len(value) <= longest:
+        raise ProtocolError(f"{name} = {value!r}; it is a text of 1 to {longest} characters")
+    return value
+
+
+def whole(message: Message, name: str) -> int:
+    """Return a number in a message; raises ProtocolError if there is none."""
+    value = message.get(name)
+    if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+        raise ProtocolError(f"{name} = {value!r}; it is a whole number, not negative")
+    return value

@@ -1,0 +1,1 @@
+"""The server: plans for all robots, tells the real ones what to do, and hears how far they are."""

@@ -1,0 +1,99 @@
+"""The clock of a demonstration: of the laboratory's wall, or of an emulated room.
+
+One clock governs everything: plans, heartbeats, times to wait. An emulated room keeps it and is in
+step with the server: it says what time it is and how many bytes each robot has sent, the server
+answers when it has done all that belongs to that time, and how many bytes it has sent.
+
+    room -> server   tick: time_us, sent (bytes by robot)
+    server -> room   tock: time_us, sent (bytes by robot)
+"""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from rmfs.demonstrator.robot.protocol import Message
+    from rmfs.demonstrator.server.hub import Hub
+
+ROOM = "room"
+"""Name under which an emulated room introduces itself."""
+
+PATIENCE_S = 60.0
+"""Wall time after which an emulated room that says nothing counts as gone."""
+
+
+class RoomGoneError(RuntimeError):
+    """The emulated room does not go on."""
+
+
+class Clock(Protocol):
+    """Lets time pass."""
+
+    def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
+        """Return the messages of robots that belong to the time up to now, once it has come."""
+
+    def passed(self, hub: Hub, time_us: int) -> None:
+        """Note that everything of this time has been done."""
+
+
+class WallClock:
+    """Real time; the demonstration begins now."""
+
+    def __init__(self, begin_us: int = 0) -> None:
+        self._zero = time.monotonic() - begin_us / 1e6
+
+    def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
+        """Read until the time has come."""
+        messages: list[tuple[str, Message]] = []
+        while (left_s := time_us / 1e6 - (time.monotonic() - self._zero)) > 0:
+            messages += hub.poll(time_us, left_s)
+        return messages + hub.poll(time_us, 0.0)
+
+    def passed(self, hub: Hub, time_us: int) -> None:
+        """Nothing to note."""
+
+
+class RoomClock:
+    """The clock of an emulated room, in step with it."""
+
+    def __init__(self) -> None:
+        self._room_us = -1
+        self._expected: dict[str, int] = {}
+
+    def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
+        """Read until the room is there and all that its robots have sent has arrived."""
+        messages: list[tuple[str, Message]] = []
+        begun = time.monotonic()
+        while not self._is_complete(hub, time_us):
+            for name, message in hub.poll(time_us, 0.5):
+                if name != ROOM:
+                    messages.append((name, message))
+                elif message["type"] == "tick":
+                    self._hear(hub, message, time_us)
+                    begun = time.monotonic()
+            if time.monotonic() - begun > PATIENCE_S:
+                raise RoomGoneError(f"the emulated room has said nothing for {PATIENCE_S:.0f} s")
+        return messages
+
+    def passed(self, hub: Hub, time_us: int) -> None:
+        """Tell the room to go on."""
+        if self._room_us == time_us:
+            self._answer(hub, time_us)
+
+    def _hear(self, hub: Hub, tick: Message, time_us: int) -> None:
+        self._room_us = int(tick["time_us"])
+        self._expected = {str(name): int(size) for name, size in tick["sent"].items()}
+        if self._room_us < time_us:
+            # a tick already done before the server was started again
+            self._answer(hub, self._room_us)
+
+    def _is_complete(self, hub: Hub, time_us: int) -> bool:
+        arrived = all(hub.traffic_of(name)[0] >= size for name, size in self._expected.items())
+        return self._room_us >= time_us and arrived
+
+    def _answer(self, hub: Hub, time_us: int) -> None:
+        sent = {name: hub.traffic_of(name)[1] for name in hub.present if name != ROOM}
+        hub.send(ROOM, {"type": "tock", "time_us": time_us, "sent": sent})
+        hub.flush(time_us)

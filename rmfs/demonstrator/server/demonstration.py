@@ -1,0 +1,98 @@
+"""A demonstration: a run in which some robots are real."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from rmfs.demonstrator.server.clock import ROOM, RoomClock, WallClock
+from rmfs.demonstrator.server.guided import GuidedTraffic
+from rmfs.demonstrator.server.hub import Hub
+from rmfs.demonstrator.server.journal import Journal
+from rmfs.demonstrator.server.real import check_floor
+from rmfs.errors import InputError
+from rmfs.simulation.run import Run, simulate
+from rmfs.traffic import TIME_WINDOWS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from rmfs.layout.model import Layout
+
+
+@dataclass
+class Demonstration:
+    """Which robots are real, and how they are reached.
+
+    Attributes
+    ----------
+    hub
+        Where they come to.
+    robots
+        Their names, and their indices in the layout.
+    tags
+        The tag of every waypoint.
+    journal
+        File of what is heard; a run goes on where it ends.
+    is_emulated
+        Whether the robots are in an emulated room, which keeps the clock.
+    """
+
+    hub: Hub
+    robots: dict[str, int]
+    tags: Sequence[str]
+    journal: Path
+    is_emulated: bool
+    traffic: GuidedTraffic | None = None
+
+    def run(self, *inputs: Any, seed: int = 0, **options: Any) -> Run:
+        """Simulate, with real robots for some.
+
+        Parameters
+        ----------
+        inputs, seed, options
+            As those of `rmfs.simulate`.
+
+        Raises
+        ------
+        InputError
+            If something given is wrong.
+        RoomGoneError
+            If the emulated room does not go on.
+        """
+        settings = {"inputs": [str(given) for given in inputs], "seed": seed, **_plain(options)}
+        maker = partial(self._make, {**settings, "robots": self.robots})
+        try:
+            return simulate(*inputs, seed=seed, traffic_maker=maker, **options)
+        finally:
+            if self.traffic is not None:
+                self.traffic.end()
+            self.hub.close()
+
+    def _make(self, settings: dict[str, Any], layout: Layout, **options: Any) -> GuidedTraffic:
+        if options["planner"].name != TIME_WINDOWS.name:
+            raise InputError(
+                f"controllers: path planning by {options['planner'].name}: robots outside the "
+                f"simulation need {TIME_WINDOWS.name}, whose plans can be shifted"
+            )
+        check_floor(layout, self.tags)
+        journal = Journal(self.journal, settings)
+        begin_us = max(0, journal.begins_us)
+        clock = RoomClock() if self.is_emulated else WallClock(begin_us)
+        self.traffic = GuidedTraffic(
+            layout, self.robots, self.tags, self.hub, clock, journal, **options
+        )
+        return self.traffic
+
+
+def expected(robots: dict[str, int], *, is_emulated: bool) -> list[str]:
+    """Return the names of all who may come."""
+    return [*robots, ROOM] if is_emulated else [*robots]
+
+
+def _plain(options: dict[str, Any]) -> dict[str, Any]:
+    """Return those options that decide what happens."""
+    kept: Callable[[str], bool] = ("overrides", "pacing", "allow_not_well_formed").__contains__
+    return {name: value for name, value in options.items() if kept(name)}

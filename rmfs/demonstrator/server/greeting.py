@@ -1,0 +1,60 @@
+"""The server's side of the beginning of a session."""
+
+from __future__ import annotations
+
+import secrets
+from typing import NamedTuple
+
+from rmfs.demonstrator.robot.protocol import (
+    HELLO,
+    VERSION,
+    WELCOME,
+    ProtocolError,
+    Unpacker,
+    pack,
+    session_key,
+    text_of,
+)
+
+
+class Guest(NamedTuple):
+    """Who has introduced himself, the key of his session, and what he has sent beyond."""
+
+    name: str
+    key: bytes
+    rest: bytes
+
+
+class Greeting:
+    """Welcomes one connection; a hello is good for this welcome only.
+
+    Parameters
+    ----------
+    secret
+        Known to the robots.
+    """
+
+    def __init__(self, secret: bytes) -> None:
+        self._secret = secret
+        self._nonce = secrets.token_hex(16)
+        self._unpacker = Unpacker()
+
+    def welcome(self) -> bytes:
+        """Return the first frame."""
+        message = {"type": "welcome", "version": VERSION, "nonce": self._nonce}
+        return pack(message, self._secret, WELCOME)
+
+    def receive(self, data: bytes) -> Guest | None:
+        """Return who is there, when he has introduced himself.
+
+        Raises
+        ------
+        ProtocolError
+            If he does not know the secret or speaks another version.
+        """
+        for hello in self._unpacker.feed(data, self._secret, HELLO + self._nonce.encode()):
+            if hello.get("type") != "hello" or hello.get("version") != VERSION:
+                raise ProtocolError(f"no hello of version {VERSION}: {hello}")
+            key = session_key(self._secret, self._nonce, text_of(hello, "nonce"))
+            return Guest(text_of(hello, "robot"), key, bytes(self._unpacker.rest))
+        return None

@@ -1,0 +1,346 @@
+"""Guides real robots along the plans of the traffic layer, and keeps plans in step with them.
+
+At each tick the messages of robots are heard; a robot that has not confirmed what its plan would
+have it do before the next tick is late, and its plan and those behind it in the order of waypoint
+use are shifted; then robots whose next motion is due are told to go, as far as the way is clear.
+So the plan never runs ahead of reality, and a robot never enters a waypoint before the one planned
+before it has left.
+"""
+
+from __future__ import annotations
+
+import logging
+from typing import TYPE_CHECKING
+
+from rmfs.demonstrator.server.pursuit import Pursuit, quarter_turns
+from rmfs.demonstrator.server.real import RealRobot
+from rmfs.traffic import Traffic
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.demonstrator.robot.protocol import Message
+    from rmfs.layout.model import Layout
+    from rmfs.traffic import PlannedMove
+
+_log = logging.getLogger("rmfs.demonstrator")
+
+TICK_US = 50_000
+"""Time between two ticks."""
+GIVE_UP_US = 30_000_000
+"""A robot silent for so long is planned around."""
+MOST_TROUBLES = 2
+"""A robot that cannot do an order after so many attempts is planned around, too."""
+GONE_US = 3_600_000_000
+"""So much later the plan of a robot that is planned around would go on."""
+SETTLE_US = 4_000_000
+"""Time given to a robot to stop at the last waypoint it may use, when plans are made anew."""
+
+COUNTED = (
+    *("orders", "delays", "regroupings", "strayed"),
+    *("unknown_tags", "given_up", "troubles", "nonsense"),
+)
+
+
+class Guide:
+    """Real robots on the plans of a traffic layer.
+
+    Parameters
+    ----------
+    layout
+        One that `check_floor` has passed.
+    traffic
+        Plans for all robots.
+    robots
+        Indices of the real ones; the others are simulated.
+    tags
+        The tag of every waypoint.
+    """
+
+    def __init__(
+        self, layout: Layout, traffic: Traffic, robots: Sequence[int], tags: Sequence[str]
+    ) -> None:
+        self.layout, self.traffic, self.tags = layout, traffic, list(tags)
+        self._waypoint_of = {tag: waypoint for waypoint, tag in enumerate(tags)}
+        self.robots = {
+            robot: RealRobot(robot, float(layout.robot_heading_rad[robot])) for robot in robots
+        }
+        self._orders = 0
+        self._outbox: list[tuple[int, Message]] = []
+        self._regroup_due = False
+        self.counts = dict.fromkeys(COUNTED, 0)
+
+    def tick(
+        self, messages: Sequence[tuple[int, Message]], silent: frozenset[int]
+    ) -> list[tuple[int, Message]]:
+        """Do what belongs to the present time of the traffic layer.
+
+        Parameters
+        ----------
+        messages
+            What robots have said, in order.
+        silent
+            Robots with a session that give no sign.
+
+        Returns
+        -------
+        What they are to be told.
+        """
+        for index, message in messages:
+            try:
+                self._hear(self.robots[index], message)
+            except (KeyError, TypeError, ValueError) as error:
+                self.counts["nonsense"] += 1
+                _log.warning("robot %d: %s makes no sense: %r", index, message.get("type"), error)
+        self._look_after_silent(silent)
+        if self._regroup_due:
+            self._regroup()
+        self._delay_late()
+        for robot in self.robots.values():
+            self._send_off(robot)
+        outbox, self._outbox = self._outbox, []
+        return outbox
+
+    # --- what robots say ------------------------------------------------------------------------
+
+    def _hear(self, robot: RealRobot, message: Message) -> None:
+        robot.heard_us = self.traffic.now_us
+        kind, pursuit = message.get("type"), robot.pursuit
+        if kind == "connected":
+            robot.is_present = True
+        elif kind == "gone":
+            robot.is_present = False
+        elif kind == "state":
+            self._compare(robot, message)
+        elif kind in ("tag", "seen", "astray"):
+            self._see(robot, str(message.get("tag")), lost=kind == "astray")
+        elif kind == "trouble":
+            self.counts["troubles"] += 1
+            _log.warning("robot %d: %s", robot.index, message.get("reason"))
+            if pursuit is not None and message.get("id") == pursuit.number:
+                pursuit.troubles += 1
+                if pursuit.troubles < MOST_TROUBLES:
+                    self._tell_again(robot)
+                else:
+                    self._give_up(robot, "in trouble")
+        elif pursuit is not None and message.get("id") == pursuit.number:
+            if kind == "turned":
+                pursuit.turned = True
+            elif kind == "done":
+                self._finish(robot, pursuit)
+
+    def _finish(self, robot: RealRobot, pursuit: Pursuit) -> None:
+        pursuit.done = pursuit.turned = True
+        pursuit.passed = len(pursuit.waypoints)
+        robot.heading_rad = pursuit.move.heading_rad
+        if robot.given_up:
+            self._regroup_due = True
+
+    def _see(self, robot: RealRobot, tag: str, *, lost: bool) -> None:
+        waypoint = self._waypoint_of.get(tag)
+        if waypoint is None:
+            self.counts["unknown_tags"] += 1
+            _log.warning(
+                "robot %d reports tag %s, which is nowhere in the layout", robot.index, tag
+            )
+            if lost:
+                self._tell_again(robot)
+            return
+        pursuit = robot.pursuit
+        was_given_up = robot.given_up and robot.is_present
+        if was_given_up:
+            # somebody has put it back on a tag
+            robot.given_up, self._regroup_due = False, True
+        if pursuit is not None and not pursuit.done and pursuit.pass_waypoint(waypoint):
+            pursuit.troubles = 0
+            if lost or was_given_up:
+                self._tell_again(robot)
+            return
+        if lost or was_given_up:
+            _log.warning("robot %d has lost its way and is at waypoint %d", robot.index, waypoint)
+            self.counts["strayed"] += 1
+            robot.astray = waypoint
+            self._regroup_due = True
+
+    def _compare(self, robot: RealRobot, state: Message) -> None:
+        """A session has begun: the robot says what it knows."""
+        pursuit = robot.pursuit
+        if pursuit is None or pursuit.done:
+            return
+        if int(state["last_done"]) >= pursuit.number:
+            self._finish(robot, pursuit)
+            return
+        if state["id"] == pursuit.number:
+            pursuit.turned = pursuit.turned or bool(state["turned"])
+            pursuit.passed = max(pursuit.passed, min(int(state["passed"]), len(pursuit.waypoints)))
+        self._tell_again(robot)
+
+    def _tell_again(self, robot: RealRobot) -> None:
+        if robot.pursuit is not None and not robot.pursuit.done:
+            self._outbox.append((robot.index, robot.pursuit.order(self.tags)))
+
+    # --- late robots ------------------------------------------------------------------------------
+
+    def _delay_late(self) -> None:
+        """Shift plans that would run ahead of what robots have confirmed before the next tick."""
+        horizon_us = self.traffic.now_us + TICK_US + 1
+        for robot in self.robots.values():
+            plan = self.traffic.plan(robot.index)
+            if not plan:
+                continue
+            due_us = self._due_us(robot, plan[0])
+            if due_us < horizon_us:
+                self.counts["delays"] += 1
+                self.traffic.delay(robot.index, horizon_us - due_us, begun=True)
+
+    def _due_us(self, robot: RealRobot, move: PlannedMove) -> int:
+        """When the plan needs something of the robot that it has not confirmed."""
+        pursuit = robot.pursuit
+        if robot.astray is not None:
+            return self.traffic.now_us
+        if pursuit is not None and not pursuit.done:
+            return (
+                pursuit.next_us(move)
+                if _is_same(pursuit.move, move)
+                else self._begin_us(robot, move)
+            )
+        if pursuit is not None and _is_same(pursuit.move, move):
+            return 1 << 62
+        return self._begin_us(robot, move) if not robot.is_present else 1 << 62
+
+    def _begin_us(self, robot: RealRobot, move: PlannedMove) -> int:
+        """When a robot has to begin a move: with the turn before it."""
+        pursuit = robot.pursuit
+        heading = pursuit.move.heading_rad if pursuit is not None else robot.heading_rad
+        return move.start_us - self._turn_us(robot.index, heading, move.heading_rad)
+
+    def _turn_us(self, robot: int, before_rad: float, after_rad: float) -> int:
+        kind = self.layout.robot_kinds[int(self.layout.robot_kind[robot])]
+        quarters = quarter_turns(before_rad, after_rad)
+        return round(min(quarters, 4 - quarters) / 4 * kind.full_turn_s * 1e6)
+
+    # --- orders -----------------------------------------------------------------------------------
+
+    def _send_off(self, robot: RealRobot) -> None:
+        """Tell a robot to go when its plan says so, and how far the way is clear."""
+        if robot.astray is not None:
+            return
+        plan = self.traffic.plan(robot.index)
+        if robot.is_busy:
+            assert robot.pursuit is not None
+            if plan and _is_same(robot.pursuit.move, plan[0]):
+                self._grant(robot.pursuit, robot.index)
+            return
+        if not plan or (robot.pursuit is not None and _is_same(robot.pursuit.move, plan[0])):
+            return
+        if self._begin_us(robot, plan[0]) >= self.traffic.now_us:
+            return
+        self._orders += 1
+        self.counts["orders"] += 1
+        pursuit = Pursuit.of(self._orders, plan[0], robot.heading_rad, self.layout, robot.index)
+        robot.pursuit = pursuit
+        self._grant(pursuit, robot.index)
+        self._outbox.append((robot.index, pursuit.order(self.tags)))
+
+    def _grant(self, pursuit: Pursuit, robot: int) -> None:
+        if not pursuit.turned:
+            return  # it could drive on while its plan has not begun
+        clear = set(self.traffic.clearance(robot))
+        granted = pursuit.passed
+        while granted < len(pursuit.waypoints) and pursuit.waypoints[granted] in clear:
+            granted += 1
+        if granted > pursuit.granted:
+            pursuit.granted = granted
+            self._outbox.append(
+                (robot, {"type": "grant", "id": pursuit.number, "granted": granted})
+            )
+
+    # --- robots that are lost or silent -----------------------------------------------------------
+
+    def _look_after_silent(self, silent: frozenset[int]) -> None:
+        now_us = self.traffic.now_us
+        for robot in self.robots.values():
+            is_silent = not robot.is_present or robot.index in silent
+            if is_silent and robot.is_busy and now_us - robot.heard_us > GIVE_UP_US:
+                self._give_up(robot, "silent")
+            elif not is_silent and robot.given_up and not robot.is_busy:
+                robot.given_up = False
+                self._regroup_due = True
+
+    def _give_up(self, robot: RealRobot, why: str) -> None:
+        if not robot.given_up:
+            _log.warning("robot %d is %s; others go around it", robot.index, why)
+            robot.given_up = self._regroup_due = True
+            self.counts["given_up"] += 1
+
+    def _regroup(self) -> None:
+        """Plan everybody anew from where they are or will stop."""
+        rests: list[tuple[int, float, int] | None] = []
+        cut = []
+        for index in range(self.layout.robots):
+            robot = self.robots.get(index)
+            if robot is None:
+                rests.append(self._rest_of_simulated(index))
+            elif robot.given_up and robot.is_busy:
+                assert robot.pursuit is not None
+                self._grant(robot.pursuit, index)
+                self.traffic.delay(index, GONE_US, begun=True)
+                rests.append(None)
+                cut.append(robot)
+            else:
+                rests.append(self._rest_of_real(robot))
+                if robot.is_busy and robot.astray is None:
+                    cut.append(robot)
+        try:
+            self.traffic.regroup(rests)
+        except ValueError as error:
+            _log.debug("plans cannot be made anew yet: %s", error)
+            return
+        self._regroup_due = False
+        self.counts["regroupings"] += 1
+        for robot in cut:
+            self._cut(robot)
+        for robot in self.robots.values():
+            robot.astray = None
+
+    def _rest_of_simulated(self, index: int) -> tuple[int, float, int]:
+        plan = self.traffic.plan(index)
+        now_us = self.traffic.now_us
+        if not plan:
+            return self.traffic.rest_waypoint(index), float(self.layout.robot_heading_rad[index]), 0
+        move = plan[0]
+        if move.start_us > now_us:
+            return move.from_waypoint, move.heading_rad, 0
+        stop = [move.from_waypoint, *self.traffic.clearance(index)][-1]
+        return stop, move.heading_rad, max(move.end_us, now_us)
+
+    def _rest_of_real(self, robot: RealRobot) -> tuple[int, float, int]:
+        if robot.astray is not None:
+            heading = robot.heading_at(self.layout, robot.astray)
+            robot.heading_rad, robot.pursuit = heading, None
+            return robot.astray, heading, 0
+        pursuit = robot.pursuit
+        if pursuit is None or pursuit.done:
+            plan = self.traffic.plan(robot.index)
+            at = plan[0].from_waypoint if plan else self.traffic.rest_waypoint(robot.index)
+            return (at if pursuit is None else pursuit.end), robot.heading_rad, 0
+        stop = [
+            pursuit.move.from_waypoint,
+            *pursuit.waypoints[: max(pursuit.granted, pursuit.passed)],
+        ][-1]
+        return stop, pursuit.move.heading_rad, self.traffic.now_us + SETTLE_US
+
+    def _cut(self, robot: RealRobot) -> None:
+        """Let a robot end its pursuit at the last waypoint granted."""
+        pursuit = robot.pursuit
+        assert pursuit is not None
+        pursuit.cut()
+        message = {"type": "cut", "id": pursuit.number, "upto": len(pursuit.waypoints)}
+        self._outbox.append((robot.index, message))
+
+
+def _is_same(known: PlannedMove, move: PlannedMove) -> bool:
+    """Whether a move is the known one, whatever delays it has had."""
+    return (known.from_waypoint, known.to_waypoint) == (move.from_waypoint, move.to_waypoint) and (
+        known.start_us == move.start_us
+    )

@@ -1,0 +1,102 @@
+"""The traffic layer of a demonstration: as the simulation knows it, with real robots inside."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.demonstrator.server.clock import ROOM
+from rmfs.demonstrator.server.guide import TICK_US, Guide
+from rmfs.traffic import Traffic
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.demonstrator.server.clock import Clock
+    from rmfs.demonstrator.server.hub import Hub
+    from rmfs.demonstrator.server.journal import Journal
+    from rmfs.layout.model import Layout
+
+
+class GuidedTraffic(Traffic):
+    """Traffic in which some robots are real: time passes as their clock says.
+
+    Parameters
+    ----------
+    layout
+        The warehouse.
+    robots
+        Names and indices of the real robots.
+    tags
+        The tag of every waypoint.
+    hub
+        Their sessions.
+    clock
+        Lets time pass.
+    journal
+        Of what is heard.
+    options
+        Further parameters of `Traffic`.
+    """
+
+    def __init__(
+        self,
+        layout: Layout,
+        robots: dict[str, int],
+        tags: Sequence[str],
+        hub: Hub,
+        clock: Clock,
+        journal: Journal,
+        **options: Any,
+    ) -> None:
+        super().__init__(layout, **options)
+        self.guide = Guide(layout, self, list(robots.values()), tags)
+        self._index, self._name = robots, {index: name for name, index in robots.items()}
+        self._hub, self._clock, self._journal = hub, clock, journal
+        self._tick_us = 0
+        self._is_live = False
+        self._advance_core = self.advance
+        self.advance = self._advance_guided
+
+    def _advance_guided(self, until_us: int) -> list[tuple[int, int, int, int]]:
+        """Advance to the next event, as `Traffic.advance`, in step with the real robots."""
+        while True:
+            limit_us = min(until_us, self._tick_us)
+            events = self._advance_core(limit_us)
+            if events or limit_us < self._tick_us:
+                return events
+            self._tick()
+            self._tick_us += TICK_US
+            if limit_us == until_us:
+                return []
+
+    def _tick(self) -> None:
+        now_us = self._tick_us
+        if now_us <= self._journal.begins_us:
+            messages, silent = self._journal.heard_at(now_us)
+            self.guide.tick(messages, silent)
+            return
+        heard = self._clock.wait(self._hub, now_us)
+        messages = [(self._index[name], message) for name, message in heard if name in self._index]
+        if not self._is_live:
+            # whoever was there before this server was started has to come again
+            self._is_live = True
+            messages = [(robot, {"type": "gone"}) for robot in self._name] + messages
+        quiet = self._hub.silent(now_us)
+        silent = frozenset(self._index[name] for name in quiet if name in self._index)
+        if messages or silent:
+            self._journal.note(now_us, messages, silent)
+        told = self.guide.tick(messages, silent)
+        if told and not (messages or silent):
+            # what a robot has been told must be known again after a restart
+            self._journal.note(now_us, [], frozenset())
+        for robot, message in told:
+            self._hub.send(self._name[robot], message)
+        self._hub.flush(now_us)
+        self._clock.passed(self._hub, now_us)
+
+    def end(self) -> None:
+        """End the demonstration: sessions are closed, an emulated room is told."""
+        self._hub.send(ROOM, {"type": "end"})
+        self._hub.flush(self._tick_us)
+        self._hub.close()
+        self._journal.close()

@@ -1,0 +1,148 @@
+"""A robot follows a piece of its plan: what it was told, and what it has confirmed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.traffic import Motion
+
+if TYPE_CHECKING:
+    from rmfs.demonstrator.robot.protocol import Message
+    from rmfs.layout.model import Layout
+    from rmfs.traffic import PlannedMove
+
+_TURNS = {0: [], 1: ["left"], 2: ["around"], 3: ["right"]}
+
+
+@dataclass
+class Pursuit:
+    """An order of the server, and how far the robot has come with it.
+
+    Attributes
+    ----------
+    number
+        Of the order.
+    move
+        The piece of the plan; its times change when the robot is late.
+    heading_before_rad
+        Of the robot, before the turn.
+    waypoints
+        From the first one after the start to the last.
+    along_m
+        Distance of each from the start.
+    passed
+        How many waypoints the robot has confirmed.
+    turned, done
+        Whether it has turned; whether it stands at the end.
+    granted
+        How many waypoints it may drive to: none before it has turned.
+    troubles
+        How often it has reported, since the last waypoint, that it cannot go on.
+    """
+
+    number: int
+    move: PlannedMove
+    heading_before_rad: float
+    waypoints: list[int]
+    along_m: list[float]
+    seconds: list[float]
+    passed: int = 0
+    turned: bool = False
+    done: bool = False
+    granted: int = 0
+    troubles: int = 0
+
+    @classmethod
+    def of(
+        cls, number: int, move: PlannedMove, heading_rad: float, layout: Layout, robot: int
+    ) -> Pursuit:
+        """Return the pursuit of a move, not begun."""
+        waypoints = straight_way(layout, move)
+        x, y = layout.x_m, layout.y_m
+        start = move.from_waypoint
+        along = [float(math.hypot(x[w] - x[start], y[w] - y[start])) for w in waypoints]
+        kind = layout.robot_kinds[int(layout.robot_kind[robot])]
+        motion = Motion(
+            kind.acceleration_m_s2, kind.deceleration_m_s2, kind.top_speed_m_s, 0.0, along[-1]
+        )
+        seconds = [motion.time_at(distance) for distance in along]
+        turned = quarter_turns(heading_rad, move.heading_rad) == 0
+        return cls(number, move, heading_rad, waypoints, along, seconds, turned=turned)
+
+    def next_us(self, move: PlannedMove) -> int:
+        """When the plan has the robot at the next waypoint it has not confirmed.
+
+        Parameters
+        ----------
+        move
+            The same piece of the plan, with its present times.
+        """
+        if self.passed == len(self.waypoints):
+            return move.end_us
+        late_us = move.end_us - move.start_us - math.ceil(self.seconds[-1] * 1e6)
+        return move.start_us + late_us + math.floor(self.seconds[self.passed] * 1e6)
+
+    def pass_waypoint(self, waypoint: int) -> bool:
+        """Note that the robot was seen at a waypoint; false if it is not on its way."""
+        if waypoint not in self.waypoints:
+            return False
+        self.turned = True
+        self.passed = max(self.passed, self.waypoints.index(waypoint) + 1)
+        return True
+
+    def cut(self) -> None:
+        """End it at the last waypoint granted."""
+        upto = max(self.granted, self.passed)
+        del self.waypoints[upto:], self.along_m[upto:], self.seconds[upto:]
+
+    @property
+    def end(self) -> int:
+        """The waypoint at which it ends."""
+        return self.waypoints[-1] if self.waypoints else self.move.from_waypoint
+
+    def order(self, tags: list[str]) -> Message:
+        """Return the order as the robot hears it, what is done left out of the actions.
+
+        Parameters
+        ----------
+        tags
+            Of all waypoints.
+        """
+        quarters = quarter_turns(self.heading_before_rad, self.move.heading_rad)
+        turn = [] if self.turned else _TURNS[quarters]
+        return {
+            "type": "go",
+            "id": self.number,
+            "actions": turn + ["straight"] * len(self.waypoints),
+            "start": tags[self.move.from_waypoint],
+            "tags": [tags[waypoint] for waypoint in self.waypoints],
+            "metres": np.diff(self.along_m, prepend=0.0).round(6).tolist(),
+            "granted": self.granted,
+            "turned": self.turned,
+            "passed": self.passed,
+        }
+
+
+def quarter_turns(before_rad: float, after_rad: float) -> int:
+    """Return the turn between two headings in quarters, anticlockwise, 0 to 3."""
+    return round((after_rad - before_rad) / (math.pi / 2)) % 4
+
+
+def straight_way(layout: Layout, move: PlannedMove) -> list[int]:
+    """Return the waypoints of a straight run, without the first."""
+    along = np.array([math.cos(move.heading_rad), math.sin(move.heading_rad)])
+    here, way = move.from_waypoint, []
+    while here != move.to_waypoint:
+        targets = layout.edge_target[layout.edge_start[here] : layout.edge_start[here + 1]]
+        step = np.stack(
+            [layout.x_m[targets] - layout.x_m[here], layout.y_m[targets] - layout.y_m[here]]
+        )
+        length = np.hypot(*step)
+        straight = (step / length * along[:, None]).sum(axis=0)
+        here = int(targets[int(straight.argmax())])
+        way.append(here)
+    return way

@@ -1,0 +1,86 @@
+"""Robots outside the simulation, as the server knows them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.demonstrator.server.pursuit import Pursuit
+    from rmfs.layout.model import Layout
+
+
+@dataclass
+class RealRobot:
+    """What the server knows of a robot outside the simulation.
+
+    Attributes
+    ----------
+    index
+        Of the robot in the layout.
+    heading_rad
+        Which way it looks, when it has done its pursuit.
+    pursuit
+        What it was told to do.
+    is_present
+        Whether there is a session with it.
+    heard_us
+        When it last said anything.
+    given_up
+        Whether others are planned around it.
+    astray
+        The waypoint where it has lost its way.
+    """
+
+    index: int
+    heading_rad: float
+    pursuit: Pursuit | None = None
+    is_present: bool = False
+    heard_us: int = 0
+    given_up: bool = False
+    astray: int | None = None
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether it has not done what it was told."""
+        return self.pursuit is not None and not self.pursuit.done
+
+    def heading_at(self, layout: Layout, waypoint: int) -> float:
+        """Which way it looks where it has driven to a waypoint it was not sent to.
+
+        Along its run, if it was pushed aside; if it has turned wrongly, along what it has driven.
+        """
+        pursuit = self.pursuit
+        if pursuit is None:
+            return self.heading_rad
+        last = [pursuit.move.from_waypoint, *pursuit.waypoints][pursuit.passed]
+        dx = float(layout.x_m[waypoint] - layout.x_m[last])
+        dy = float(layout.y_m[waypoint] - layout.y_m[last])
+        is_moved, is_aside = max(abs(dx), abs(dy)) > 1e-6, min(abs(dx), abs(dy)) > 1e-6
+        if is_moved and not is_aside:
+            return round(math.atan2(dy, dx) / (math.pi / 2)) * math.pi / 2
+        return pursuit.move.heading_rad if pursuit.turned else pursuit.heading_before_rad
+
+
+def check_floor(layout: Layout, tags: Sequence[str]) -> None:
+    """Raise InputError if robots that follow lines and read tags cannot use a layout."""
+    if layout.elevators:
+        raise InputError(f"{layout.name}: elevators cannot be driven by real robots")
+    if len(tags) != layout.waypoints or len(set(tags)) != len(tags):
+        raise InputError(
+            f"{layout.name}: every waypoint needs a tag of its own: {layout.waypoints} waypoints, "
+            f"{len(set(tags))} tags"
+        )
+    for v in range(layout.waypoints):
+        for w in layout.edge_target[layout.edge_start[v] : layout.edge_start[v + 1]]:
+            dx, dy = layout.x_m[w] - layout.x_m[v], layout.y_m[w] - layout.y_m[v]
+            if min(abs(dx), abs(dy)) > 1e-6:
+                raise InputError(
+                    f"{layout.name}: the edge {v} -> {w} is not along x or y; "
+                    "robots turn by 90 degrees"
+                )

@@ -1,0 +1,136 @@
+"""What a user says about a demonstration, checked."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+from urllib.parse import urlsplit
+
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from rmfs.layout.model import Layout
+
+TCP, ROOM = "tcp", "room"
+"""Schemes of addresses: real time, and the time of an emulated room."""
+
+SECRET = "RMFS_SECRET"
+"""Environment variable of the secret."""
+
+SHORTEST_SECRET = 8
+
+
+def address(url: str, option: str) -> tuple[str, str, int]:
+    """Return scheme, host and port of an address.
+
+    Raises
+    ------
+    InputError
+        If it is not one.
+    """
+    try:
+        parts = urlsplit(url)
+        rest = parts.path or parts.query or parts.fragment or parts.username
+        if parts.scheme in (TCP, ROOM) and parts.hostname and parts.port is not None and not rest:
+            return parts.scheme, parts.hostname, parts.port
+    except ValueError:
+        pass  # a port that is none
+    raise InputError(
+        f"{option} {url}: must be {TCP}://HOST:PORT (real time) or {ROOM}://HOST:PORT (an emulated "
+        "room keeps the clock)"
+    )
+
+
+def secret(file: Path | None) -> bytes:
+    """Return the secret of a file, or of the environment.
+
+    Raises
+    ------
+    InputError
+        If there is none, or it is too short.
+    """
+    try:
+        given = os.environ.get(SECRET, "") if file is None else file.read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise InputError(f"--secret {file}: cannot be read ({error})") from None
+    known = given.strip().encode()
+    if len(known) < SHORTEST_SECRET:
+        where = f"environment variable {SECRET}" if file is None else f"--secret {file}"
+        raise InputError(
+            f"{where}: the secret shared with the robots, at least {SHORTEST_SECRET} characters"
+        )
+    return known
+
+
+def robots(layout: Layout, chosen: str | None, option: str = "--real") -> dict[str, int]:
+    """Return names and indices of the robots that are outside the simulation.
+
+    Parameters
+    ----------
+    layout
+        Robot 3 of it is called `robot-3`.
+    chosen
+        Their indices, separated by commas; None for all.
+
+    Raises
+    ------
+    InputError
+        If there is no such robot, or one is named twice.
+    """
+    indices = list(range(layout.robots)) if chosen is None else _indices(chosen)
+    if not indices or not set(indices) <= set(range(layout.robots)):
+        raise InputError(
+            f"{option} {chosen}: must be indices of robots, 0 to {layout.robots - 1}, separated by "
+            "commas"
+        )
+    if len(set(indices)) < len(indices):
+        raise InputError(f"{option} {chosen}: names a robot twice")
+    return {f"robot-{index}": index for index in indices}
+
+
+def tags(layout: Layout, file: Path | None) -> list[str]:
+    """Return the tag of every waypoint.
+
+    Parameters
+    ----------
+    layout
+        The warehouse.
+    file
+        One line `waypoint;tag` per waypoint; None for the tags W0, W1, ... of an emulated floor.
+
+    Raises
+    ------
+    InputError
+        If the file does not give each waypoint a tag of its own.
+    """
+    if file is None:
+        return [f"W{waypoint}" for waypoint in range(layout.waypoints)]
+    known: dict[int, str] = {}
+    for number, line in enumerate(_lines(file), start=1):
+        waypoint, _, tag = (part.strip() for part in line.partition(";"))
+        if not waypoint.isdecimal() or not tag or int(waypoint) >= layout.waypoints:
+            raise InputError(
+                f"--tags {file}: line {number}: must be WAYPOINT;TAG with a waypoint from 0 to "
+                f"{layout.waypoints - 1}"
+            )
+        if int(waypoint) in known or tag.upper() in known.values():
+            raise InputError(f"--tags {file}: line {number}: waypoint or tag for the second time")
+        known[int(waypoint)] = tag.upper()
+    missing = sorted(set(range(layout.waypoints)) - set(known))
+    if missing:
+        raise InputError(f"--tags {file}: waypoint {missing[0]} has no tag")
+    return [known[waypoint] for waypoint in range(layout.waypoints)]
+
+
+def _indices(chosen: str) -> list[int]:
+    parts = [part.strip() for part in chosen.split(",")]
+    return [int(part) if part.isdecimal() else -1 for part in parts]
+
+
+def _lines(file: Path) -> list[str]:
+    try:
+        text = file.read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise InputError(f"--tags {file}: cannot be read ({error})") from None
+    return [line for line in text.splitlines() if line.strip()]
