@@ -66,6 +66,13 @@ class Hub:
         Known to the robots.
     names
         Of the robots that may come.
+
+    Attributes
+    ----------
+    refused
+        Connections that ended before a session began.
+    dropped
+        Names of those whose session has ended and who have not come back.
     """
 
     def __init__(self, host: str, port: int, secret: bytes, names: Collection[str]) -> None:
@@ -78,6 +85,7 @@ class Hub:
         self._sessions: dict[str, _Connection] = {}
         self._inbox: list[tuple[str, Message]] = []
         self.refused = 0
+        self.dropped: set[str] = set()
 
     @property
     def address(self) -> tuple[str, int]:
@@ -202,6 +210,7 @@ class Hub:
         connection.name, connection.greeting = name, None
         connection.channel = Channel(guest.key, SERVER, ROBOT, now_us, guest.rest)
         self._sessions[name] = connection
+        self.dropped.discard(name)
         self._inbox.append((name, {"type": "connected"}))
         _log.info("%s: connected from %s", name, connection.peer)
 
@@ -211,6 +220,7 @@ class Hub:
         connection.socket.close()
         if connection.name and self._sessions.get(connection.name) is connection:
             del self._sessions[connection.name]
+            self.dropped.add(connection.name)
             self._inbox.append((connection.name, {"type": "gone"}))
             _log.warning("%s: session ended: %s", connection.name, why)
         else:
