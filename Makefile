@@ -60,8 +60,8 @@ soak: setup ## Run the long tests: whole days, comparisons with other systems
 	$(BIN)/python -m pytest -m slow -n $(JOBS)
 
 .PHONY: docs
-docs: $(VENV)/.docs ## Build the documentation: docs/_build/index.html
-	$(BIN)/sphinx-build -W --keep-going -q -E -b html docs docs/_build
+docs: $(VENV)/.docs ## Build the documentation: docs/_build/html/index.html
+	$(BIN)/sphinx-build -W --keep-going -q -E -b html docs docs/_build/html
 
 .PHONY: pictures
 pictures: setup ## Draw the pictures of the documentation (needs LaTeX and Poppler)
