@@ -10,7 +10,10 @@ use super::bcp::Bcp;
 use super::cbs::Cbs;
 use super::deadlock::Deadlocks;
 use super::far::{Evasion, Far};
+use super::od_id::OdId;
+use super::pas::Pas;
 use super::pbs::Pbs;
+use super::pibt::Pibt;
 use super::whca_persistent::WhcaPersistent;
 use super::whca_volatile::WhcaVolatile;
 use super::{Planner, Rhythm, TimeWindows};
@@ -109,6 +112,34 @@ pub fn build(settings: &Settings, network: &Network) -> Result<Box<dyn Planner>,
             labels: settings.count("labels")?,
             deadlocks: settings.deadlocks()?,
             table,
+        }),
+        "od-id" => Box::new(OdId {
+            rhythm: settings.rhythm()?,
+            window: settings.time("window_s")?,
+            wait: settings.time("wait_s")?,
+            nodes_per_agent: settings.count("nodes_per_robot")?,
+            nodes: settings.count("nodes")?,
+            choices: settings.count("choices")? as usize,
+            labels: settings.count("labels")?,
+            deadlocks: settings.deadlocks()?,
+            table,
+        }),
+        "pas" => Box::new(Pas {
+            rhythm: settings.rhythm()?,
+            window: settings.time("window_s")?,
+            wait: settings.time("wait_s")?,
+            priorities: settings.count("priorities")? as u32,
+            steps_per_agent: settings.count("steps_per_robot")?,
+            deadlocks: settings.deadlocks()?,
+            table,
+        }),
+        "pibt" => Box::new(Pibt {
+            rhythm: settings.rhythm()?,
+            detour: settings.time("detour_s")?,
+            choices: settings.count("choices")? as usize,
+            deadlocks: settings.deadlocks()?,
+            table,
+            since: BTreeMap::new(),
         }),
         other => return Err(format!("there is no planner {other}")),
     })

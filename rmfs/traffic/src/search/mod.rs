@@ -12,7 +12,10 @@
 //! Related: SIPP (Phillips, Likhachev 2011), stationary SIPP in MASS (Yan, Li 2025), free time
 //! windows (ter Mors 2010).
 
+mod next;
 mod runs;
+
+pub use next::Stop;
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
