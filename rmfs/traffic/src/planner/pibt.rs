@@ -117,6 +117,8 @@ impl Round<'_, '_> {
     fn choose(&mut self, index: usize, forbidden: &BTreeSet<u32>) -> bool {
         let own = self.scene.network.resource[self.agents[index].start as usize];
         self.waiting.remove(&own);
+        // what others have chosen meanwhile may be in the way of a run that was free before
+        let mut others_moved = false;
         for run in self.runs(index, forbidden).into_iter().take(self.choices) {
             let needed: Vec<u32> = run
                 .occupied(self.scene, &self.agents[index], FOREVER)
@@ -124,9 +126,10 @@ impl Round<'_, '_> {
                 .map(|held| held.resource)
                 .collect();
             let is_clear = needed.iter().all(|resource| !self.waiting.contains_key(resource));
-            if is_clear {
+            if is_clear && !others_moved {
                 return self.take(index, run);
             }
+            others_moved = true;
             let mut avoid = forbidden.clone();
             avoid.extend(&needed);
             let before = self.table.row(own).to_vec();
