@@ -207,11 +207,14 @@ impl Backward {
 
     /// The robot is at rest with any heading, turns and starts a run of known cost.
     fn start_here(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
+        let is_lift = network.is_lift(node);
         for before in 0..self.headings as u8 {
             let cost = cost + model.turning(before, heading);
             let index = network.index(node, before);
-            // nobody stops to go straight on, or arrives in a direction that no edge has
-            if before != heading && !network.behind(node, before).is_empty() {
+            // nobody stops to go straight on, or arrives in a direction that no edge has, but for
+            // those who come by elevator
+            let comes = before != heading && !network.behind(node, before).is_empty();
+            if comes || is_lift {
                 self.offer(network, node, before, 0, cost);
             } else {
                 let known = &mut self.straight[index];

@@ -57,6 +57,8 @@ pub struct Network {
     pub resource: Vec<u32>,
     pub resources: usize,
     pub stations: Vec<Vec<u32>>,
+    /// Which part of the graph a waypoint belongs to that elevators alone connect with others.
+    pub island: Vec<u32>,
     lifts_from: Vec<Vec<Lift>>,
     lifts_to: Vec<Vec<Lift>>,
     x: Vec<f64>,
@@ -106,6 +108,7 @@ impl Network {
         }
         let (before_start, before) = csr(&incoming);
         let zone = zones(&plan, nodes);
+        let island = islands(&plan, nodes);
         let axis_parallel = is_axis_parallel(&plan, &headings);
         let (columns, column) = distinct(&plan.x);
         let (rows, row) = distinct(&plan.y);
@@ -129,6 +132,7 @@ impl Network {
             resource,
             resources,
             stations: plan.stations,
+            island,
             lifts_from,
             lifts_to,
             x: plan.x,
@@ -187,6 +191,12 @@ impl Network {
     /// Elevator rides that end at `node`.
     pub fn lifts_to(&self, node: u32) -> impl Iterator<Item = &Lift> {
         self.lifts_to[node as usize].iter().filter(|lift| self.may_ride(lift))
+    }
+
+    /// All elevator rides that start on an island.
+    pub fn lifts_off(&self, island: u32) -> impl Iterator<Item = &Lift> {
+        let rides = self.lifts_from.iter().flatten();
+        rides.filter(move |lift| self.island[lift.from as usize] == island && self.may_ride(lift))
     }
 
     fn may_ride(&self, lift: &Lift) -> bool {
@@ -300,6 +310,28 @@ fn zones(plan: &Plan, nodes: usize) -> Vec<u32> {
         }
     }
     zone
+}
+
+/// Connected parts of the graph without elevators, each named by its first waypoint.
+fn islands(plan: &Plan, nodes: usize) -> Vec<u32> {
+    let mut neighbours = vec![Vec::new(); nodes];
+    for v in 0..nodes {
+        for &w in &plan.edge_target[plan.edge_start[v] as usize..plan.edge_start[v + 1] as usize] {
+            neighbours[v].push(w);
+            neighbours[w as usize].push(v as u32);
+        }
+    }
+    let mut island = vec![NONE; nodes];
+    for first in 0..nodes as u32 {
+        let mut open = vec![first];
+        while let Some(v) = open.pop() {
+            if island[v as usize] == NONE {
+                island[v as usize] = first;
+                open.extend_from_slice(&neighbours[v as usize]);
+            }
+        }
+    }
+    island
 }
 
 /// All waypoints of an elevator are one resource: its shaft holds one robot.

@@ -12,6 +12,7 @@
 //! Related: SIPP (Phillips, Likhachev 2011), stationary SIPP in MASS (Yan, Li 2025), free time
 //! windows (ter Mors 2010).
 
+mod lifts;
 mod next;
 mod runs;
 
@@ -114,6 +115,9 @@ const GUIDE_STEP: u32 = 1 << 19;
 /// How much later than the label's own estimate successors may arrive in its first scan.
 const SLACK: Us = 500_000;
 
+/// What is added to the bound of a way over elevators when the search looks for any good way.
+const HASTE: Us = 20_000_000;
+
 /// Marks an entry of the open list that stands for waiting at a label until the window ends.
 const STAY: u32 = 1 << 31;
 
@@ -181,6 +185,8 @@ struct Search<'a> {
     weight: Us,
     /// Nobody reaches the goal for good before this.
     goal_free: Us,
+    /// Nobody who is still where only elevators lead to the goal reaches it before this.
+    lift_free: Us,
 }
 
 impl<'a> Search<'a> {
@@ -199,7 +205,7 @@ impl<'a> Search<'a> {
         } else {
             table.row(network.resource[query.goal as usize]).last().map_or(0, |last| last.end)
         };
-        Self { memory, network, table, query, weight, goal_free }
+        Self { memory, network, table, query, weight, goal_free, lift_free: 0 }
     }
 
     fn run(&mut self, budget: u64) -> Outcome {
@@ -210,6 +216,14 @@ impl<'a> Search<'a> {
         };
         if query.goal != NONE && (self.goal_free == FOREVER || !self.guide_from_start()) {
             return Outcome::NoWay;
+        }
+        if query.goal != NONE {
+            // with an eye on speed, what leads to the ride at once comes first
+            let haste = if self.weight > STAGES[0].0 { HASTE } else { 0 };
+            self.lift_free = match self.lift_bound() {
+                0 => 0,
+                bound => bound + haste,
+            };
         }
         self.offer(Label {
             node: query.start,
@@ -335,8 +349,11 @@ impl<'a> Search<'a> {
     }
 
     /// Total time over a label: when it is reached, and a (weighted) bound of the rest.
-    fn estimate(&self, arrival: Us, to_go: Us) -> Us {
-        (arrival + to_go * self.weight / 4).max(self.goal_free)
+    fn estimate(&self, node: u32, arrival: Us, to_go: Us) -> Us {
+        let estimate = (arrival + to_go * self.weight / 4).max(self.goal_free);
+        let is_before = self.lift_free > estimate
+            && self.network.island[node as usize] == self.network.island[self.query.start as usize];
+        if is_before { self.lift_free } else { estimate }
     }
 
     /// Where the guide has not been yet, lets it search on until the label is known or can wait; a
@@ -349,7 +366,8 @@ impl<'a> Search<'a> {
             let reach = self.memory.guide.reach().saturating_add(GUIDE_STEP);
             self.memory.guide.advance(self.network, self.query.model, reach);
             let to_go = self.to_go(label.node, label.heading);
-            let sharper = to_go.map_or(FOREVER, |time| self.estimate(label.arrival, time));
+            let sharper =
+                to_go.map_or(FOREVER, |time| self.estimate(label.node, label.arrival, time));
             if sharper > estimate {
                 return Some(sharper);
             }
@@ -360,8 +378,8 @@ impl<'a> Search<'a> {
     /// Adds a label unless a known one is at least as good.
     fn offer(&mut self, mut label: Label) {
         let Some(to_go) = self.to_go(label.node, label.heading) else { return };
-        let estimate = self.estimate(label.arrival, to_go);
-        let stays = self.waits_until(&label).map(|end| self.estimate(end, to_go));
+        let estimate = self.estimate(label.node, label.arrival, to_go);
+        let stays = self.waits_until(&label).map(|end| self.estimate(label.node, end, to_go));
         let memory = &mut *self.memory;
         let newest = &mut memory.newest[self.network.index(label.node, label.heading)];
         if newest.0 != memory.stamp {

@@ -28,7 +28,8 @@ impl Search<'_> {
             here = (next, here.1 + length);
             self.memory.line.push(here);
             if let Some(to_go) = self.to_go(next, heading) {
-                let estimate = self.estimate(ready + Us::from(self.query.model.run(here.1)), to_go);
+                let estimate =
+                    self.estimate(next, ready + Us::from(self.query.model.run(here.1)), to_go);
                 if estimate > upto {
                     beyond = beyond.min(estimate);
                 } else if estimate > label.scanned
