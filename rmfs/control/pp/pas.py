@@ -21,7 +21,7 @@ class PasParameters(RollingParameters):
 
 
 class Pas(PathPlanning[PasParameters]):
-    """PAS: all ways grow together in the order of time; who has nothing left makes others go back."""
+    """PAS: all ways grow together in the order of time; who has none left makes others go back."""
 
     parameters_model = PasParameters
     planner = "pas"
