@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rmfs.traffic._core import Core, Motion
+from rmfs.traffic.planner import Conversation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rmfs.layout.model import Layout
+    from rmfs.traffic.planner import PathPlanner
 
 __all__ = [
     "TIME_WINDOWS",
@@ -140,11 +142,14 @@ class PlannerSettings(NamedTuple):
         All it has; durations in seconds, switches as 0 and 1.
     seed
         Of its random decisions.
+    code
+        The planner itself, if it is written in Python (`rmfs.traffic.planner`).
     """
 
     name: str
     parameters: dict[str, float]
     seed: int = 0
+    code: PathPlanner | None = None
 
 
 TIME_WINDOWS = PlannerSettings("time-windows", {"labels": EXPANSION_BUDGET})
@@ -215,7 +220,12 @@ class Traffic:
                 )
                 for kind in layout.robot_kinds
             ],
-            (planner.name, planner.parameters, planner.seed),
+            (
+                planner.name,
+                planner.parameters,
+                planner.seed,
+                planner.code and Conversation(planner.code),
+            ),
             EXPANSION_BUDGET,
             cost_table_bytes,
             record_trace,

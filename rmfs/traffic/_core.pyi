@@ -1,3 +1,4 @@
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,35 @@ class Motion:
     def position_at(self, time: float) -> float: ...
     def speed_at(self, time: float) -> float: ...
 
+class Way:
+    @property
+    def agent(self) -> int: ...
+    @property
+    def waypoint(self) -> int: ...
+    @property
+    def end_us(self) -> int: ...
+    @property
+    def total_us(self) -> int: ...
+    def moves(self) -> list[tuple[int, int, float, int, int, bool]]: ...
+
+class Search:
+    def __init__(
+        self,
+        agent: int,
+        around: Sequence[Way] = ...,
+        until_us: int | None = ...,
+        labels: int = ...,
+    ) -> None: ...
+
+class Along:
+    def __init__(self, agent: int, stops: Sequence[int], ready_us: int | None = ...) -> None: ...
+
+class Conflict:
+    def __init__(self, ways: Sequence[Way], until_us: int = ...) -> None: ...
+
+class Reserved:
+    def __init__(self, waypoint: int) -> None: ...
+
 class Core:
     def __init__(
         self,
@@ -32,7 +62,7 @@ class Core:
         lifts: list[tuple[int, int, int]],
         robots: list[tuple[int, float, int]],
         kinds: list[tuple[float, float, float, int, int]],
-        planner: tuple[str, dict[str, float], int],
+        planner: tuple[str, dict[str, float], int, object | None],
         budget: int,
         cost_bytes: int,
         with_trace: bool,

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, TypeVar
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
 
+import numpy as np
 import pydantic
 
 from rmfs.control.base import Controller, Parameters
@@ -11,7 +13,11 @@ from rmfs.control.problems import Problem
 from rmfs.traffic import PlannerSettings
 
 if TYPE_CHECKING:
+    from collections.abc import Generator
+
     from rmfs.control.choices import Choice
+    from rmfs.control.view import View
+    from rmfs.traffic.planner import Agent, Question, Way
 
 P = TypeVar("P", bound=Parameters)
 
@@ -40,6 +46,16 @@ class RollingParameters(Parameters):
     """How long a robot stands still before it hops to a random neighbour."""
 
 
+class PathPlanningInPython(PathPlanning[P]):
+    """Base of planners written in Python: they see traffic, and no view of the world."""
+
+    planner = "python"
+
+    @abstractmethod
+    def plan(self, now_us: int, agents: list[Agent]) -> Generator[Question, Any, list[Way | None]]:
+        """Plan ways for all robots that drive; see `rmfs.traffic.planner.PathPlanner`."""
+
+
 def planner_settings(choice: Choice, seed: int) -> PlannerSettings:
     """Pass a choice of controller on to the traffic core.
 
@@ -52,5 +68,10 @@ def planner_settings(choice: Choice, seed: int) -> PlannerSettings:
     """
     controller = choice.controller
     assert issubclass(controller, PathPlanning)
+    if issubclass(controller, PathPlanningInPython):
+        parameters = choice.parameters
+        rhythm = {key: float(getattr(parameters, key)) for key in ("period_s", "runs_granted")}
+        code = controller(parameters, cast("View", None), np.random.default_rng(seed))
+        return PlannerSettings(controller.planner, rhythm, seed, code)
     numbers = {key: float(value) for key, value in choice.parameters.model_dump().items()}
     return PlannerSettings(controller.planner, numbers, seed)

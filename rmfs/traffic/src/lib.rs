@@ -18,4 +18,6 @@ pub mod search;
 pub mod units;
 
 #[cfg(feature = "python")]
+mod planner_in_python;
+#[cfg(feature = "python")]
 mod python;

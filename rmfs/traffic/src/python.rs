@@ -8,11 +8,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::costs;
-use crate::fleet::{CutOff, Fleet, Rest, Shift};
+use crate::fleet::{CutOff, Event, Fleet, Rest, Shift};
 use crate::heat::Passages;
 use crate::kinematics::{Kind, Profile};
 use crate::network::{Lift, Network, Plan};
-use crate::planner::{Settings, build};
+use crate::planner::{Planner, Settings, build};
+use crate::planner_in_python::{Along, Conflict, Fault, PlannerInPython, Reserved, Search, Way};
 use crate::record::Totals;
 use crate::robot::Step;
 use crate::units::{Us, from_radians, to_radians};
@@ -79,6 +80,8 @@ impl Motion {
 #[pyclass]
 struct Core {
     fleet: Fleet,
+    /// What a planner written in Python has raised.
+    fault: Fault,
 }
 
 impl Core {
@@ -114,7 +117,7 @@ impl Core {
         lifts: Vec<(u32, u32, Us)>,
         robots: Vec<(u32, f64, u8)>,
         kinds: Vec<KindTuple>,
-        planner: (String, HashMap<String, f64>, u64),
+        planner: (String, HashMap<String, f64>, u64, Option<Py<PyAny>>),
         budget: u64,
         cost_bytes: usize,
         with_trace: bool,
@@ -140,11 +143,19 @@ impl Core {
         };
         let robots: Vec<(u32, u8, u8)> = robots.iter().map(place).collect();
         let kinds = kinds.into_iter().map(kind_of).collect();
-        let (name, parameters, seed) = planner;
+        let (name, parameters, seed, code) = planner;
         let settings = Settings { name, parameters: parameters.into_iter().collect(), seed };
-        let planner = build(&settings, &network).map_err(PyValueError::new_err)?;
+        let fault = Fault::default();
+        let planner: Result<Box<dyn Planner>, String> = match code {
+            None => build(&settings, &network),
+            Some(code) => settings.rhythm().map(|rhythm| -> Box<dyn Planner> {
+                let fault = Fault::clone(&fault);
+                Box::new(PlannerInPython::new(code, rhythm, network.resources, fault))
+            }),
+        };
+        let planner = planner.map_err(PyValueError::new_err)?;
         let fleet = Fleet::new(network, kinds, &robots, planner, budget, cost_bytes, with_trace);
-        fleet.map(|fleet| Self { fleet }).map_err(PyValueError::new_err)
+        fleet.map(|fleet| Self { fleet, fault }).map_err(PyValueError::new_err)
     }
 
     #[getter]
@@ -158,13 +169,14 @@ impl Core {
         self.fleet.command(robot, &steps).map_err(PyValueError::new_err)
     }
 
-    fn advance(&mut self, py: Python<'_>, until: Us) -> Vec<(Us, i64, u32, u32)> {
+    fn advance(&mut self, py: Python<'_>, until: Us) -> PyResult<Vec<(Us, i64, u32, u32)>> {
         let fleet = &mut self.fleet;
         let events = py.detach(|| fleet.advance(until));
-        events
-            .into_iter()
-            .map(|event| (event.time, event.kind as i64, event.robot, event.value))
-            .collect()
+        if let Some(error) = self.fault.lock().expect("nobody panics with it").take() {
+            return Err(error);
+        }
+        let plain = |event: Event| (event.time, event.kind as i64, event.robot, event.value);
+        Ok(events.into_iter().map(plain).collect())
     }
 
     fn rest_waypoint(&self, robot: usize) -> PyResult<u32> {
@@ -436,5 +448,5 @@ impl Core {
 #[pyo3(name = "_core")]
 mod core_module {
     #[pymodule_export]
-    use super::{Core, Motion};
+    use super::{Along, Conflict, Core, Motion, Reserved, Search, Way};
 }

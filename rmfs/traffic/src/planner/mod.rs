@@ -8,9 +8,9 @@
 
 mod bcp;
 mod cbs;
-mod conflicts;
+pub(crate) mod conflicts;
 mod deadlock;
-mod draft;
+pub(crate) mod draft;
 mod far;
 mod od_id;
 mod partial;

@@ -44,7 +44,11 @@ impl Settings {
         Ok(self.number(key)? != 0.0)
     }
 
-    fn rhythm(&self) -> Result<Rhythm, String> {
+    /// How often a rolling planner is asked, and how much of its wishes is granted at once.
+    ///
+    /// # Errors
+    /// If a parameter is missing.
+    pub fn rhythm(&self) -> Result<Rhythm, String> {
         Ok(Rhythm::Rolling {
             period: self.time("period_s")?,
             runs: self.count("runs_granted")?.max(1) as usize,
