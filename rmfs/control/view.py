@@ -50,6 +50,8 @@ class View:
         Travel times.
     end_s
         When the run ends.
+    time_of_day_s
+        What the clock of the warehouse shows at time zero.
     trackers
         What controllers count together (`rmfs.control.trackers`).
     """
@@ -60,6 +62,7 @@ class View:
         travel: Travel,
         end_s: float = inf,
         draw_past_orders: Callable[[], Sequence[OrderDraft]] = tuple,
+        time_of_day_s: float = 0.0,
     ) -> None:
         self._world = world
         self._draw_past_orders = draw_past_orders
@@ -81,6 +84,7 @@ class View:
         self.queued_need = world.queued_need
         self.travel = travel
         self.end_s = end_s
+        self.time_of_day_s = time_of_day_s
         self.trackers = Trackers(self)
 
     @property

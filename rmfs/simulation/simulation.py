@@ -101,6 +101,7 @@ class Simulation:
             travel,
             self.end_s,
             lambda: past_orders(scenario, self.world.skus, seed),
+            scenario.time_of_day_s,
         )
         self.panel = Panel(controllers, self.view, seed)
         self.dispatch = Dispatch(self)

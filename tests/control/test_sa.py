@@ -90,6 +90,16 @@ class TestWorkShifts:
             assert active(situation) == on
             assert rule.next_event_s() == change * HOUR
 
+    def test_the_clock_is_that_of_the_scenario(self, situation) -> None:
+        """At time zero it is 5 h: an hour later they are on, until 17 h after time zero."""
+        situation.view.time_of_day_s = 5 * HOUR
+        rule = situation.make(WorkShifts)
+        for now_h, on, change in ((0, [], 1), (1, list(range(8)), 17), (17, [], 25)):
+            situation.world.now_s = now_h * HOUR
+            decide(situation, rule)
+            assert active(situation) == on
+            assert rule.next_event_s() == change * HOUR
+
     def test_a_shift_that_changes_nothing_is_no_event(self, situation) -> None:
         """Off at 0 and at 5, on at 10 of 20 s: the change after 0 is at 10, after 10 at 20."""
         shifts = ({"at_s": 0, "on": False}, {"at_s": 5, "on": False}, {"at_s": 10, "on": True})

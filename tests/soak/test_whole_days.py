@@ -1,4 +1,4 @@
-"""24 simulated hours on the default layout with one, two and three times its robots."""
+"""24 simulated hours: one, two and three times the robots of the default layout, and shifts."""
 
 import pytest
 
@@ -35,3 +35,33 @@ def test_a_day(robots):
         in_hour = (trips["t1_us"] > begun) & (trips["t1_us"] <= ended)
         assert in_hour.sum() > 500, f"hour {hour}"
     assert run.footprint["units_score"] > 0.98
+
+
+HOUR_S = 3600.0
+
+
+@pytest.mark.slow
+def test_a_day_of_shifts():
+    """Stations work from 6 h to 22 h, and the doors are open then; at night all rests."""
+    controllers = [(["controllers", "sa", "name"], "work-shifts")]
+    run = rmfs.simulate("basic", "shifts", "default", seed=1, overrides=controllers)
+    made = tables.all_tables(run)
+    series, stations, bundles = made["series"], made["stations"], tables.Logs(run.recorder).bundles
+    # the run begins at 5 h, and is measured from 6 h on for a day
+    clock_h = (series["time_s"] / HOUR_S + 5.0).to_numpy()
+    assert (clock_h[0] * 60, clock_h[-1]) == (pytest.approx(6 * 60 + 1), pytest.approx(30.0))
+    # what was at a station is finished at the beginning of the night
+    night = clock_h > 23
+    assert series["units_picked"][night].sum() == 0
+    # the last minute ends when the doors open again
+    shut = (clock_h > 22) & (clock_h < 30)
+    assert series["orders_created"][shut].sum() == 0
+    assert series["bundles_created"][shut].sum() == 0
+    for hour in range(6, 22):
+        now = (clock_h > hour) & (clock_h <= hour + 1)
+        assert series["units_picked"][now].sum() > 100, hour
+    assert stations["active_share"].to_numpy() == pytest.approx(16 / 24, abs=1e-3)
+    # the bundles of 7 h come at once
+    by_minute = bundles.groupby((bundles["created_s"] // 60).astype(int)).size()
+    assert by_minute.idxmax() == 120
+    assert run.traffic.blocked() == []

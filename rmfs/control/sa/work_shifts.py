@@ -48,7 +48,10 @@ class WorkShiftsParameters(Parameters):
 
 
 class WorkShifts(StationActivation[WorkShiftsParameters]):
-    """Switches all stations together, at the same times of every loop (by default a day)."""
+    """Switches all stations together, at the same times of every loop (by default a day).
+
+    The clock is that of the scenario, which has shown its `time_of_day_s` at time zero.
+    """
 
     parameters_model = WorkShiftsParameters
 
@@ -64,8 +67,9 @@ class WorkShifts(StationActivation[WorkShiftsParameters]):
         return self._present()[1]
 
     def _present(self) -> tuple[bool, float]:
-        """Whether stations are on now, and when that changes."""
-        given, now_s = self.parameters, self.view.now_s
+        """Whether stations are on now, and at what simulated time that changes."""
+        given, gone_s = self.parameters, self.view.time_of_day_s
+        now_s = self.view.now_s + gone_s
         states = {shift.on for shift in given.shifts}
         begin_s = now_s // given.loop_s * given.loop_s
         starts = [
@@ -76,4 +80,4 @@ class WorkShifts(StationActivation[WorkShiftsParameters]):
         on = [state for at_s, state in starts if at_s <= now_s][-1]
         if len(states) == 1:
             return on, inf
-        return on, next(at_s for at_s, state in starts if at_s > now_s and state != on)
+        return on, next(at_s for at_s, state in starts if at_s > now_s and state != on) - gone_s

@@ -29,7 +29,8 @@ class Scenario(Block):
     duration_s: Positive = Field(description="s, measured, after the warm-up")
     warmup_s: NotNegative = Field(3600.0, description="s simulated first and not measured")
     time_of_day_s: NotNegative = Field(
-        0.0, description="s of all cycles (profiles, batches, down periods) gone at time zero"
+        0.0,
+        description="s of all cycles (profiles, batches, down times, shifts) gone at time zero",
     )
     skus: Skus = Field(GeneratedSkus(), description="the SKUs, and how often each is ordered")
     orders: AnyOrders = Field(Orders(), description="what an order contains")
