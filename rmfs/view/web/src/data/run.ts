@@ -30,7 +30,8 @@ export class Run {
     this.layout = readLayout(container);
     const tracks = readTracks(container);
     this.motion = new Motion(this.layout, tracks);
-    this.places = new PodPlaces(this.layout, tracks);
+    this.places = new PodPlaces(this.layout);
+    this.places.extend(tracks, Number.POSITIVE_INFINITY);
     this.events.extend(container, header.details);
     this.robots = new Robots(this.layout, this.motion, this.events);
     this.stock = new Stock(this.layout, this.events);

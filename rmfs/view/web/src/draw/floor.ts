@@ -11,14 +11,14 @@ import {
   LineSegments,
   Mesh,
   MeshBasicMaterial,
-  MeshLambertMaterial,
   PlaneGeometry,
 } from "three";
 import type { Layout } from "../data/layout";
-import { Instances } from "./instances";
+import { type Bodies, bodies } from "./bodies";
 import { label } from "./labels";
 import { GROUND, type Theme } from "./palette";
 import type { Placement } from "./placement";
+import { shaded, shadedMaterial } from "./shapes";
 
 const FLAT = { x: 1, y: 1, z: 1 };
 
@@ -28,7 +28,7 @@ export class Floor {
   /** The stations' bodies, in the order of the stations. */
   readonly stations: Mesh[] = [];
   private readonly tiers: Group[];
-  private readonly zones: Instances[] = [];
+  private readonly zones: Bodies[] = [];
 
   constructor(
     private readonly layout: Layout,
@@ -93,13 +93,13 @@ export class Floor {
     colour: string,
     side: number,
     strength: number,
-  ): Instances {
+  ): Bodies {
     const { x, y, pitch_m } = this.layout;
     const here: number[] = [];
     for (let v = 0; v < x.length; v++) {
       if (wanted[v] && this.layout.tier[v] === tier) here.push(v);
     }
-    const cells = new Instances(
+    const cells = bodies(
       new PlaneGeometry(side * pitch_m, side * pitch_m),
       new MeshBasicMaterial(),
       here.length,
@@ -118,8 +118,8 @@ export class Floor {
       const { kind, waypoint, radius_m } = station;
       const colour = this.colour(kind === "pick" ? "pick_station" : "replenishment_station");
       const body = new Mesh(
-        new CylinderGeometry(radius_m * 1.6, radius_m * 1.6, 0.06, 24).rotateX(Math.PI / 2),
-        new MeshLambertMaterial({ color: colour }),
+        shaded(new CylinderGeometry(radius_m * 1.6, radius_m * 1.6, 0.06, 24).rotateX(Math.PI / 2)),
+        shadedMaterial(colour),
       );
       body.position.set(x[waypoint], y[waypoint], 0.02);
       this.stations.push(body);
@@ -137,8 +137,8 @@ export class Floor {
     const side = 0.9 * pitch_m;
     for (const waypoint of header.elevators.flat()) {
       const body = new Mesh(
-        new BoxGeometry(side, side, 0.05),
-        new MeshLambertMaterial({ color: this.colour("elevator") }),
+        shaded(new BoxGeometry(side, side, 0.05)),
+        shadedMaterial(this.colour("elevator")),
       );
       body.position.set(x[waypoint], y[waypoint], 0);
       this.tiers[tier[waypoint]].add(body);

@@ -2,7 +2,7 @@
 
 import { Color, MeshBasicMaterial, PlaneGeometry } from "three";
 import type { Run } from "../data/run";
-import { Instances } from "./instances";
+import { type Bodies, bodies } from "./bodies";
 import { amount, logShare, type Theme } from "./palette";
 import type { Placement } from "./placement";
 
@@ -12,13 +12,13 @@ export interface Range {
 }
 
 export class HeatSquares {
-  readonly squares: Instances;
+  readonly squares: Bodies;
   private readonly colour = new Color();
 
   constructor(private readonly run: Run) {
     const { x, pitch_m } = run.layout;
     const square = new PlaneGeometry(pitch_m, pitch_m);
-    this.squares = new Instances(square, new MeshBasicMaterial(), x.length);
+    this.squares = bodies(square, new MeshBasicMaterial(), x.length);
     this.squares.mesh.visible = false;
   }
 

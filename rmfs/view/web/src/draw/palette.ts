@@ -1,7 +1,10 @@
 /** Colours: those of the layout pictures, Okabe and Ito's for kinds, magma for amounts. */
 
-import { Color } from "three";
+import { Color, ColorManagement } from "three";
 import { STATES, TASKS } from "../data/robots";
+
+// colours reach the screen as they are written here: nothing is lit, so nothing is converted
+ColorManagement.enabled = false;
 
 export type Theme = "light" | "dark";
 

@@ -13,6 +13,8 @@ export class Placement {
   readonly x: number[];
   readonly z: number[];
   readonly shown: boolean[];
+  /** Whether there is a floor above another. */
+  readonly hasUpperFloors: boolean;
   /** Extent of what is drawn. */
   readonly box: { x: number; y: number; z: number; width: number; depth: number };
 
@@ -33,6 +35,7 @@ export class Placement {
       mode === "3d" && !alone ? Math.max(height_m, number * LEAST_HEIGHT_M) : 0,
     );
     this.shown = tiers.map((_, number) => !alone || number === tier);
+    this.hasUpperFloors = mode === "3d" && !alone && tiers.length > 1;
     const visible = tiers.map((size, number) => ({ size, number })).filter(this.isShown);
     const last = visible[visible.length - 1];
     const right = Math.max(...visible.map(({ size, number }) => this.x[number] + size.length_m));

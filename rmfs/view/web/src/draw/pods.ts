@@ -1,11 +1,12 @@
 /** Pods: boxes at their places or on robots, coloured by what is asked. */
 
-import { BoxGeometry, Color, MeshLambertMaterial } from "three";
+import { BoxGeometry, Color, PlaneGeometry } from "three";
 import type { Pose } from "../data/motion";
 import type { Run } from "../data/run";
-import { Instances } from "./instances";
+import { type Bodies, bodies } from "./bodies";
 import { amount, logShare, type Theme } from "./palette";
-import type { Placement } from "./placement";
+import type { Mode, Placement } from "./placement";
+import { shaded, shadedMaterial } from "./shapes";
 
 export type PodMode = "plain" | "fill" | "popularity" | "age";
 
@@ -18,44 +19,38 @@ const LEGS_M = 0.38;
 const LIFTED_M = 0.08;
 
 export class PodBodies {
-  readonly bodies: Instances;
+  readonly bodies: Bodies;
   private readonly side: number;
   private readonly plain: Color;
   private readonly colour = new Color();
-  /** Where each pod was drawn last; NaN if it has to be drawn anew. */
-  private readonly drawn: Float64Array;
+  private readonly shapes = {
+    "2d": shaded(new PlaneGeometry(1, 1)),
+    "3d": shaded(new BoxGeometry(1, 1, 1)),
+  };
+  /** Up to when the stored pods are drawn; NaN if all have to be drawn anew. */
+  private drawn_us = Number.NaN;
 
   constructor(private readonly run: Run) {
     const { layout } = run;
-    const count = layout.podWaypoint.length;
-    const box = new BoxGeometry(1, 1, 1);
-    this.bodies = new Instances(box, new MeshLambertMaterial(), count);
+    this.bodies = bodies(this.shapes["2d"], shadedMaterial(), layout.podWaypoint.length);
     this.side = Math.min(2 * layout.header.pod_radius_m, 0.85 * layout.pitch_m);
     this.plain = new Color(layout.header.colours.storage);
-    this.drawn = new Float64Array(count).fill(Number.NaN);
   }
 
-  /** Draws all pods anew at the next occasion. */
-  forget(): void {
-    this.drawn.fill(Number.NaN);
+  /** Gives the pods the shape of the plan or of space; they are drawn anew at the next occasion. */
+  shape(mode: Mode): void {
+    this.bodies.reshape(this.shapes[mode]);
+    this.drawn_us = Number.NaN;
   }
 
   /** Puts every pod where it is; only those that are carried or have moved are touched. */
   place(time_us: number, poses: Pose[], placement: Placement): void {
-    const { layout, places } = this.run;
-    places.of.forEach((steps, pod) => {
-      const where = steps.at(time_us);
-      if (where < 0) {
-        const { x, y, z, shown } = placement.of(poses[-1 - where]);
-        this.put(pod, { x, y, z: z + LIFTED_M }, shown, placement);
-        this.drawn[pod] = Number.NaN;
-      } else if (this.drawn[pod] !== where) {
-        const tier = layout.tier[where];
-        const at = { x: layout.x[where] + placement.x[tier], y: layout.y[where] };
-        this.put(pod, { ...at, z: placement.z[tier] }, placement.shown[tier], placement);
-        this.drawn[pod] = where;
-      }
-    });
+    const { places } = this.run;
+    const put = (pod: number) => this.put(pod, time_us, poses, placement);
+    if (Number.isNaN(this.drawn_us)) for (let pod = 0; pod < places.of.length; pod++) put(pod);
+    else places.moved(this.drawn_us, time_us, put);
+    for (const { pod } of poses) if (pod >= 0) put(pod);
+    this.drawn_us = time_us;
   }
 
   paint(time_us: number, mode: PodMode, theme: Theme): void {
@@ -65,9 +60,24 @@ export class PodBodies {
     }
   }
 
-  private put(
+  private put(pod: number, time_us: number, poses: Pose[], placement: Placement): void {
+    const where = this.run.places.of[pod].at(time_us);
+    if (where < 0) {
+      const { x, y, z, shown } = placement.of(poses[-1 - where]);
+      this.draw(pod, x, y, z + LIFTED_M, shown, placement);
+      return;
+    }
+    const { x, y, tier } = this.run.layout;
+    const floor = tier[where];
+    const left = x[where] + placement.x[floor];
+    this.draw(pod, left, y[where], placement.z[floor], placement.shown[floor], placement);
+  }
+
+  private draw(
     pod: number,
-    floor: { x: number; y: number; z: number },
+    x: number,
+    y: number,
+    floor: number,
     shown: boolean,
     placement: Placement,
   ): void {
@@ -76,9 +86,9 @@ export class PodBodies {
       return;
     }
     const flat = placement.mode === "2d";
-    const height = flat ? 0.05 : HEIGHT_M;
-    const z = floor.z + (flat ? 0.05 : LEGS_M + HEIGHT_M / 2);
-    this.bodies.place(pod, { ...floor, z }, { x: this.side, y: this.side, z: height });
+    const z = floor + (flat ? 0.05 : LEGS_M + HEIGHT_M / 2);
+    const height = flat ? 1 : HEIGHT_M;
+    this.bodies.place(pod, { x, y, z }, { x: this.side, y: this.side, z: height });
   }
 
   private colourOf(pod: number, time_us: number, mode: PodMode, theme: Theme): Color {

@@ -2,17 +2,19 @@
 
 import {
   BoxGeometry,
+  CircleGeometry,
   Color,
   CylinderGeometry,
   Group,
   MeshBasicMaterial,
-  MeshLambertMaterial,
+  PlaneGeometry,
 } from "three";
-import type { Pose } from "../data/motion";
+import { Piece, type Pose } from "../data/motion";
 import type { Run } from "../data/run";
-import { Instances } from "./instances";
+import { type Bodies, bodies } from "./bodies";
 import { amount, LOAD_COLOURS, STATE_COLOURS, TASK_COLOURS, type Theme } from "./palette";
 import type { Placement } from "./placement";
+import { shaded, shadedMaterial } from "./shapes";
 
 export type RobotMode = "task" | "state" | "load" | "delay";
 
@@ -21,22 +23,36 @@ export const LONGEST_DELAY_S = 120;
 
 const HEIGHT_M = 0.3;
 const ABOVE_PODS_M = 0.4;
+const STANDING = new Set<number>([Piece.HOLD, Piece.LIFT, Piece.SET_DOWN]);
 
 export class RobotBodies {
   readonly group = new Group();
-  readonly bodies: Instances;
-  private readonly noses: Instances;
+  readonly bodies: Bodies;
+  private readonly noses: Bodies;
   private readonly radius: Float64Array;
+  private readonly shapes = {
+    "2d": {
+      body: shaded(new CircleGeometry(1, 20)),
+      nose: new PlaneGeometry(1, 0.3).translate(0.5, 0, 0.5),
+    },
+    "3d": {
+      body: shaded(new CylinderGeometry(1, 1, 1, 20).rotateX(Math.PI / 2)),
+      nose: new BoxGeometry(1, 0.3, 1).translate(0.5, 0, 0),
+    },
+  };
+  /** The row of the trace with which each robot was drawn last, if it stood; -1 if it did not. */
+  private readonly stood: Int32Array;
+  private placement: Placement | undefined;
   private readonly colour = new Color();
   private readonly kinds: Record<"task" | "state" | "load", Color[]>;
 
   constructor(private readonly run: Run) {
     const { robotKind, header } = run.layout;
     this.radius = Float64Array.from(robotKind, (kind) => header.robot_kinds[kind].radius_m);
-    const disc = new CylinderGeometry(1, 1, 1, 20).rotateX(Math.PI / 2);
-    this.bodies = new Instances(disc, new MeshLambertMaterial(), robotKind.length);
-    const nose = new BoxGeometry(1, 0.3, 1).translate(0.5, 0, 0);
-    this.noses = new Instances(nose, new MeshBasicMaterial({ color: "#111111" }), robotKind.length);
+    const { body, nose } = this.shapes["2d"];
+    this.bodies = bodies(body, shadedMaterial(), robotKind.length);
+    this.noses = bodies(nose, new MeshBasicMaterial({ color: "#111111" }), robotKind.length);
+    this.stood = new Int32Array(robotKind.length).fill(-1);
     this.group.add(this.bodies.mesh, this.noses.mesh);
     const colours = (all: string[]) => all.map((hex) => new Color(hex));
     this.kinds = {
@@ -46,8 +62,24 @@ export class RobotBodies {
     };
   }
 
+  /** Puts all robots where they are; those that stand where they stood are not touched. */
+  place(poses: Pose[], placement: Placement): void {
+    if (this.placement !== placement) {
+      this.placement = placement;
+      this.stood.fill(-1);
+      this.bodies.reshape(this.shapes[placement.mode].body);
+      this.noses.reshape(this.shapes[placement.mode].nose);
+    }
+    poses.forEach((pose, robot) => {
+      const stands = STANDING.has(pose.kind);
+      if (stands && this.stood[robot] === pose.row) return;
+      this.stood[robot] = stands ? pose.row : -1;
+      this.put(robot, pose, placement);
+    });
+  }
+
   /** Puts a robot where it is; in the plan above its pod, in space beneath. */
-  place(robot: number, pose: Pose, placement: Placement): void {
+  private put(robot: number, pose: Pose, placement: Placement): void {
     const { x, y, z, shown } = placement.of(pose);
     if (!shown) {
       this.bodies.hide(robot);

@@ -1,11 +1,12 @@
 /** The canvas, the cameras and the light: a plan seen from above, or a view in space. */
 
 import {
-  AmbientLight,
   type Camera,
   Color,
-  DirectionalLight,
+  Group,
+  LinearSRGBColorSpace,
   MOUSE,
+  type Object3D,
   OrthographicCamera,
   PerspectiveCamera,
   Raycaster,
@@ -16,6 +17,8 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Background } from "./background";
+import { inSoftware } from "./graphics";
 import { GROUND, type Theme } from "./palette";
 import type { Placement } from "./placement";
 
@@ -26,8 +29,11 @@ const SHARPEST = 2;
 export type CameraState = number[];
 
 export class Stage {
+  /** What moves. */
   readonly scene = new Scene();
   readonly renderer: WebGLRenderer;
+  private readonly background: Background;
+  private readonly ground = new Group();
   private readonly plan = new OrthographicCamera(-1, 1, 1, -1, 0.1, FAR_M);
   private readonly space = new PerspectiveCamera(45, 1, 0.5, FAR_M);
   private readonly planControls: OrbitControls;
@@ -43,13 +49,13 @@ export class Stage {
   ) {
     this.renderer = new WebGLRenderer({
       canvas,
-      antialias: true,
+      antialias: !inSoftware(),
       powerPreference: "high-performance",
     });
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, SHARPEST));
-    const sun = new DirectionalLight("#ffffff", 1.6);
-    sun.position.set(-30, -60, 100);
-    this.scene.add(new AmbientLight("#ffffff", 1.9), sun);
+    this.renderer.setPixelRatio(inSoftware() ? 1 : Math.min(window.devicePixelRatio, SHARPEST));
+    this.renderer.outputColorSpace = LinearSRGBColorSpace;
+    this.renderer.autoClear = false;
+    this.background = new Background(this.renderer, !inSoftware());
     this.space.up.set(0, 0, 1);
     this.planControls = new OrbitControls(this.plan, canvas);
     this.planControls.enableRotate = false;
@@ -77,7 +83,8 @@ export class Stage {
   }
 
   setTheme(theme: Theme): void {
-    this.scene.background = new Color(GROUND[theme].back);
+    this.renderer.setClearColor(new Color(GROUND[theme].back));
+    this.background.forget();
   }
 
   /** Shows the tiers as placed, from a point that overlooks all of them. */
@@ -156,7 +163,26 @@ export class Stage {
     return caster;
   }
 
+  /** Puts what stands still on the stage in the place of what stood there. */
+  lay(...bodies: Object3D[]): void {
+    this.ground.clear();
+    this.ground.add(...bodies);
+    this.background.forget();
+  }
+
+  /** Takes note that what stands still looks different now. */
+  relay(): void {
+    this.background.forget();
+  }
+
   render(): void {
+    this.renderer.info.autoReset = false;
+    this.renderer.info.reset();
+    // an upper floor covers what is below it, so it must be drawn after that
+    const beneath = this.placement?.hasUpperFloors !== true;
+    (beneath ? this.background.scene : this.scene).add(this.ground);
+    this.renderer.clear();
+    if (beneath) this.background.draw(this.camera);
     this.renderer.render(this.scene, this.camera);
   }
 }

@@ -13,8 +13,8 @@ import { Stage } from "../draw/stage";
 import { h } from "./dom";
 import type { Chosen, Selection, Store, ViewState } from "./state";
 
-/** Colours of pods change slowly: they are looked up anew after so much wall time, or a jump. */
-const REPAINT_MS = 400;
+/** Colours change seldom: they are looked up anew after so much wall time, or a jump. */
+const REPAINT_MS = 200;
 const HIT_M = 1.5;
 /** A click that moved further was a drag of the camera. */
 const DRAGGED_PX = 4;
@@ -63,8 +63,7 @@ export class Pane {
     const { mode, tier, theme } = store.state;
     this.placement = new Placement(run.layout, mode, tier);
     this.floor = new Floor(run.layout, theme);
-    this.stage.scene.add(this.floor.group, this.robots.group, this.pods.bodies.mesh);
-    this.stage.scene.add(this.heat.squares.mesh, this.paths.lines, this.ring);
+    this.stage.scene.add(this.robots.group, this.pods.bodies.mesh, this.paths.lines, this.ring);
     this.dress();
     this.arrange();
     store.listen((names) => this.react(names));
@@ -83,6 +82,7 @@ export class Pane {
     const { heat, theme } = this.store.state;
     this.heat.squares.mesh.visible = heat !== "off";
     if (this.counts !== undefined) this.heat.draw(this.counts, range, this.placement, theme);
+    this.stage.relay();
   }
 
   /** Looks colours up anew in the next frame. */
@@ -96,11 +96,13 @@ export class Pane {
     const paint = now_ms - this.painted_ms > REPAINT_MS;
     this.poses.forEach((pose, robot) => {
       this.run.motion.pose(robot, time_us, pose);
-      this.robots.place(robot, pose, this.placement);
-      this.robots.paint(robot, pose, time_us, state.robots, state.theme);
     });
+    this.robots.place(this.poses, this.placement);
     this.pods.place(time_us, this.poses, this.placement);
     if (paint) {
+      this.poses.forEach((pose, robot) => {
+        this.robots.paint(robot, pose, time_us, state.robots, state.theme);
+      });
       this.pods.paint(time_us, state.pods, state.theme);
       this.painted_ms = now_ms;
     }
@@ -112,18 +114,21 @@ export class Pane {
   private react(names: ReadonlySet<keyof ViewState>): void {
     if (names.has("theme")) this.dress();
     if (names.has("mode") || names.has("tier")) this.arrange();
-    if (names.has("zones")) this.floor.showZones(this.store.state.zones);
-    if (["theme", "pods"].some((name) => names.has(name as keyof ViewState))) this.repaint();
+    if (names.has("zones")) {
+      this.floor.showZones(this.store.state.zones);
+      this.stage.relay();
+    }
+    if (["theme", "pods", "robots"].some((name) => names.has(name as keyof ViewState)))
+      this.repaint();
     this.changed();
   }
 
   private dress(): void {
     const { theme, zones } = this.store.state;
-    this.stage.scene.remove(this.floor.group);
     this.floor = new Floor(this.run.layout, theme);
     this.floor.arrange(this.placement);
     this.floor.showZones(zones);
-    this.stage.scene.add(this.floor.group);
+    this.stage.lay(this.floor.group, this.heat.squares.mesh);
     this.stage.setTheme(theme);
   }
 
@@ -131,7 +136,8 @@ export class Pane {
     const { mode, tier } = this.store.state;
     this.placement = new Placement(this.run.layout, mode, tier);
     this.floor.arrange(this.placement);
-    this.pods.forget();
+    this.stage.relay();
+    this.pods.shape(mode);
     this.stage.overlook(this.placement);
   }
 
@@ -188,16 +194,12 @@ export class Pane {
     const caster = this.stage.ray(clientX, clientY);
     const hits: { what: Chosen; index: number; away: number; rank: number }[] = [];
     const bodies = [
-      { what: "robot", mesh: this.robots.bodies.mesh },
-      { what: "pod", mesh: this.pods.bodies.mesh },
+      { what: "robot", drawn: this.robots.bodies },
+      { what: "pod", drawn: this.pods.bodies },
     ] as const;
-    for (const { what, mesh } of bodies) {
-      mesh.boundingSphere = null;
-      const [first] = caster.intersectObject(mesh, false);
-      if (first?.instanceId !== undefined) {
-        const rank = what === "robot" ? 0 : 2;
-        hits.push({ what, index: first.instanceId, away: first.distance, rank });
-      }
+    for (const { what, drawn } of bodies) {
+      const struck = drawn.struck(caster);
+      if (struck !== undefined) hits.push({ what, ...struck, rank: what === "robot" ? 0 : 2 });
     }
     const [station] = caster.intersectObjects(this.floor.stations, false);
     if (station !== undefined) {

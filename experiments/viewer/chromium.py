@@ -1,0 +1,77 @@
+"""Opening the viewer in Chromium without a window, drawn in software: the same on every machine."""
+
+from __future__ import annotations
+
+import shutil
+import threading
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from playwright.sync_api import Browser, Page
+
+    from rmfs.view.server import Server
+
+PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
+SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+"""Draws without a graphics card; the sandbox needs rights that a container may not have."""
+
+PATIENCE_MS = 120_000
+
+
+def installed() -> str | None:
+    """Return the Chromium to use: the system's, or that of playwright; nothing without either."""
+    try:
+        from playwright.sync_api import sync_playwright
+    except ImportError:
+        return None
+    for name in PROGRAMS:
+        found = shutil.which(name)
+        if found is not None:
+            return found
+    with sync_playwright() as playwright:
+        own = playwright.chromium.executable_path
+    return own if Path(own).is_file() else None
+
+
+@contextmanager
+def chromium() -> Iterator[Browser]:
+    """Yield a browser without a window.
+
+    Raises
+    ------
+    InputError
+        If playwright or Chromium is not installed.
+    """
+    program = installed()
+    if program is None:
+        raise InputError(
+            "needs Chromium and playwright: pip install 'rmfs[browser]', then the package chromium "
+            "of the system or `playwright install chromium`"
+        )
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=SOFTWARE)
+        yield browser
+        browser.close()
+
+
+@contextmanager
+def served(server: Server) -> Iterator[str]:
+    """Serve beside this thread; yields the address."""
+    with server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield server.url
+        server.shutdown()
+
+
+def show(page: Page, url: str) -> None:
+    """Go to an address of the viewer and wait for its first frame."""
+    page.goto(url)
+    page.wait_for_function("window.rmfs?.frames > 0", timeout=PATIENCE_MS)

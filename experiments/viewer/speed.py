@@ -1,0 +1,113 @@
+"""How many frames a second the viewer draws: in software, with the load of the machine beside."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from experiments.viewer.chromium import chromium, served, show
+from rmfs.measure import load_run
+from rmfs.view.replay import replay_server
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from playwright.sync_api import Browser, CDPSession, Page
+
+WIDTH, HEIGHT = 1280, 720
+SECONDS = 5.0
+
+VIEWS = {
+    "plan": "mode: '2d'",
+    "plan, states, fill and paths": "mode: '2d', robots: 'state', pods: 'fill', paths: true",
+    "plan, heat map": "mode: '2d', heat: 'visits'",
+    "space": "mode: '3d'",
+}
+"""What is shown, as changes of the page's state."""
+
+FRAMES = """seconds => new Promise(done => {
+  const { rmfs } = window;
+  const frames = rmfs.frames, from = performance.now();
+  const look = now => {
+    const passed = (now - from) / 1000;
+    if (passed < seconds) requestAnimationFrame(look);
+    else done((rmfs.frames - frames) / passed);
+  };
+  requestAnimationFrame(look);
+})"""
+
+
+@dataclass(frozen=True, slots=True)
+class Speed:
+    """What one view needs.
+
+    Attributes
+    ----------
+    frames_per_s
+        Drawn while the run plays.
+    script_ms
+        Time of the page's own code per frame, which does not depend on the graphics.
+    draw_calls
+        Of one frame.
+    load
+        Mean number of busy processes of the machine within the last minute.
+    """
+
+    view: str
+    robots: int
+    pods: int
+    frames_per_s: float
+    script_ms: float
+    draw_calls: int
+    load: float
+
+
+def table(run: Path, seconds: float = SECONDS) -> pd.DataFrame:
+    """Measure all views of a run, one row each.
+
+    Parameters
+    ----------
+    run
+        Run folder with a trace.
+    seconds
+        Wall time per view.
+    """
+    folder = load_run(run)
+    robots, pods = folder.layout.robots, folder.layout.pods
+    with served(replay_server([folder])) as url, chromium() as browser:
+        measured = [
+            Speed(view, robots, pods, *_measure(browser, url, change, seconds), os.getloadavg()[0])
+            for view, change in VIEWS.items()
+        ]
+    return pd.DataFrame([asdict(one) for one in measured])
+
+
+def _measure(
+    browser: Browser, url: str, change: str, seconds: float
+) -> tuple[float, float, int]:
+    # waiting for a function of the page is what its policy forbids
+    context = browser.new_context(viewport={"width": WIDTH, "height": HEIGHT}, bypass_csp=True)
+    page = context.new_page()
+    session = context.new_cdp_session(page)
+    session.send("Performance.enable")
+    show(page, url)
+    page.evaluate(f"rmfs.store.set({{ time_s: 120, speed: 10, playing: true, {change} }})")
+    page.evaluate(FRAMES, 1.0)
+    before, begun = _script_s(session), _frames(page)
+    rate = float(page.evaluate(FRAMES, seconds))
+    script_s, frames = _script_s(session) - before, _frames(page) - begun
+    calls = int(page.evaluate("rmfs.panes[0].stage.renderer.info.render.calls"))
+    context.close()
+    return rate, 1000 * script_s / max(frames, 1), calls
+
+
+def _frames(page: Page) -> int:
+    return int(page.evaluate("rmfs.frames"))
+
+
+def _script_s(session: CDPSession) -> float:
+    metrics = session.send("Performance.getMetrics")["metrics"]
+    return float(next(m["value"] for m in metrics if m["name"] == "ScriptDuration"))
