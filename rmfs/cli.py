@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import importlib
 import sys
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -186,6 +186,24 @@ def run(
             "--allow-not-well-formed", help="Run a layout in which robots may block each other."
         ),
     ] = False,
+    live: Annotated[
+        bool, typer.Option("--live", help="Show the run in the browser while it happens.")
+    ] = False,
+    speed: Annotated[
+        float | None,
+        typer.Option(
+            help="With --live: simulated seconds per second to begin with. "
+            "[default: as fast as it goes]",
+            show_default=False,
+        ),
+    ] = None,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="With --live: of the page; 0: any free.")
+    ] = 0,
+    open_: Annotated[
+        bool, typer.Option("--open/--no-open", help="With --live: open a browser.")
+    ] = True,
+    await_page: Annotated[bool, typer.Option("--await-page", hidden=True)] = False,
 ) -> None:
     """Simulate a warehouse and write a run folder."""
     from rmfs.config import parse_override
@@ -196,7 +214,25 @@ def run(
     inputs = {"layout": layout, "scenario": scenario, "controllers": controllers}
     target = out or Path("results") / default_name(inputs, seed)
     streams = None if record is None else StreamRecorder()
-    with reserved(target) as folder:
+    if speed is not None and not live:
+        raise InputError("--speed: only with --live")
+    with ExitStack() as stack:
+        watching: dict[str, Any] = {}
+        if live:
+            from rmfs.view.commands import watched
+
+            watcher = stack.enter_context(
+                watched(
+                    inputs,
+                    target.name,
+                    port=port,
+                    speed=speed,
+                    open_browser=open_,
+                    await_page=await_page,
+                )
+            )
+            watching = {"events": watcher.events, "observers": [watcher]}
+        folder = stack.enter_context(reserved(target))
         done = simulated(
             inputs,
             seed=seed,
@@ -205,6 +241,7 @@ def run(
             trace=trace or check,
             streams=streams,
             allow_not_well_formed=allow_not_well_formed,
+            **watching,
         )
         if record is not None and streams is not None:
             step("writing the streams")
@@ -283,9 +320,13 @@ def report(
 @app.command()
 def view(
     runs: Annotated[
-        list[Path],
-        typer.Argument(metavar="RUN [RUN]", help="Run folder with a trace; two side by side."),
-    ],
+        list[Path] | None,
+        typer.Argument(
+            metavar="[RUN [RUN]]",
+            help="Run folder with a trace; two side by side; none: a form that starts a run.",
+            show_default=False,
+        ),
+    ] = None,
     export: Annotated[
         Path | None,
         typer.Option(help="Write one HTML file to send instead.", show_default=False),
@@ -297,7 +338,9 @@ def view(
     from rmfs.view.commands import export_runs, serve_runs
 
     if export is None:
-        serve_runs(runs, port=port, open_browser=open_)
+        serve_runs(runs or [], port=port, open_browser=open_)
+    elif not runs:
+        raise InputError("--export: name the run to be written")
     else:
         export_runs(runs, export)
         print(export)

@@ -10,7 +10,7 @@ import pandas as pd
 
 from experiments.viewer.chromium import chromium, served, show
 from rmfs.measure import load_run
-from rmfs.view.replay import replay_server
+from rmfs.view.answers import replay_server
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -85,9 +85,7 @@ def table(run: Path, seconds: float = SECONDS) -> pd.DataFrame:
     return pd.DataFrame([asdict(one) for one in measured])
 
 
-def _measure(
-    browser: Browser, url: str, change: str, seconds: float
-) -> tuple[float, float, int]:
+def _measure(browser: Browser, url: str, change: str, seconds: float) -> tuple[float, float, int]:
     # waiting for a function of the page is what its policy forbids
     context = browser.new_context(viewport={"width": WIDTH, "height": HEIGHT}, bypass_csp=True)
     page = context.new_page()

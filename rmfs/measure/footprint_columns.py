@@ -38,7 +38,7 @@ def _spread(name: str, meaning: str) -> tuple[Column, ...]:
 FOOTPRINT = (
     Column("layout", TEXT, "", "Name of the layout"),
     Column("scenario", TEXT, "", "Name of the scenario"),
-    Column("controllers", TEXT, "", "Name of the set of controllers"),
+    Column("controllers", TEXT, "", "Name of the set of controllers, and exchanges by hand"),
     Column("seed", INTEGER, "", "Seed of all random streams of the run"),
     Column("warmup_s", REAL, "s", "Simulated time before the measured time"),
     Column("duration_s", REAL, "s", "Measured time"),

@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 PACKAGES = ("numpy", "pandas", "pyarrow", "pydantic", "scipy", "networkx", "typer")
 """Packages whose version is told; all of them are dependencies."""
 
+MARK = "+"
+"""Stands between the name of a set of controllers and what was exchanged by hand."""
+
 KINDS: dict[str, instances.Kind] = {
     "layout": "layouts",
     "scenario": "scenarios",
@@ -51,7 +54,8 @@ def describe(
     inputs
         What the user gave as layout, scenario and controllers (names or paths).
     """
-    given = dict(zip(KINDS, run.names, strict=True)) if inputs is None else dict(inputs)
+    names = [name.partition(MARK)[0] if run.interventions else name for name in run.names]
+    given = dict(zip(KINDS, names, strict=True)) if inputs is None else dict(inputs)
     return {
         "layout": {
             **source("layout", given["layout"]),
@@ -68,6 +72,10 @@ def describe(
             **source("controllers", given["controllers"]),
             "parameters": run.controllers.to_table(),
         },
+        "interventions": [
+            {"time_s": time_s, "problem": str(choice.problem), "rule": choice.to_table()}
+            for time_s, choice in run.interventions
+        ],
         "overrides": {".".join(path): value for path, value in run.overrides},
         "notes": run.notes,
         "seed": run.seed,

@@ -28,7 +28,7 @@ def _table(model: pydantic.BaseModel, path: list[str]) -> Iterator[str]:
         if isinstance(value, pydantic.BaseModel):
             tables.append((name, value, field.description))
         elif value is not None:
-            yield _with_comment(f"{name} = {_value(value)}", field.description)
+            yield _with_comment(f"{name} = {toml_value(value)}", field.description)
     for name, table, description in tables:
         yield ""
         yield _with_comment(f"[{'.'.join([*path, name])}]", description)
@@ -39,17 +39,24 @@ def _with_comment(line: str, comment: str | None) -> str:
     return f"{line:<32}  # {comment}" if comment else line
 
 
-def _value(value: Any) -> str:
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, (int, float)):
-        return repr(value)
-    if isinstance(value, (str, Path)):
+def toml_value(given: Any) -> str:
+    """Return a value as it stands in a TOML file.
+
+    Raises
+    ------
+    TypeError
+        If TOML has no such value.
+    """
+    if isinstance(given, bool):
+        return str(given).lower()
+    if isinstance(given, (int, float)):
+        return repr(given)
+    if isinstance(given, (str, Path)):
         # a JSON string is a TOML string, but for a character that JSON leaves as it is
-        return json.dumps(str(value), ensure_ascii=False).replace("\x7f", "\\u007f")
-    if isinstance(value, (tuple, list)):
-        return f"[{', '.join(map(_value, value))}]"
-    if isinstance(value, dict):
-        pairs = (f"{_value(str(key))} = {_value(item)}" for key, item in value.items())
+        return json.dumps(str(given), ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(given, (tuple, list)):
+        return f"[{', '.join(map(toml_value, given))}]"
+    if isinstance(given, dict):
+        pairs = (f"{toml_value(str(key))} = {toml_value(item)}" for key, item in given.items())
         return f"{{ {', '.join(pairs)} }}"
-    raise TypeError(f"no TOML value: {value!r}")
+    raise TypeError(f"no TOML value: {given!r}")

@@ -59,6 +59,8 @@ class DecisionPhase:
     ----------
     statistics
         Per problem whose controllers are asked.
+    choices
+        The controllers installed at present.
     """
 
     def __init__(self, simulation: Simulation, settings: ControllerSettings) -> None:
@@ -76,6 +78,7 @@ class DecisionPhase:
             for problem, choice in settings.choices.items()
             if problem is not Problem.PP
         }
+        self.choices = dict(settings.choices)
         self._consult = PhaseConsult(self, simulation)
         self._answers: list[Call] = []
         self._problem_of = dict(enumerate(_ASKED, start=_SUPPLY + 1))
@@ -122,6 +125,7 @@ class DecisionPhase:
                 for pod in list(self._world.bundles.unreleased):
                     self._release_pod(say.ReleasePod(pod))
         self._panel.install(choice)
+        self.choices[problem] = choice
         self._simulation.observers.controller_exchanged(
             self._world.now_s, problem.value, choice.name
         )

@@ -12,6 +12,7 @@ from rmfs import measure
 from rmfs.control.pp import planner_settings
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
+from rmfs.measure.provenance import MARK
 from rmfs.simulation.inputs import Overrides, load_inputs, name_of
 from rmfs.simulation.pacing import pacing_settings
 from rmfs.simulation.simulation import Simulation
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
+    from rmfs.control.choices import Choice
     from rmfs.control.settings import ControllerSettings
     from rmfs.layout.model import Layout
     from rmfs.measure import EventLog, Recorder
@@ -43,7 +45,8 @@ class Run:
     layout, scenario, controllers
         What was simulated, after overrides.
     names
-        Layout, scenario and controllers as the user named them.
+        Layout, scenario and controllers as the user named them; behind the controllers stands
+        what was exchanged by hand.
     overrides
         As pairs of path and value: those given, and what a scenario of RAWSim-O asks of the layout.
     notes
@@ -62,6 +65,8 @@ class Run:
         What was measured.
     events
         What happened; only if the run was asked to record its trace.
+    interventions
+        Controllers exchanged by hand, and when (s); `names` tells of them, too.
     """
 
     layout: Layout
@@ -82,6 +87,7 @@ class Run:
     statistics: list[DecisionStatistics]
     recorder: Recorder
     events: EventLog | None = None
+    interventions: Sequence[tuple[float, Choice]] = ()
 
     @cached_property
     def footprint(self) -> pd.Series[Any]:
@@ -114,6 +120,7 @@ def simulate(
     observers: Sequence[Observer] = (),
     pacing: str = "instant",
     trace: bool = False,
+    events: EventLog | None = None,
     streams: StreamRecorder | None = None,
     progress: Callable[[float, float], None] | None = None,
     remark: Callable[[str, str], None] | None = None,
@@ -138,6 +145,8 @@ def simulate(
         `work`, `fixed=SECONDS` or `replay=RUN_DIR` (docs: optimisers in the loop).
     trace
         Whether every piece of motion and everything that happens is kept.
+    events
+        Where what happens is kept, for who reads it while the run goes on; means `trace`.
     streams
         Keeps all orders and bundles that come, to be written by `rmfs.scenario.write_stream`.
     progress
@@ -167,9 +176,10 @@ def simulate(
             for note in notes:
                 remark(part, note)
     recorder = measure.Recorder()
-    events = measure.EventLog() if trace else None
+    if events is None and trace:
+        events = measure.EventLog()
     planner = planner_settings(rules.choices[Problem.PP], seed)
-    traffic = traffic_maker(plan, record_trace=trace, planner=planner)
+    traffic = traffic_maker(plan, record_trace=events is not None, planner=planner)
     simulation = Simulation(
         plan,
         work,
@@ -187,7 +197,7 @@ def simulate(
         layout=plan,
         scenario=work,
         controllers=rules,
-        names=names,
+        names=(*names[:2], names[2] + _marks(simulation)),
         overrides=inputs.overrides,
         notes=inputs.notes,
         seed=seed,
@@ -202,4 +212,13 @@ def simulate(
         statistics=list(simulation.phase.statistics.values()),
         recorder=recorder,
         events=events,
+        interventions=list(simulation.interventions),
+    )
+
+
+def _marks(simulation: Simulation) -> str:
+    """Name the exchanges by hand, so that nobody takes the run for one of its controllers."""
+    return "".join(
+        f"{MARK}{choice.problem}={choice.name}@{time_s:.6f}s"
+        for time_s, choice in simulation.interventions
     )

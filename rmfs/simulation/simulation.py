@@ -26,6 +26,7 @@ from rmfs.world import World
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from rmfs.control.choices import Choice
     from rmfs.control.settings import ControllerSettings
     from rmfs.layout.model import Layout
     from rmfs.measure.observer import Observer
@@ -70,6 +71,11 @@ class Simulation:
     ----------
     now_us
         Present time in microseconds; `world.now_s` is the same in seconds.
+    brakes
+        Functions of the present time that say up to which time may be simulated now, and wait as
+        long as they like: for who watches a run. How often a run stops on its way changes nothing.
+    interventions
+        Controllers exchanged by hand, and when (s).
     """
 
     def __init__(
@@ -93,6 +99,8 @@ class Simulation:
         self.now_us = 0
         self.agenda = Agenda()
         self.observers = Observers(observers)
+        self.brakes: list[Callable[[int], int]] = []
+        self.interventions: list[tuple[float, Choice]] = []
         self.traffic = traffic if traffic is not None else Traffic(layout)
         self.world = _stocked_world(layout, scenario, seed)
         travel = Travel(layout, self.traffic)
@@ -159,6 +167,8 @@ class Simulation:
         while True:
             # an answer that comes while this waits goes into the agenda
             limit_us = self.thinking.limit_us(self.now_us)
+            for brake in self.brakes:
+                limit_us = min(limit_us, brake(self.now_us))
             until_us = min(agenda.next_us, end_us, limit_us)
             events = advance(until_us)
             if events:
@@ -177,6 +187,11 @@ class Simulation:
                 phase.settle()
             if self.now_us >= end_us and not events and agenda.next_us > end_us:
                 break
+
+    def exchange(self, choice: Choice) -> None:
+        """Exchange a controller by hand at this instant; the run remembers it."""
+        self.interventions.append((self.world.now_s, choice))
+        self.phase.exchange(choice)
 
     def after_decisions(self, callback: Callable[[], None]) -> None:
         """Call back at this instant, as soon as the controllers have decided."""

@@ -290,6 +290,7 @@ def run():
         scenario=Settings(),
         controllers=Settings(),
         names=("fake-layout", "fake-scenario", "fake-controllers"),
+        interventions=(),
         overrides=[(["layout", "robots"], 2)],
         notes={"layout": ["Bot.Colour is unknown and was left out"]},
         seed=3,

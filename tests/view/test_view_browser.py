@@ -16,8 +16,8 @@ import pytest
 from rmfs.measure import RunFolder
 from rmfs.measure.checker import motion
 from rmfs.measure.checker.trace import Kinematics, read
+from rmfs.view.answers import replay_server
 from rmfs.view.export import export
-from rmfs.view.replay import replay_server
 
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 

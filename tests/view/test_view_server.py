@@ -11,8 +11,8 @@ import pytest
 
 from rmfs.errors import InputError
 from rmfs.measure import RunFolder
+from rmfs.view.answers import replay_server
 from rmfs.view.container import unpack
-from rmfs.view.replay import replay_server
 from rmfs.view.server import Server
 
 

@@ -2,10 +2,12 @@
 
 import {
   type Camera,
+  GLSL3,
   Mesh,
-  MeshBasicMaterial,
+  NearestFilter,
   OrthographicCamera,
   PlaneGeometry,
+  RawShaderMaterial,
   Scene,
   Vector2,
   type WebGLRenderer,
@@ -13,6 +15,14 @@ import {
 } from "three";
 
 const SAMPLES = 4;
+
+const AS_IT_IS = `in vec3 position;
+void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }`;
+
+const PIXEL_BY_PIXEL = `precision mediump float;
+uniform sampler2D picture;
+out vec4 colour;
+void main() { colour = texelFetch(picture, ivec2(gl_FragCoord.xy), 0); }`;
 
 export class Background {
   readonly scene = new Scene();
@@ -27,9 +37,16 @@ export class Background {
     private readonly renderer: WebGLRenderer,
     smooth: boolean,
   ) {
-    this.target = new WebGLRenderTarget(1, 1, { samples: smooth ? SAMPLES : 0 });
-    const material = new MeshBasicMaterial({
-      map: this.target.texture,
+    this.target = new WebGLRenderTarget(1, 1, {
+      samples: smooth ? SAMPLES : 0,
+      minFilter: NearestFilter,
+      magFilter: NearestFilter,
+    });
+    const material = new RawShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: AS_IT_IS,
+      fragmentShader: PIXEL_BY_PIXEL,
+      uniforms: { picture: { value: this.target.texture } },
       depthTest: false,
       depthWrite: false,
     });

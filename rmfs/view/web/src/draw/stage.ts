@@ -181,7 +181,7 @@ export class Stage {
     // an upper floor covers what is below it, so it must be drawn after that
     const beneath = this.placement?.hasUpperFloors !== true;
     (beneath ? this.background.scene : this.scene).add(this.ground);
-    this.renderer.clear();
+    this.renderer.clear(!beneath);
     if (beneath) this.background.draw(this.camera);
     this.renderer.render(this.scene, this.camera);
   }

@@ -1,0 +1,124 @@
+"""The form that starts a run: what may be chosen, from the parameters as they are declared.
+
+A parameter is declared once, in a model of layout, scenario or rule; its name, meaning, bounds and
+default reach the page as JSON Schema.
+"""
+
+from __future__ import annotations
+
+import inspect
+from typing import TYPE_CHECKING, Any
+
+import pydantic_core
+
+from rmfs import control, instances, scenario
+from rmfs.control import registry
+from rmfs.control.problems import Problem
+from rmfs.errors import InputError
+from rmfs.layout.overrides import ExplicitOverrides
+from rmfs.layout.parameters import LayoutParameters
+from rmfs.measure.provenance import layout_parameters
+from rmfs.scenario import Scenario
+
+if TYPE_CHECKING:
+    import pydantic
+
+PARTS: dict[str, instances.Kind] = {
+    "layout": "layouts",
+    "scenario": "scenarios",
+    "controllers": "controllers",
+}
+
+
+def names() -> dict[str, list[str]]:
+    """Return the shipped layouts, scenarios and sets of controllers."""
+    return {part: instances.names(kind) for part, kind in PARTS.items()}
+
+
+def shipped(part: str, name: str) -> str:
+    """Return a name if something of that name is shipped: a page may name no files.
+
+    Raises
+    ------
+    InputError
+        If nothing is.
+    """
+    known = instances.names(PARTS[part])
+    if name not in known:
+        raise InputError(f"{part} {name}: must be one of {', '.join(known)}")
+    return name
+
+
+def form(chosen: dict[str, str]) -> dict[str, Any]:
+    """Return what a form shows when these files are chosen.
+
+    Parameters
+    ----------
+    chosen
+        Layout, scenario and controllers by name; default of each: `default`.
+
+    Returns
+    -------
+    dict
+        `names`: what could be chosen; `chosen`; per part the `schema` and the `values` of the file,
+        and the problems with their rules.
+
+    Raises
+    ------
+    InputError
+        If a name is unknown.
+    """
+    picked = {part: shipped(part, chosen.get(part, "default")) for part in PARTS}
+    parameters = layout_parameters(picked["layout"], [])
+    work = scenario.load(picked["scenario"])
+    return {
+        "names": names(),
+        "chosen": picked,
+        "layout": {
+            # an explicit layout has no parameters but those that may be overridden
+            "schema": _schema(ExplicitOverrides if parameters is None else LayoutParameters),
+            "values": parameters or {},
+        },
+        "scenario": {"schema": _schema(Scenario), "values": work.model_dump(mode="json")},
+        "controllers": {
+            "problems": problems(),
+            "values": {
+                str(problem): choice.to_table()
+                for problem, choice in control.load(picked["controllers"]).choices.items()
+            },
+        },
+    }
+
+
+def problems() -> dict[str, Any]:
+    """Return every decision problem with its rules: what each does, and its parameters."""
+    return {
+        str(problem): {
+            "meaning": problem.meaning,
+            "rules": {name: _rule(problem, name) for name in registry.names(problem)},
+        }
+        for problem in Problem
+    }
+
+
+def refuse_foreign(problem: Problem, name: str) -> None:
+    """Refuse rules that are not installed: a page may name no code.
+
+    Raises
+    ------
+    InputError
+        If the name is not that of an installed rule.
+    """
+    if name not in registry.names(problem):
+        raise InputError(f"{problem}.name: must be one of {', '.join(registry.names(problem))}")
+
+
+def _rule(problem: Problem, name: str) -> dict[str, Any]:
+    rule = registry.find(problem, name)
+    about = (inspect.getdoc(rule) or "").partition("\n")[0]
+    return {"about": about, "schema": _schema(rule.parameters_model)}
+
+
+def _schema(model: type[pydantic.BaseModel]) -> dict[str, Any]:
+    schema: dict[str, Any] = pydantic_core.to_jsonable_python(model.model_json_schema())
+    return schema

@@ -1,0 +1,317 @@
+"""A run that is watched while it happens: where its thread meets those of the pages.
+
+Only the run's own thread touches the simulation. Pages leave their questions and wishes here; the
+run looks here between two instants, and that costs it one comparison while nobody asks. What a page
+wants to know is copied in the run's thread and packed in the page's.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from dataclasses import dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from rmfs.control.choices import check_together, choose
+from rmfs.control.problems import Problem
+from rmfs.errors import InputError
+from rmfs.measure.events import EventLog
+from rmfs.measure.observer import Observer
+from rmfs.simulation.agenda import NEVER_US
+from rmfs.view import scene
+from rmfs.view.container import pack
+from rmfs.view.forms import refuse_foreign
+from rmfs.view.pace import Pace
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from rmfs.config import Table
+    from rmfs.control.choices import Choice
+    from rmfs.simulation.simulation import Simulation
+
+ABSENT_S = 90.0
+"""A page that has not asked for so long is gone; one that nobody sees may ask once a minute."""
+
+FIXED = frozenset({Problem.PP})
+"""Problems whose controllers cannot be exchanged: the robots' plans are theirs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """What a page knows already: rows of the trace, and events."""
+
+    motion: int = 0
+    events: int = 0
+
+
+@dataclass(eq=False)
+class _News:
+    """What a page asks for, and what the run's thread copied for it."""
+
+    known: Known
+    done: threading.Event = field(default_factory=threading.Event)
+    motion: dict[str, NDArray[Any]] = field(default_factory=dict)
+    events: dict[str, NDArray[Any]] = field(default_factory=dict)
+    header: dict[str, Any] = field(default_factory=dict)
+
+
+class LiveRun(Observer):
+    """Follows a run for pages, and passes on what they want of it.
+
+    Parameters
+    ----------
+    names
+        Layout, scenario and controllers as the user named them.
+    title
+        What the page calls the run.
+    speed
+        Simulated seconds per wall second at the beginning, and whenever no page is left that said
+        otherwise; by default as fast as it goes.
+
+    Attributes
+    ----------
+    events
+        What happens; to be handed to `rmfs.simulate`.
+    """
+
+    def __init__(self, names: Mapping[str, str], *, title: str, speed: float | None = None) -> None:
+        self.events = EventLog()
+        self._names, self._title = dict(names), title
+        self._pace = Pace(speed)
+        self._meeting = threading.Condition()
+        self._asked: list[_News] = []
+        self._exchanges: list[Choice] = []
+        self._pages: dict[str, float] = {}
+        self._simulation: Simulation | None = None
+        self._ended = ""
+        # read without the lock, in each round of the run's loop
+        self._undisturbed = self._pace.is_free
+
+    # --- the run's thread -----------------------------------------------------------------------
+
+    def run_started(self, simulation: Simulation) -> None:
+        """Ask to be asked how far the run may go."""
+        with self._meeting:
+            self._simulation = simulation
+            simulation.brakes.append(self.limit_us)
+            self._meeting.notify_all()
+
+    def run_ended(self, time_s: float) -> None:
+        """Answer what is still asked; from now on nothing changes."""
+        self.close("the run has ended")
+
+    def limit_us(self, now_us: int) -> int:
+        """Latest time that may be simulated now; waits as long as a page wants."""
+        if self._undisturbed:
+            return NEVER_US
+        with self._meeting:
+            while True:
+                self._attend(now_us)
+                if self._exchanges:
+                    return self._exchange(now_us)
+                limit_us = self._pace.limit_us(now_us, time.monotonic())
+                if limit_us is not None:
+                    self._undisturbed = self._pace.is_free
+                    return limit_us
+                wait_s = self._pace.wait_s(now_us, time.monotonic())
+                self._meeting.wait(1.0 if wait_s is None else min(wait_s, 1.0))
+
+    def _attend(self, now_us: int) -> None:
+        """Answer the pages, and go on without them if they are gone."""
+        for news in self._asked:
+            self._copy(news, now_us)
+        self._asked.clear()
+        gone = [p for p, at_s in self._pages.items() if time.monotonic() - at_s > ABSENT_S]
+        for page in gone:
+            self._leave(page)
+
+    def _exchange(self, now_us: int) -> int:
+        """Let the exchanges happen at this instant; returns it."""
+        assert self._simulation is not None
+        for choice in self._exchanges:
+            self._simulation.agenda.at(now_us, partial(self._simulation.exchange, choice))
+        self._exchanges.clear()
+        return now_us
+
+    def _copy(self, news: _News, now_us: int) -> None:
+        assert self._simulation is not None
+        news.motion, motion = self._simulation.traffic.trace_after(news.known.motion)
+        news.events = self.events.columns(news.known.events)
+        # of this very instant more may come
+        known_us = now_us if self._ended else now_us - 1
+        news.header = {
+            "known_s": max(known_us, 0) / 1e6,
+            "known": {"motion": motion, "events": len(self.events)},
+            "ended": self._ended,
+            "paused": self._pace.paused,
+            "speed": self._pace.speed,
+            "controllers": {str(p): choice.to_table() for p, choice in self._choices().items()},
+            "details": list(self.events.details),
+        }
+        news.done.set()
+
+    # --- the pages' threads ---------------------------------------------------------------------
+
+    def scene(self) -> bytes:
+        """Pack everything so far, the warehouse included."""
+        news = self._news(Known())
+        simulation = self._simulation
+        assert simulation is not None
+        header = scene.head(
+            simulation.layout,
+            names=self._names,
+            seed=simulation.seed,
+            warmup_s=simulation.warmup_s,
+            end_s=simulation.end_s,
+            title=self._title,
+            details=news.header["details"],
+        )
+        return pack(
+            {**header, "live": news.header},
+            {
+                **scene.describe(simulation.layout, simulation.world.skus.space_per_unit),
+                **scene.motion(news.motion, simulation.layout.robots),
+                **scene.happenings(news.events),
+            },
+        )
+
+    def news(self, known: Known, page: str = "") -> bytes:
+        """Pack what has come since; a row of motion takes the place of what was known from it on.
+
+        Parameters
+        ----------
+        page
+            Who asks, so that it is noticed when that page is gone.
+        """
+        if page:
+            with self._meeting:
+                self._pages[page] = time.monotonic()
+        news = self._news(known)
+        assert self._simulation is not None
+        robots = self._simulation.layout.robots
+        return pack(
+            {"details": news.header["details"], "live": news.header},
+            {**scene.motion(news.motion, robots), **scene.happenings(news.events)},
+        )
+
+    def control(self, wish: Table) -> None:
+        """Pause, step or go on: `{"do": "pause" | "step" | "run", "by_s": ..., "speed": ...}`.
+
+        Raises
+        ------
+        InputError
+            If that is not what is wished for.
+        """
+        with self._meeting:
+            match wish.get("do"):
+                case "pause":
+                    self._pace.pause()
+                case "step":
+                    self._pace.step(self._now_us, float(wish.get("by_s", 0)))
+                case "run":
+                    speed = wish.get("speed")
+                    self._pace.run(None if speed is None else float(speed))
+                case other:
+                    raise InputError(f"do: must be pause, step or run (given: {other!r})")
+            self._disturb()
+
+    def exchange(self, problem: str, table: Table) -> None:
+        """Have another controller installed at the instant the run has reached.
+
+        Parameters
+        ----------
+        table
+            As in a controllers file: `name`, and parameters.
+
+        Raises
+        ------
+        InputError
+            If there is no such rule, it does not go with the others, or the run has ended.
+        """
+        if problem not in set(Problem) - FIXED:
+            raise InputError(f"{problem}: cannot be exchanged while a run goes on")
+        chosen = choose(Problem(problem), table, "exchange")
+        refuse_foreign(chosen.problem, chosen.name)
+        with self._meeting:
+            if self._ended:
+                raise InputError(self._ended)
+            self._await_start()
+            check_together({**self._choices(), chosen.problem: chosen}, "exchange")
+            self._exchanges.append(chosen)
+            self._disturb()
+
+    def leave(self, page: str) -> None:
+        """Take note that a page was closed: the run goes on as if it had never been there."""
+        with self._meeting:
+            self._leave(page)
+
+    def close(self, reason: str) -> None:
+        """Answer what is asked, and say from now on that nothing more comes."""
+        with self._meeting:
+            if self._ended:
+                return
+            self._ended = reason
+            for news in self._asked:
+                self._copy(news, self._now_us)
+            self._asked.clear()
+            self._meeting.notify_all()
+
+    def await_page(self, patience_s: float) -> None:
+        """Wait until a page is there, but not for long."""
+        end_s = time.monotonic() + patience_s
+        with self._meeting:
+            self._meeting.wait_for(lambda: self._pages, end_s - time.monotonic())
+
+    def await_farewell(self, patience_s: float) -> None:
+        """Give the pages that are there a moment to see the end."""
+        end_s = time.monotonic() + patience_s
+        while self._pages and time.monotonic() < end_s:
+            time.sleep(0.05)
+
+    def _await_start(self) -> None:
+        """Wait until the run has begun.
+
+        Raises
+        ------
+        InputError
+            If it never did.
+        """
+        self._meeting.wait_for(lambda: self._simulation is not None or self._ended)
+        if self._simulation is None:
+            raise InputError(self._ended)
+
+    def _choices(self) -> dict[Problem, Choice]:
+        """Return the controllers installed, or about to be."""
+        assert self._simulation is not None
+        coming = {choice.problem: choice for choice in self._exchanges}
+        return {**self._simulation.phase.choices, **coming}
+
+    @property
+    def _now_us(self) -> int:
+        return 0 if self._simulation is None else self._simulation.now_us
+
+    def _disturb(self) -> None:
+        """Make the run look here before it goes on."""
+        self._undisturbed = False
+        self._meeting.notify_all()
+
+    def _leave(self, page: str) -> None:
+        if self._pages.pop(page, None) is not None and not self._pages:
+            self._pace.let_go()
+            self._disturb()
+
+    def _news(self, known: Known) -> _News:
+        news = _News(known)
+        with self._meeting:
+            self._await_start()
+            if self._ended:
+                self._copy(news, self._now_us)
+            else:
+                self._asked.append(news)
+                self._disturb()
+        news.done.wait()
+        return news

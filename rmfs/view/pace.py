@@ -1,0 +1,121 @@
+"""How fast a run that is watched may go: as fast as it can, at a speed, in steps, or not at all."""
+
+from __future__ import annotations
+
+from math import ceil, isfinite
+
+from rmfs.errors import InputError
+from rmfs.simulation.agenda import NEVER_US
+
+QUANTUM_S = 0.02
+"""Wall time by which a run that is held back goes on at a time."""
+
+LAGGING_S = 0.5
+"""A run that is behind by more wall time than this does not hurry to make up for it."""
+
+
+class Pace:
+    """Says up to which simulated time a run may go on.
+
+    Parameters
+    ----------
+    speed
+        Simulated seconds per wall second; by default as fast as it goes.
+
+    Raises
+    ------
+    InputError
+        If the speed is not a positive number.
+    """
+
+    def __init__(self, speed: float | None = None) -> None:
+        _check(speed)
+        self._usual = speed
+        self._since: tuple[float, int] | None = None
+        self._until_us: int | None = None
+        self._one_event = False
+        self.speed = speed
+        self.paused = False
+
+    @property
+    def is_free(self) -> bool:
+        """Whether nothing holds the run back."""
+        return self.speed is None and not self.paused
+
+    def run(self, speed: float | None) -> None:
+        """Go on, at a speed or as fast as it goes."""
+        _check(speed)
+        self.speed, self.paused = speed, False
+        self._since = self._until_us = None
+        self._one_event = False
+
+    def pause(self) -> None:
+        """Stay where it is."""
+        self.paused = True
+        self._until_us = None
+        self._one_event = False
+
+    def step(self, now_us: int, by_s: float = 0.0) -> None:
+        """Go on by so much simulated time, or to the next event if that is 0, and pause there."""
+        if not (isfinite(by_s) and by_s >= 0):
+            raise InputError(f"step {by_s}: must be 0 or more seconds")
+        self.pause()
+        if by_s > 0:
+            self._until_us = now_us + round(by_s * 1e6)
+        else:
+            self._one_event = True
+
+    def let_go(self) -> None:
+        """Go on as in the beginning: nobody watches any more."""
+        self.run(self._usual)
+
+    def limit_us(self, now_us: int, wall_s: float) -> int | None:
+        """Up to which simulated time the run may go now; nothing if it has to wait.
+
+        Parameters
+        ----------
+        wall_s
+            Time on a clock that never goes back.
+        """
+        if self._one_event:
+            self._one_event = False
+            return NEVER_US
+        if self._until_us is not None:
+            if now_us < self._until_us:
+                return self._until_us
+            self._until_us = None
+        if self.paused:
+            return None
+        if self.speed is None:
+            return NEVER_US
+        paid_us = self._paid_us(now_us, wall_s, self.speed)
+        return paid_us if paid_us >= now_us + self._quantum_us(self.speed) else None
+
+    def wait_s(self, now_us: int, wall_s: float) -> float | None:
+        """How long to wait at most before `limit_us` may say something else; nothing: for ever."""
+        if self.paused or self.speed is None:
+            return None
+        missing_us = (
+            now_us + self._quantum_us(self.speed) - self._paid_us(now_us, wall_s, self.speed)
+        )
+        return max(missing_us / 1e6 / self.speed, 0.001)
+
+    def _paid_us(self, now_us: int, wall_s: float, speed: float) -> int:
+        """Simulated time that wall time has paid for."""
+        if self._since is None:
+            self._since = (wall_s, now_us)
+        since_s, since_us = self._since
+        paid_us = since_us + int((wall_s - since_s) * speed * 1e6)
+        if paid_us - now_us > (LAGGING_S + QUANTUM_S) * speed * 1e6:
+            self._since = (wall_s - QUANTUM_S, now_us)
+            return now_us + self._quantum_us(speed)
+        return paid_us
+
+    @staticmethod
+    def _quantum_us(speed: float) -> int:
+        return ceil(QUANTUM_S * speed * 1e6)
+
+
+def _check(speed: float | None) -> None:
+    if speed is not None and not (isfinite(speed) and speed > 0):
+        raise InputError(f"speed {speed}: must be more than 0 simulated seconds per second")

@@ -1,0 +1,128 @@
+"""Starting runs from a form: each is a process of its own, watched on a page of its own."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rmfs import control, layout, scenario
+from rmfs.errors import InputError
+from rmfs.scenario.toml import toml_value
+from rmfs.view.forms import PARTS, refuse_foreign, shipped
+
+if TYPE_CHECKING:
+    from rmfs.config import Table
+
+MOST_RUNS = 4
+"""So many runs that were started here may go on at once."""
+
+PATIENCE_S = 60.0
+
+
+class Starter:
+    """Starts runs as `rmfs run --live` does, and stops those that still go on when it is closed.
+
+    Parameters
+    ----------
+    results
+        Folder below which the run folders are made.
+    """
+
+    def __init__(self, results: Path = Path("results")) -> None:
+        self._results = results
+        self._running: list[subprocess.Popen[str]] = []
+        self._lock = threading.Lock()
+
+    def start(self, wish: Table) -> str:
+        """Start a run and return the address of its page.
+
+        Parameters
+        ----------
+        wish
+            `layout`, `scenario`, `controllers` (shipped names), `seed`, `out` (name of the run
+            folder), `speed` (nothing: as fast as it goes), `trace`, and `set`: values by key, such
+            as `{"layout.robots": 16}`.
+
+        Raises
+        ------
+        InputError
+            If something of that is wrong, or too many runs go on.
+        """
+        arguments = _arguments(wish, self._results)
+        with self._lock:
+            self._running = [run for run in self._running if run.poll() is None]
+            if len(self._running) >= MOST_RUNS:
+                raise InputError(f"{MOST_RUNS} runs go on already: wait until one has ended")
+            run = subprocess.Popen(
+                [sys.executable, "-m", "rmfs", "run", *arguments],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+            )
+            self._running.append(run)
+        return _address(run)
+
+    def close(self) -> None:
+        """Stop the runs that still go on; none leaves a half-written folder."""
+        for run in self._running:
+            if run.poll() is None:
+                run.send_signal(signal.SIGINT)  # as Ctrl-C: what is half-written goes
+        for run in self._running:
+            run.wait()
+
+
+def _arguments(wish: Table, results: Path) -> list[str]:
+    """Return the arguments of `rmfs run`; everything is checked as the command would check it."""
+    given = {part: shipped(part, str(wish.get(part, "default"))) for part in PARTS}
+    changes = wish.get("set", {})
+    overrides = [(key.split("."), changed) for key, changed in changes.items()]
+    own: dict[str, list[tuple[list[str], Any]]] = {part: [] for part in PARTS}
+    for path, new in overrides:
+        if path[0] not in PARTS or len(path) < 2:
+            raise InputError(f"{'.'.join(path)}: must be in one of {', '.join(PARTS)}")
+        own[path[0]].append((path[1:], new))
+    layout.load(given["layout"], own["layout"])
+    work = scenario.load(given["scenario"], own["scenario"])
+    usual = scenario.named_files(scenario.load(given["scenario"]))
+    if set(scenario.named_files(work).values()) - set(usual.values()):
+        raise InputError("scenario: files can be chosen on the command line only")
+    for choice in control.load(given["controllers"], own["controllers"]).choices.values():
+        refuse_foreign(choice.problem, choice.name)
+    name = str(wish.get("out") or f"{'-'.join(given.values())}-live")
+    if not name.replace("-", "").replace("_", "").replace(".", "").isalnum() or name[0] == ".":
+        raise InputError(f"out: a name of letters, digits, - and _ is wanted (given: {name!r})")
+    speed = wish.get("speed")
+    return [
+        *(word for part in PARTS for word in (f"--{part}", given[part])),
+        *("--seed", str(int(wish.get("seed", 0))), "--out", str(results / name)),
+        *(word for key, new in changes.items() for word in ("--set", f"{key}={toml_value(new)}")),
+        *([] if speed is None else ["--speed", str(float(speed))]),
+        *(["--trace"] if wish.get("trace") else []),
+        *("--live", "--no-open", "--await-page"),
+    ]
+
+
+def _address(run: subprocess.Popen[str]) -> str:
+    """Return the first line a run prints: where its page is.
+
+    Raises
+    ------
+    InputError
+        If it prints none; with what it says instead.
+    """
+    assert run.stdout is not None
+    assert run.stderr is not None
+    line = run.stdout.readline().strip()
+    if not line.startswith("http://"):
+        run.wait()
+        told: list[Any] = run.stderr.read().strip().splitlines() or ["it ended at once"]
+        raise InputError(str(told[-1]).removeprefix("rmfs: "))
+    for stream in (run.stdout, run.stderr):
+        # read on, or a full pipe would hold the run back
+        threading.Thread(target=stream.read, daemon=True).start()
+    return line
