@@ -34,6 +34,7 @@ __all__ = [
     "Traffic",
     "TrafficEvent",
     "TripKind",
+    "joined_holds",
 ]
 
 COST_TABLE_BYTES = 200_000_000
@@ -421,13 +422,14 @@ class Traffic:
         ValueError
             If the trace is not recorded.
         """
-        return self._core.trace(0)[0]
+        return joined_holds(self._core.trace(0)[0])
 
     def trace_after(self, known: int) -> tuple[dict[str, NDArray[Any]], int]:
         """The trace without what is known of it already: for who follows a run as it goes.
 
         The motion each robot is in the middle of is among the rows, and comes again as long as it
-        lasts: a row takes the place of what was known of its robot from `t0_us` on.
+        lasts: a row takes the place of what was known of its robot from `t0_us` on. Where a robot
+        stood while this was called, several rows follow each other (`joined_holds`).
 
         Parameters
         ----------
@@ -470,6 +472,26 @@ class Traffic:
     def state_report(self) -> str:
         """One line per robot, for a report when nothing can move any more."""
         return self._core.state_report()
+
+
+def joined_holds(trace: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Return a trace in which a robot that goes on standing has one row.
+
+    So a trace is the same however often somebody asked for it, or for statistics, on the way.
+
+    Parameters
+    ----------
+    trace
+        Columns as in `Traffic.trace`, sorted by robot and time.
+    """
+    same = np.ones(max(len(trace["robot"]) - 1, 0), np.bool_)
+    for name in ("robot", "kind", "from_wp", "heading1_rad", "pod"):
+        same &= trace[name][1:] == trace[name][:-1]
+    same &= (trace["kind"][1:] == Piece.HOLD) & (trace["t0_us"][1:] == trace["t1_us"][:-1])
+    first, last = np.append(True, ~same), np.append(~same, True)
+    if not len(trace["robot"]):
+        return trace
+    return {name: column[last if name == "t1_us" else first] for name, column in trace.items()}
 
 
 def _us(seconds: float) -> int:

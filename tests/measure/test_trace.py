@@ -103,7 +103,7 @@ def test_a_trace_without_a_column_is_refused(folder: RunFolder, tmp_path: Path) 
 def test_following_a_trace_gives_the_whole_of_it() -> None:
     """What `trace_after` tells, put together as it says, is what `trace` says in the end."""
     from rmfs.layout import load
-    from rmfs.traffic import Step, Traffic
+    from rmfs.traffic import Step, Traffic, joined_holds
 
     layout = load("basic")
     traffic = Traffic(layout, record_trace=True)
@@ -121,5 +121,6 @@ def test_following_a_trace_gives_the_whole_of_it() -> None:
             since = news.groupby("robot")["t0_us"].min().reindex(followed["robot"]).to_numpy()
             followed = followed[~(followed["t0_us"].to_numpy() >= since)]
         followed = pd.concat([followed, news])
-    followed = followed.sort_values(["robot", "t0_us"]).reset_index(drop=True)
-    pd.testing.assert_frame_equal(followed, pd.DataFrame(traffic.trace()))
+    followed = followed.sort_values(["robot", "t0_us"])
+    whole = joined_holds({name: followed[name].to_numpy() for name in followed})
+    pd.testing.assert_frame_equal(pd.DataFrame(whole), pd.DataFrame(traffic.trace()))

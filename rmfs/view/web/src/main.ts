@@ -5,6 +5,7 @@ import { Run } from "./data/run";
 import { App } from "./page/app";
 import { fail } from "./page/messages";
 import { ask, embedded, type Session, unpack } from "./page/sources";
+import { startForm } from "./page/start";
 
 declare global {
   interface Window {
@@ -14,15 +15,24 @@ declare global {
 }
 
 async function start(): Promise<void> {
-  window.rmfs = new App((await scenes()).map((buffer) => new Run(buffer)));
+  const inside = embedded();
+  if (inside.length > 0) {
+    show(await Promise.all(inside.map(unpack)), { runs: inside.length, live: false, form: false });
+    return;
+  }
+  const session = (await (await ask("session")).json()) as Session;
+  if (session.runs === 0) {
+    await startForm(document.body);
+    return;
+  }
+  const numbers = Array.from({ length: session.runs }, (_, number) => number);
+  const scenes = numbers.map(async (number) => (await ask(`runs/${number}`)).arrayBuffer());
+  show(await Promise.all(scenes), session);
 }
 
-async function scenes(): Promise<ArrayBuffer[]> {
-  const inside = embedded();
-  if (inside.length > 0) return Promise.all(inside.map(unpack));
-  const session = (await (await ask("session")).json()) as Session;
-  const numbers = Array.from({ length: session.runs }, (_, number) => number);
-  return Promise.all(numbers.map(async (number) => (await ask(`runs/${number}`)).arrayBuffer()));
+function show(scenes: ArrayBuffer[], session: Session): void {
+  const runs = scenes.map((buffer) => new Run(buffer));
+  window.rmfs = new App(runs, session);
 }
 
 start().catch((reason: unknown) => {

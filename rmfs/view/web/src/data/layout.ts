@@ -20,6 +20,27 @@ export interface Station {
   transfer_s: number;
 }
 
+/** The rule of a decision problem: its name, and its parameters beside it. */
+export type Rule = { name: string } & Record<string, unknown>;
+
+/** How a run that goes on is going. */
+export interface Live {
+  known_s: number;
+  known: { motion: number; events: number };
+  /** Why nothing more comes; empty while the run goes on. */
+  ended: string;
+  paused: boolean;
+  /** Simulated seconds per second; null: as fast as it goes. */
+  speed: number | null;
+  controllers: Record<string, Rule>;
+}
+
+/** The header of what has come since. */
+export interface News {
+  live: Live;
+  details: string[];
+}
+
 /** What the header of a scene says. */
 export interface Header {
   title: string;
@@ -34,6 +55,7 @@ export interface Header {
   pod_radius_m: number;
   details: string[];
   colours: Record<string, string>;
+  live?: Live;
 }
 
 export interface Layout {

@@ -1,6 +1,6 @@
 /** Where every robot is at any time: rows of a trace, computed by the robots' own kinematics. */
 
-import type { Container } from "./container";
+import type { Column, Container } from "./container";
 import { turn, wayAt } from "./kinematics";
 import type { Layout } from "./layout";
 import { countUpTo } from "./search";
@@ -43,6 +43,24 @@ export class Track {
     this.count = start.length;
   }
 
+  /** Adds rows; they take the place of what was known from the first of them on. */
+  extend(rows: Track): void {
+    if (rows.count === 0) return;
+    let kept = countUpTo(this.start, rows.start[0], this.count);
+    while (kept > 0 && this.start[kept - 1] === rows.start[0]) kept--;
+    const count = kept + rows.count;
+    this.start = joined(this.start, kept, rows.start);
+    this.kind = joined(this.kind, kept, rows.kind);
+    this.from = joined(this.from, kept, rows.from);
+    this.to = joined(this.to, kept, rows.to);
+    this.heading0 = joined(this.heading0, kept, rows.heading0);
+    this.heading1 = joined(this.heading1, kept, rows.heading1);
+    this.pod = joined(this.pod, kept, rows.pod);
+    this.count = count;
+    this.end = rows.end;
+    this.cursor = Math.min(this.cursor, count - 1);
+  }
+
   /** Returns when a row ends, in microseconds. */
   endOf(row: number): number {
     return row + 1 < this.count ? this.start[row + 1] : this.end;
@@ -61,6 +79,18 @@ export class Track {
     this.cursor = Math.max(countUpTo(this.start, time_us, this.count) - 1, 0);
     return this.cursor;
   }
+}
+
+/** Returns the first `kept` values and others behind them, in the same memory if there is room. */
+function joined<Values extends Column>(values: Values, kept: number, more: Values): Values {
+  const length = kept + more.length;
+  let room = values;
+  if (length > values.length) {
+    room = new (values.constructor as new (length: number) => Values)(2 * length);
+    room.set(values.subarray(0, kept));
+  }
+  room.set(more, kept);
+  return room;
 }
 
 /** Reads the rows of all robots from a container; they share its memory. */

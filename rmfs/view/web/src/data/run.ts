@@ -3,7 +3,7 @@
 import { decode } from "./container";
 import { Events } from "./events";
 import { type Course, course } from "./figures";
-import { type Header, type Layout, readLayout } from "./layout";
+import { type Header, type Layout, type Live, type News, readLayout } from "./layout";
 import { Motion, readTracks } from "./motion";
 import { Passages } from "./passages";
 import { PodPlaces } from "./places";
@@ -21,7 +21,9 @@ export class Run {
   readonly stations: Stations;
   readonly passages: Passages;
   /** Until when the run is known, in microseconds. */
-  readonly known_us: number;
+  known_us: number;
+  /** How the run goes on, if it does. */
+  live: Live | undefined;
   private drawn: Course | undefined;
 
   constructor(buffer: ArrayBuffer) {
@@ -31,13 +33,30 @@ export class Run {
     const tracks = readTracks(container);
     this.motion = new Motion(this.layout, tracks);
     this.places = new PodPlaces(this.layout);
-    this.places.extend(tracks, Number.POSITIVE_INFINITY);
+    this.live = header.live;
+    const known_s = this.live?.known_s ?? Number.POSITIVE_INFINITY;
+    this.places.extend(tracks, known_s * 1e6);
     this.events.extend(container, header.details);
     this.robots = new Robots(this.layout, this.motion, this.events);
     this.stock = new Stock(this.layout, this.events);
     this.stations = new Stations(this.layout, this.events);
     this.passages = new Passages(this.layout, this.motion, this.robots);
-    this.known_us = header.end_s * 1e6;
+    this.known_us = Math.min(known_s, header.end_s) * 1e6;
+  }
+
+  /** Adds what has come since. */
+  extend(buffer: ArrayBuffer): void {
+    const container = decode<News>(buffer);
+    const { live, details } = container.header;
+    const news = readTracks(container);
+    this.motion.tracks.forEach((track, robot) => {
+      track.extend(news[robot]);
+    });
+    this.places.extend(this.motion.tracks, live.known_s * 1e6);
+    this.events.extend(container, details);
+    this.live = live;
+    this.known_us = live.known_s * 1e6;
+    this.drawn = undefined;
   }
 
   get header(): Header {

@@ -3,18 +3,23 @@
 import type { Run } from "../data/run";
 import { type Range, rangeOf } from "../draw/heat";
 import { charts } from "./charts";
-import { h } from "./dom";
+import { button, h } from "./dom";
 import { keyList, listen } from "./keys";
 import { legend } from "./legend";
 import { fromFragment, toFragment } from "./link";
+import { LiveLink } from "./live";
 import { Pane } from "./pane";
 import { nextEvent, panel } from "./panel";
+import type { Session } from "./sources";
+import { startForm } from "./start";
 import { Store, type ViewState } from "./state";
 import { timeline, toggle } from "./timeline";
 import { toolbar } from "./toolbar";
 
 /** Figures beside the picture are worked out anew after so much wall time. */
 const FIGURES_MS = 250;
+/** How long it takes (s) to come closer to the present by two thirds. */
+const CATCHING_UP_S = 0.15;
 const HEAT_PARTS: (keyof ViewState)[] = ["heat", "from_s", "to_s", "theme", "mode", "tier"];
 
 export class App {
@@ -24,13 +29,21 @@ export class App {
   frames = 0;
   private range: Range = { least: 1, most: 1 };
   private dirty = true;
+  /** Whether the time moves on because the run does. */
+  private following = false;
   private heatStale = true;
   private figures_ms = Number.NEGATIVE_INFINITY;
   private last_ms = performance.now();
   private readonly side: { update(): void }[];
   private readonly notice = h("div", { className: "notice", role: "status" });
 
-  constructor(readonly runs: Run[]) {
+  /** The run that goes on, if one does. */
+  readonly live: LiveLink | undefined;
+
+  constructor(
+    readonly runs: Run[],
+    session: Session,
+  ) {
     const { state, cameras } = fromFragment(location.hash, this.end_s);
     state.selection = this.existing(state.selection);
     this.store = new Store(state);
@@ -43,7 +56,14 @@ export class App {
       this.dirty = true;
     };
     this.panes = runs.map((run, n) => new Pane(run, n, this.store, captions[n], changed));
-    this.side = this.build();
+    if (session.live) {
+      const come = () => {
+        this.dirty = true;
+        this.figures_ms = Math.min(this.figures_ms, this.last_ms - FIGURES_MS);
+      };
+      this.live = new LiveLink(runs[0], come, (text) => this.say(text));
+    }
+    this.side = this.build(session);
     document.title = `rmfs · ${runs.map(({ header }) => header.title).join(" | ")}`;
     document.documentElement.dataset.theme = state.theme;
     this.panes.forEach((pane, n) => {
@@ -98,7 +118,7 @@ export class App {
     return selection.index < (counts[selection.what] ?? 0) ? selection : null;
   }
 
-  private build(): { update(): void }[] {
+  private build(session: Session): { update(): void }[] {
     const { store, panes, runs } = this;
     const tiers = Math.max(...runs.map(({ header }) => header.tiers.length));
     const end_s = () => this.end_s;
@@ -116,10 +136,10 @@ export class App {
     const course = charts(store, runs, end_s);
     const colours = legend(store, runs[0].header.colours, () => this.range);
     document.body.replaceChildren(
-      toolbar(store, tiers, commands),
+      toolbar(store, tiers, session.form ? { ...commands, start: () => this.start() } : commands),
       h("main", {}, ...panes.map(({ root }) => root)),
       h("aside", {}, details.root, course.root, colours.root),
-      timeline(store, runs[0].header.warmup_s, end_s),
+      timeline(store, runs[0].header.warmup_s, end_s, this.live?.root),
       this.notice,
       keys,
     );
@@ -130,7 +150,11 @@ export class App {
     this.dirty = true;
     if (names.has("theme")) document.documentElement.dataset.theme = this.store.state.theme;
     if (HEAT_PARTS.some((name) => names.has(name))) this.heatStale = true;
-    const seeking = names.has("time_s") && !this.store.state.playing;
+    const seeking = names.has("time_s") && !this.store.state.playing && !this.following;
+    if (this.live && !this.following && (seeking || this.store.state.playing)) {
+      this.live.following = false;
+      this.live.update();
+    }
     if (names.has("selection") || seeking) this.figures_ms = Number.NEGATIVE_INFINITY;
     if (seeking) for (const pane of this.panes) pane.repaint();
   }
@@ -139,12 +163,23 @@ export class App {
     const passed_s = Math.min((now_ms - this.last_ms) / 1000, 0.25);
     this.last_ms = now_ms;
     const { state } = this.store;
-    if (state.playing) {
+    if (this.live?.following) this.follow(passed_s);
+    else if (state.playing) {
       const time_s = Math.min(state.time_s + passed_s * state.speed, this.end_s);
       this.store.set({ time_s, playing: time_s < this.end_s });
     }
     if (this.dirty) this.draw(now_ms);
     requestAnimationFrame((next_ms) => this.frame(next_ms));
+  }
+
+  /** Comes closer to the present of a run that goes on. */
+  private follow(passed_s: number): void {
+    const missing_s = this.end_s - this.store.state.time_s;
+    if (Math.abs(missing_s) < 1e-6) return;
+    const share = Math.abs(missing_s) < 0.01 ? 1 : 1 - Math.exp(-passed_s / CATCHING_UP_S);
+    this.following = true;
+    this.store.set({ time_s: this.store.state.time_s + share * missing_s, playing: false });
+    this.following = false;
   }
 
   private draw(now_ms: number): void {
@@ -172,6 +207,19 @@ export class App {
 
   private fit(): void {
     for (const pane of this.panes) pane.stage.overlook(pane.placement);
+  }
+
+  private start(): void {
+    const dialog = h("dialog", { id: "start" });
+    const inside = h("div", {});
+    dialog.append(
+      inside,
+      button("close", "Start nothing", () => dialog.close()),
+    );
+    dialog.addEventListener("close", () => dialog.remove());
+    document.body.append(dialog);
+    dialog.showModal();
+    startForm(inside).catch((reason: unknown) => this.say(String(reason)));
   }
 
   private savePicture(): void {

@@ -2,6 +2,10 @@
 
 export interface Session {
   runs: number;
+  /** Whether the run goes on. */
+  live: boolean;
+  /** Whether runs can be started. */
+  form: boolean;
 }
 
 /** Returns the scenes inside an exported page; none if it is served. */

@@ -4,7 +4,12 @@ import { button, choice, clock, h } from "./dom";
 import { SPEEDS, type Store, type ViewState } from "./state";
 
 /** Makes the timeline; `end_s` says how far it reaches, which grows in a live run. */
-export function timeline(store: Store, warmup_s: number, end_s: () => number): HTMLElement {
+export function timeline(
+  store: Store,
+  warmup_s: number,
+  end_s: () => number,
+  live?: HTMLElement,
+): HTMLElement {
   const play = button("▶", "Play or pause (space)", () => toggle(store, end_s()));
   play.id = "play";
   const slider = h("input", { type: "range", min: "0", step: "any", id: "seek" });
@@ -16,6 +21,7 @@ export function timeline(store: Store, warmup_s: number, end_s: () => number): H
   speed.select.id = "speed";
   const span = heatWindow(store, warmup_s, end_s);
   const root = h("footer", { className: "timeline" }, play, slider, now, speed.root, span);
+  if (live) root.prepend(live);
   const update = () => {
     const { state } = store;
     const end = end_s();

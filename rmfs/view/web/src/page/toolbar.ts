@@ -9,6 +9,8 @@ export interface Actions {
   copyLink(): void;
   help(): void;
   fit(): void;
+  /** Opens the form that starts a run, where that is possible. */
+  start?(): void;
 }
 
 type Key = "mode" | "robots" | "pods" | "heat";
@@ -94,6 +96,7 @@ export function toolbar(store: Store, tiers: number, actions: Actions): HTMLElem
     button("link", "Copy a link to this very view (l)", actions.copyLink),
     button("?", "Keys (?)", actions.help),
   );
+  if (actions.start) root.append(button("new run", "Start a run from a form", actions.start));
   const update = () => {
     for (const one of follow) one();
   };

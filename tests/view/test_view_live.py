@@ -1,0 +1,204 @@
+"""A watched run: the same run, whatever pages do; told completely; its rules exchanged by hand."""
+
+import threading
+import time
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import rmfs
+from rmfs.errors import InputError
+from rmfs.measure import load_run, write_run
+from rmfs.measure.dictionary import TABLES
+from rmfs.simulation.run import Run
+from rmfs.traffic import Piece
+from rmfs.view import scene
+from rmfs.view.container import unpack
+from rmfs.view.live import Known, LiveRun
+
+NOTHING = Known()
+NAMES = dict.fromkeys(("layout", "scenario", "controllers"), "default")
+SETTINGS: list[tuple[list[str], Any]] = [
+    (["layout", "robots"], 8),
+    (["scenario", "warmup_s"], 30.0),
+    (["scenario", "duration_s"], 300.0),
+]
+
+
+class Watched:
+    """A run in a thread of its own."""
+
+    def __init__(self, *, speed: float | None = None) -> None:
+        self.live = LiveRun(NAMES, title="test", speed=speed)
+        self.done: Run | None = None
+        self.thread = threading.Thread(target=self._simulate, daemon=True)
+
+    def _simulate(self) -> None:
+        self.done = rmfs.simulate(
+            "default",
+            "default",
+            "default",
+            seed=4,
+            overrides=SETTINGS,
+            events=self.live.events,
+            observers=[self.live],
+        )
+
+    def start(self) -> None:
+        self.thread.start()
+
+    def result(self) -> Run:
+        self.thread.join(60)
+        assert self.done is not None
+        return self.done
+
+    def told(self, known: Known = NOTHING, page: str = "") -> tuple[dict[str, Any], dict[str, Any]]:
+        return unpack(self.live.news(known, page))
+
+    def until(self, holds: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
+        for _ in range(1000):
+            header, _ = self.told()
+            if holds(header["live"]):
+                return header["live"]
+            time.sleep(0.01)
+        raise AssertionError(header["live"])
+
+
+def reproducible(run: Run) -> pd.Series:
+    names = [column.name for column in TABLES["footprint"] if not column.measured]
+    return run.footprint[names]
+
+
+@pytest.fixture(scope="module")
+def unwatched() -> Run:
+    return rmfs.simulate("default", "default", "default", seed=4, overrides=SETTINGS, trace=True)
+
+
+def test_pausing_stepping_and_speeds_change_nothing(unwatched: Run) -> None:
+    watched = Watched(speed=200.0)
+    watched.start()
+    live = watched.live
+    live.control({"do": "pause"})
+    stood = watched.until(lambda told: told["paused"])["known_s"]
+    for _ in range(5):
+        live.control({"do": "step"})
+        now = watched.until(lambda told: told["known_s"] > stood)["known_s"]  # noqa: B023
+        stood = now
+    live.control({"do": "step", "by_s": 7.25})
+    time.sleep(0.2)
+    told = watched.until(lambda told: told["known_s"] > stood + 7)
+    assert told["known_s"] == pytest.approx(stood + 7.25, abs=2e-6)
+    live.control({"do": "run", "speed": 2000.0})
+    live.control({"do": "run"})
+    run = watched.result()
+    pd.testing.assert_series_equal(reproducible(run), reproducible(unwatched))
+    for name, column in unwatched.trace.items():
+        np.testing.assert_array_equal(run.trace[name], column)
+
+
+def test_what_is_told_bit_by_bit_is_the_whole(unwatched: Run) -> None:
+    watched = Watched(speed=400.0)
+    watched.start()
+    parts: list[dict[str, Any]] = []
+    known, ended = Known(), ""
+    while not ended:
+        header, arrays = watched.told(known)
+        parts.append(arrays)
+        known, ended = Known(**header["live"]["known"]), header["live"]["ended"]
+        time.sleep(0.03)
+    assert len(parts) > 5
+    events = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    assert unwatched.events is not None
+    expected = scene.happenings(unwatched.events.columns())
+    for name, column in expected.items():
+        np.testing.assert_array_equal(events[name], column)
+    trace = unwatched.trace
+    for robot in range(8):
+        rows: list[tuple[float, int, int]] = []
+        for part in parts:
+            first, last = part["motion.robot_start"][robot : robot + 2]
+            names = ("motion.t0_us", "motion.kind", "motion.from_wp")
+            news = list(zip(*(part[name][first:last].tolist() for name in names), strict=True))
+            rows = [row for row in rows if not news or row[0] < news[0][0]] + news
+        # standing is told bit by bit
+        told = [b for a, b in pairwise([(0, -1, -1), *rows]) if not b[1] == a[1] == Piece.HOLD]
+        own = trace["robot"] == robot
+        names = ("t0_us", "kind", "from_wp")
+        assert told == list(zip(*(trace[name][own].tolist() for name in names), strict=True))
+
+
+def test_a_page_that_goes_leaves_the_run_as_it_was(unwatched: Run) -> None:
+    watched = Watched()
+    watched.live.control({"do": "pause"})
+    watched.start()
+    watched.told(page="one")
+    watched.told(page="two")
+    watched.live.leave("one")
+    time.sleep(0.2)
+    assert watched.thread.is_alive()
+    watched.live.leave("two")
+    pd.testing.assert_series_equal(reproducible(watched.result()), reproducible(unwatched))
+
+
+def test_a_rule_exchanged_by_hand_is_told(tmp_path: Any) -> None:
+    watched = Watched()
+    watched.live.control({"do": "pause"})
+    watched.start()
+    watched.live.control({"do": "step", "by_s": 100.0})
+    watched.until(lambda told: told["known_s"] >= 99.99)
+    with pytest.raises(InputError, match="did you mean random"):
+        watched.live.exchange("psa", {"name": "randm"})
+    with pytest.raises(InputError, match="cannot be exchanged"):
+        watched.live.exchange("pp", {"name": "far"})
+    with pytest.raises(InputError, match="dummy"):
+        watched.live.exchange("psa", {"name": "dummy"})
+    watched.live.exchange("psa", {"name": "random"})
+    told = watched.until(lambda told: told["controllers"]["psa"]["name"] == "random")
+    assert told["paused"]
+    watched.live.control({"do": "run"})
+    run = watched.result()
+    assert run.footprint["controllers"] == "default+psa=random@100.000000s"
+    write_run(run, tmp_path / "run")
+    parameters = load_run(tmp_path / "run").parameters
+    (by_hand,) = parameters["interventions"]
+    assert (by_hand["time_s"], by_hand["problem"]) == (100.0, "psa")
+    assert by_hand["rule"]["name"] == "random"
+    assert parameters["controllers"]["name"] == "default"
+    # the same exchange, written down beforehand
+    planned = rmfs.simulate(
+        "default",
+        "default",
+        "default",
+        seed=4,
+        overrides=[
+            *SETTINGS,
+            (
+                ["controllers", "mm"],
+                {"name": "scheduled", "exchanges": [{"at_s": 100.0, "psa": {"name": "random"}}]},
+            ),
+        ],
+    )
+    names = ["units_picked", "distance_m", "trips", "pick_visits", "order_turnover_mean_s"]
+    assert run.footprint[names].tolist() == planned.footprint[names].tolist()
+
+
+def test_after_the_end_pages_are_told_why() -> None:
+    watched = Watched()
+    watched.start()
+    watched.result()
+    header, _ = unpack(watched.live.scene())
+    assert header["live"]["ended"] == "the run has ended"
+    assert header["live"]["known_s"] == 330.0
+    with pytest.raises(InputError, match="has ended"):
+        watched.live.exchange("psa", {"name": "random"})
+
+
+def test_a_run_that_never_began_is_told() -> None:
+    live = LiveRun(NAMES, title="test")
+    live.close("the run was given up")
+    with pytest.raises(InputError, match="given up"):
+        live.scene()
