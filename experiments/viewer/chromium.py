@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rmfs.view.server import Server
 
 PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
-SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+SOFTWARE = ["--no-sandbox", "--enable-unsafe-swiftshader"]
 """Draws without a graphics card; the sandbox needs rights that a container may not have."""
 
 PATIENCE_MS = 120_000

@@ -73,7 +73,9 @@ class EventLog(Observer):
     def __init__(self) -> None:
         self.details: list[str] = []
         self._numbers: dict[str, int] = {}
+        # one flat array of integers: 72 bytes an event, and nothing for the collector to walk
         self._rows = array("q")
+        self._write = self._rows.extend
 
     def __len__(self) -> int:
         """Return the number of events."""
@@ -90,11 +92,13 @@ class EventLog(Observer):
         contained = world.inventory.contained
         self._world = world
         for sku, pod in np.argwhere(contained).tolist():
-            self._add(0.0, Happening.STOCK, pod=pod, sku=sku, units=contained.item(sku, pod))
+            units = contained.item(sku, pod)
+            self._write((0, Happening.STOCK, -1, pod, -1, -1, sku, units, -1))
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
         """A robot has a task."""
-        self._add(time_s, Happening.TASK, robot=robot, station=station, detail=self._detail(kind))
+        now_us, detail = round(time_s * 1e6), self._detail(kind)
+        self._write((now_us, Happening.TASK, robot, -1, station, -1, -1, 0, detail))
 
     def order_created(self, order: Order) -> None:
         """An order arrived."""
@@ -119,16 +123,8 @@ class EventLog(Observer):
         late_bound: bool,
     ) -> None:
         """A unit left a pod."""
-        self._add(
-            time_s,
-            Happening.UNIT_PICKED,
-            robot=robot,
-            pod=pod,
-            station=station,
-            order=order.index,
-            sku=sku,
-            units=1,
-        )
+        now_us = round(time_s * 1e6)
+        self._write((now_us, Happening.UNIT_PICKED, robot, pod, station, order.index, sku, 1, -1))
 
     def bundle_created(self, bundle: Bundle) -> None:
         """A bundle arrived."""
@@ -144,54 +140,34 @@ class EventLog(Observer):
 
     def visit_started(self, time_s: float, station: int, pod: int, robot: int) -> None:
         """A pod is at a station."""
-        self._add(time_s, Happening.VISIT_STARTED, robot=robot, pod=pod, station=station)
+        now_us = round(time_s * 1e6)
+        self._write((now_us, Happening.VISIT_STARTED, robot, pod, station, -1, -1, 0, -1))
 
     def visit_ended(self, time_s: float, station: int, pod: int, robot: int) -> None:
         """A pod leaves a station."""
-        self._add(time_s, Happening.VISIT_ENDED, robot=robot, pod=pod, station=station)
+        now_us = round(time_s * 1e6)
+        self._write((now_us, Happening.VISIT_ENDED, robot, pod, station, -1, -1, 0, -1))
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
         """A station was switched."""
-        self._add(time_s, Happening.STATION_SWITCHED, station=station, units=int(active))
+        now_us, switched = round(time_s * 1e6), Happening.STATION_SWITCHED
+        self._write((now_us, switched, -1, -1, station, -1, -1, int(active), -1))
 
     def controller_exchanged(self, time_s: float, problem: str, name: str) -> None:
         """A controller was exchanged."""
         detail = self._detail(f"{problem}={name}")
-        self._add(time_s, Happening.CONTROLLER_EXCHANGED, detail=detail)
+        now_us, exchanged = round(time_s * 1e6), Happening.CONTROLLER_EXCHANGED
+        self._write((now_us, exchanged, -1, -1, -1, -1, -1, 0, detail))
 
     def _add_order(self, time_s: float, kind: Happening, order: Order) -> None:
-        units = sum(line.units for line in order.lines)
-        self._add(time_s, kind, station=order.station, order=order.index, units=units)
+        units = sum([line.units for line in order.lines])
+        now_us = round(time_s * 1e6)
+        self._write((now_us, kind, -1, -1, order.station, order.index, -1, units, -1))
 
     def _add_bundle(self, time_s: float, kind: Happening, bundle: Bundle, robot: int = -1) -> None:
-        self._add(
-            time_s,
-            kind,
-            robot=robot,
-            pod=bundle.pod,
-            station=bundle.station,
-            order=bundle.index,
-            sku=bundle.sku,
-            units=bundle.units,
-        )
-
-    def _add(
-        self,
-        time_s: float,
-        kind: Happening,
-        *,
-        robot: int = -1,
-        pod: int = -1,
-        station: int = -1,
-        order: int = -1,
-        sku: int = -1,
-        units: int = 0,
-        detail: int = -1,
-    ) -> None:
-        # one flat array of integers: 72 bytes an event, and nothing for the collector to walk
-        self._rows.extend(
-            (round(time_s * 1e6), kind, robot, pod, station, order, sku, units, detail)
-        )
+        now_us, units = round(time_s * 1e6), bundle.units
+        whom = (robot, bundle.pod, bundle.station, bundle.index, bundle.sku)
+        self._write((now_us, kind, *whom, units, -1))
 
     def _detail(self, text: str) -> int:
         number = self._numbers.get(text)

@@ -36,6 +36,12 @@ if TYPE_CHECKING:
 ABSENT_S = 90.0
 """A page that has not asked for so long is gone; one that nobody sees may ask once a minute."""
 
+BETWEEN_NEWS_S = 0.15
+"""Processor time that a run which goes as fast as it can has for itself between two answers."""
+
+LONGEST_WAIT_S = 1.0
+"""Wall time after which a page is answered all the same."""
+
 FIXED = frozenset({Problem.PP})
 """Problems whose controllers cannot be exchanged: the robots' plans are theirs."""
 
@@ -88,6 +94,7 @@ class LiveRun(Observer):
         self._pages: dict[str, float] = {}
         self._simulation: Simulation | None = None
         self._ended = ""
+        self._answered_s = time.process_time()
         # read without the lock, in each round of the run's loop
         self._undisturbed = self._pace.is_free
 
@@ -190,6 +197,7 @@ class LiveRun(Observer):
         if page:
             with self._meeting:
                 self._pages[page] = time.monotonic()
+            self._spare()
         news = self._news(known)
         assert self._simulation is not None
         robots = self._simulation.layout.robots
@@ -271,6 +279,16 @@ class LiveRun(Observer):
         end_s = time.monotonic() + patience_s
         while self._pages and time.monotonic() < end_s:
             time.sleep(0.05)
+
+    def _spare(self) -> None:
+        """Let the run have some time for itself: on a busy machine pages would ask too often."""
+        end_s = time.monotonic() + LONGEST_WAIT_S
+        while self._pace.is_free and not self._ended and time.monotonic() < end_s:
+            missing_s = self._answered_s + BETWEEN_NEWS_S - time.process_time()
+            if missing_s <= 0:
+                break
+            time.sleep(max(missing_s, 0.01))
+        self._answered_s = time.process_time()
 
     def _await_start(self) -> None:
         """Wait until the run has begun.

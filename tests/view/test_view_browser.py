@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
 import re
-import shutil
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from in_browser import needs_browser, show, state
 
 from rmfs.measure import RunFolder
 from rmfs.measure.checker import motion
@@ -19,17 +18,7 @@ from rmfs.measure.checker.trace import Kinematics, read
 from rmfs.view.answers import replay_server
 from rmfs.view.export import export
 
-CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
-
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed"),
-    pytest.mark.skipif(
-        importlib.util.find_spec("playwright") is None, reason="playwright is not installed"
-    ),
-]
-
-SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+pytestmark = [pytest.mark.slow, needs_browser]
 
 POSITIONS = """times => times.map(time_s => {
   const { motion } = window.rmfs.runs[0];
@@ -42,44 +31,12 @@ POSITIONS = """times => times.map(time_s => {
 """Positions of all robots at some times: x and y in turn."""
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        made = playwright.chromium.launch(executable_path=CHROMIUM, args=SOFTWARE)
-        yield made
-        made.close()
-
-
-@pytest.fixture
-def page(browser: Any) -> Iterator[Any]:
-    """A page that must not complain."""
-    # asking the page things from outside needs what its policy forbids
-    made = browser.new_page(viewport={"width": 1100, "height": 700}, bypass_csp=True)
-    complaints: list[str] = []
-    made.on("console", lambda m: complaints.append(m.text) if m.type == "error" else None)
-    made.on("pageerror", lambda error: complaints.append(str(error)))
-    yield made
-    made.close()
-    assert complaints == []
-
-
 @pytest.fixture
 def address(runs: list[RunFolder]) -> Iterator[str]:
     with replay_server(runs[:1]) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield server.url
         server.shutdown()
-
-
-def show(page: Any, url: str) -> None:
-    page.goto(url)
-    page.wait_for_function("window.rmfs?.frames > 0", timeout=90_000)
-
-
-def state(page: Any, name: str) -> Any:
-    return page.evaluate(f"window.rmfs.store.state.{name}")
 
 
 def expected_positions(run: RunFolder, times: np.ndarray) -> np.ndarray:

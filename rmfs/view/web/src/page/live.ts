@@ -22,6 +22,7 @@ export class LiveLink {
   private readonly pace: HTMLSelectElement;
   private readonly present: HTMLButtonElement;
   private failures = 0;
+  private asking = Promise.resolve();
 
   /** `come` is called when something new is known, `say` shows a message. */
   constructor(
@@ -89,7 +90,13 @@ export class LiveLink {
     this.say(this.live.ended);
   }
 
-  private async askOnce(): Promise<void> {
+  /** Asks for what is new, one question after the other: none is answered twice. */
+  private askOnce(): Promise<void> {
+    this.asking = this.asking.then(() => this.fetchNews());
+    return this.asking;
+  }
+
+  private async fetchNews(): Promise<void> {
     const { motion, events } = this.live.known;
     try {
       const answer = await ask(`live?motion=${motion}&events=${events}&page=${this.page}`);
