@@ -148,11 +148,11 @@ def test_wrong_values_are_one_clear_error(tmp_path: Path, body: str, message: st
 
 
 def test_import_writes_a_set_that_says_the_same(tmp_path: Path, capsys):
-    body = block("PodStorageConfig", "Random") + block("PathPlanningConfig", "ODID", Clocking=1)
+    body = block("PodStorageConfig", "Random") + block("PathPlanningConfig", "Dummy", Clocking=1)
     path = written(tmp_path, body)
     target = tmp_path / "ours.toml"
     assert main(["controllers", "import", str(path), "--out", str(target)]) == 0
-    assert "ODID becomes time-windows" in capsys.readouterr().err
+    assert "Dummy becomes time-windows" in capsys.readouterr().err
     assert load(target).choices == load(path).choices
     assert main(["controllers", "import", str(path), "--out", str(target)]) == 2
 
@@ -170,6 +170,8 @@ def test_import_writes_a_set_that_says_the_same(tmp_path: Path, capsys):
         ("WHCAnStar", {}, {"name": "whca-n", "window_s": 30.0, "period_s": 1.0}),
         ("BCP", {"BiasedCostAmount": 6}, {"name": "bcp", "bias_m": 6.0}),
         ("CBS", {"SearchMethod": "BestFirst"}, {"name": "cbs"}),
+        ("ODID", {"MaxNodeCountPerAgent": 750}, {"name": "od-id", "nodes_per_robot": 750}),
+        ("PAS", {"MaxPriorities": 3}, {"name": "pas", "priorities": 3, "window_s": 30.0}),
     ],
 )
 def test_robots_drive_by_the_planner_that_the_file_names(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.control.rawsimo.elements import Number, Rule, Switch, Word, translated
+from rmfs.control.rawsimo.elements import Number, Rule, Switch, Whole, Word, translated
 
 if TYPE_CHECKING:
     from rmfs.config import Table
@@ -71,10 +71,29 @@ _RULES = {
         _PERIOD,
         {**_EVERYWHERE, **_EXACT_WAITS, "SearchMethod": "the search is best first"},
     ),
+    "ODID": Rule(
+        "od-id",
+        {
+            **_PERIOD,
+            **_WINDOW,
+            "LengthOfAWaitStep": Number("wait_s", 2.0),
+            "MaxNodeCountPerAgent": Whole("nodes_per_robot", 100),
+        },
+        {**_EVERYWHERE, "UseFinalReservations": "robots always end where they can stay"},
+    ),
+    "PAS": Rule(
+        "pas",
+        {
+            **_PERIOD,
+            **_WINDOW,
+            "LengthOfAWaitStep": Number("wait_s", 2.0),
+            "MaxPriorities": Whole("priorities", 2),
+        },
+        _EVERYWHERE,
+    ),
 }
 
-_NONE = ("ODID", "PAS", "Simple", "Dummy")
-PP = (*_RULES, *_NONE)
+PP = (*_RULES, "Simple", "Dummy")
 
 
 def pp(kind: str, block: Settings) -> Table:
