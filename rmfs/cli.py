@@ -271,8 +271,8 @@ def plot(
     what: Annotated[
         list[str] | None,
         typer.Option(
-            help="Picture: progression, heat, backlog, turnover, stations, robots, pile-on, "
-            "warmup; may be repeated. [default: all]",
+            help="Picture: progression, heat (or heat:COLUMN of its table), backlog, turnover, "
+            "stations, robots, pile-on, warmup; may be repeated. [default: all]",
             show_default=False,
         ),
     ] = None,
@@ -287,7 +287,7 @@ def plot(
 
     folder = load_run(run)
     for name in what or PICTURES:
-        path = (out or run) / f"{name}.{format_}"
+        path = (out or run) / f"{name.replace(':', '-')}.{format_}"
         save(folder, name, path)
         print(path)
 

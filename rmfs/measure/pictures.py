@@ -37,29 +37,36 @@ FORMATS = {"png": "Software", "svg": "Date", "pdf": "CreationDate"}
 def picture(run: RunFolder, what: str) -> Figure:
     """Draw one picture; the heat map has axes for every tier.
 
+    Parameters
+    ----------
+    what
+        A name in `PICTURES`. The heat map may name its count, by task or load:
+        `heat:loaded_visits`, `heat:pick_waiting_s` (columns of the table `heat`).
+
     Raises
     ------
     InputError
         If there is no such picture, or the run folder lacks what it is drawn from.
     """
-    if what not in PICTURES:
-        raise InputError(f"picture {what}: no such; valid: {', '.join(PICTURES)}")
-    table, draw, title = PICTURES[what]
+    name, _, column = what.partition(":")
+    if name not in PICTURES or (column and name != "heat"):
+        raise InputError(f"picture {what}: no such; valid: {', '.join(PICTURES)}, heat:COLUMN")
+    table, draw, title = PICTURES[name]
     frame = run.table(table)
-    tiers = sorted(frame["tier"].unique()) if what == "heat" else [0]
+    tiers = sorted(frame["tier"].unique()) if name == "heat" else [0]
     figure = Figure(figsize=(7.0, 4.0 * len(tiers)), layout="constrained")
     FigureCanvasAgg(figure)
     for place, tier in enumerate(tiers, start=1):
         ax = figure.add_subplot(len(tiers), 1, place)
-        draw(frame, ax, **_more(run, what, tier))
+        draw(frame, ax, **_more(run, name, tier, column))
         ax.set_title(title if len(tiers) == 1 else f"{title}, tier {tier}")
     return figure
 
 
-def _more(run: RunFolder, what: str, tier: int) -> dict[str, Any]:
+def _more(run: RunFolder, what: str, tier: int, column: str) -> dict[str, Any]:
     """Return what a picture shows besides its table."""
     if what == "heat":
-        return {"tier": tier}
+        return {"tier": tier, **({"column": column} if column else {})}
     if what == "progression":
         return {"bound_per_h": float(run.footprint["units_per_h_bound"])}
     return {}

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from rmfs.cli import main
 from rmfs.measure import load_run, plots, write_run
 from rmfs.measure.dictionary import TABLES
-from rmfs.measure.pictures import PICTURES
+from rmfs.measure.pictures import PICTURES, picture
 
 
 @pytest.fixture(scope="module")
@@ -29,6 +29,20 @@ def test_every_picture_can_be_drawn(folder, what, capsys, tmp_path):
     (file,) = tmp_path.iterdir()
     assert capsys.readouterr().out.split() == [str(file)]
     assert file.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("column", ["loaded_visits", "pick_visits", "store_waiting_s"])
+def test_heat_by_task_and_by_load(folder, tmp_path, column):
+    assert main(["plot", str(folder), "--what", f"heat:{column}", "--out", str(tmp_path)]) == 0
+    (file,) = tmp_path.iterdir()
+    assert file.name == f"heat-{column}.png"
+    figure = picture(load_run(folder), f"heat:{column}")
+    meaning = {one.name: one.meaning for one in TABLES["heat"]}[column]
+    counts = load_run(folder).table("heat")[column]
+    drawn = [len(c.get_paths()) for c in figure.axes[0].collections]
+    assert drawn[-1] == (counts > 0).sum() or not counts.any()
+    labels = [ax.get_ylabel() for ax in figure.axes]
+    assert not counts.any() or any(label.startswith(meaning.split(",")[0]) for label in labels)
 
 
 @pytest.mark.parametrize(("suffix", "begin"), [("svg", b"<?xml"), ("pdf", b"%PDF")])
@@ -72,6 +86,8 @@ def test_the_bound_is_drawn_where_there_is_one(folder):
     ("arguments", "text"),
     [
         (["--what", "colour"], "valid: progression, heat"),
+        (["--what", "backlog:visits"], "valid: progression, heat"),
+        (["--what", "heat:colour"], "valid: visits, loaded_visits"),
         (["--format", "gif", "--what", "heat"], "png, svg, pdf"),
     ],
 )
