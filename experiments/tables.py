@@ -265,6 +265,21 @@ def effects(found: pd.DataFrame, column: str) -> Table:
     return Table(made, decimals, caption)
 
 
+def rows_frame(rows: Mapping[str, Mapping[tuple[str, str], float]], name: str) -> pd.DataFrame:
+    """Return rows as the frame of a table.
+
+    Parameters
+    ----------
+    rows
+        By the name of the row: cells by measure and statistic; the first row has all columns.
+    name
+        What the rows are.
+    """
+    columns = pd.MultiIndex.from_tuples(list(next(iter(rows.values()))))
+    cells = [[row.get(column, float("nan")) for column in columns] for row in rows.values()]
+    return pd.DataFrame(cells, index=pd.Index(list(rows), name=name), columns=columns)
+
+
 def _columns(frame: pd.DataFrame) -> list[tuple[str, str]]:
     """Return the columns as pairs of measure and statistic."""
     return cast("list[tuple[str, str]]", list(frame.columns))

@@ -156,6 +156,7 @@ def plan(
     name_or_path: str | Path,
     *,
     base: Mapping[str, Any] | None = None,
+    replications: int | None = None,
     told: Callable[[int, int], None] | None = None,
 ) -> Plan:
     """Read a design and resolve all of its arms.
@@ -166,6 +167,8 @@ def plan(
         A design file, or the name of a shipped one.
     base
         Entries that replace or complete those of the table `base`.
+    replications
+        Number of seeds in place of that of the design; only for designs without stages.
     told
         Called with the number of arms resolved so far and in all.
 
@@ -176,8 +179,10 @@ def plan(
     """
     path = design_file.locate(name_or_path)
     design, table = design_file.read(path)
-    if base:
-        table = {**table, "base": {**table["base"], **base}}
+    if base or replications is not None:
+        table = {**table, "base": {**table["base"], **(base or {})}}
+        if replications is not None:
+            table["replications"] = replications
         design = config.validate(DesignFile, table, str(path))
     made, problems = arms(design, path.parent)
     if any(problem.startswith("base: ") for problem in problems):

@@ -12,14 +12,14 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-import pandas as pd
-
 from experiments.papers.study import command, done, parser
 from experiments.statistics import interval
-from experiments.tables import HALF, Table, digits
+from experiments.tables import HALF, Table, digits, rows_frame
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
+
+    import pandas as pd
 
 LANE, DRIVING = "controllers.poa.fast_lane", "driving"
 COLUMNS = ("orders_completed", "units_picked", "units_per_visit", "distance_m")
@@ -28,13 +28,6 @@ THEIRS = {
     False: (22383.0, 36856.0, 3.92, 740_300.0),
 }
 """Measured on RAWSim-O, seed 0: the same columns, with and without fast lane."""
-
-
-def _frame(rows: Mapping[str, Mapping[tuple[str, str], float]], name: str) -> pd.DataFrame:
-    """Return rows as a table whose columns are pairs; those of the first row are all there are."""
-    columns = pd.MultiIndex.from_tuples(list(next(iter(rows.values()))))
-    cells = [[row.get(column, float("nan")) for column in columns] for row in rows.values()]
-    return pd.DataFrame(cells, index=pd.Index(list(rows), name=name), columns=columns)
 
 
 def beside(frame: pd.DataFrame) -> Table:
@@ -47,7 +40,7 @@ def beside(frame: pd.DataFrame) -> Table:
             row[column, "mean"], row[column, HALF] = found.mean, found.half_width
             row[f"{column} against RAWSim-O, %", ""] = 100 * (found.mean / theirs - 1)
         rows[f"{driving}, {'with' if lane else 'without'} fast lane"] = row
-    made = _frame(rows, "robots and rule")
+    made = rows_frame(rows, "robots and rule")
     decimals = {key: 1 for row in rows.values() for key in row} | {("seeds", ""): 0}
     for column in COLUMNS:
         shown = digits(made[column, HALF], made[column, "mean"])
@@ -73,7 +66,7 @@ def gain(frame: pd.DataFrame, columns: Sequence[str] = COLUMNS) -> Table:
     rows["RAWSim-O (one run)"] = {
         (column, "mean"): 100 * (with_lane / without - 1) for column, with_lane, without in pairs
     }
-    made = _frame(rows, "what the fast lane adds, %")
+    made = rows_frame(rows, "what the fast lane adds, %")
     caption = (
         "With against without fast lane, seed by seed, in percent with 95% confidence intervals of "
         "the mean; one run more lies within the mean +- what stands under one run, with 95%."

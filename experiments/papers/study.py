@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 PUBLISHED = Path("results") / "published"
 RESULTS = Path("results")
+SMOKE = {"scenario.duration_s": 300.0, "scenario.warmup_s": 0.0}
 FAILED = 1
 WRONG_INPUT = 2
 INTERRUPTED = 130
@@ -46,7 +47,8 @@ class Study:
     published
         Where tables and pictures go.
     suffix
-        Of their names: "-reference" where a layout of the reference took the place of its twin.
+        Of their names: "-reference" where a layout of the reference took the place of its twin,
+        "-smoke" where runs are short.
     """
 
     plan: Plan
@@ -110,6 +112,11 @@ def parser(
     )
     made.add_argument("--jobs", type=int, help="runs at a time (default: one per core)")
     made.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler or cluster profile")
+    made.add_argument(
+        "--smoke",
+        action="store_true",
+        help="two seeds, five simulated minutes: shows that everything works",
+    )
     if reference is not None:
         made.add_argument(
             "--reference",
@@ -153,6 +160,12 @@ def done(given: argparse.Namespace, *, layout: str | None = None, part: str = ""
         raise SystemExit(FAILED)
     given.published.mkdir(parents=True, exist_ok=True)
     return Study(made, load(folder), folder, given.published, suffix)
+
+
+def station_units_per_h(study: Study) -> float:
+    """Return what a pick station of a study can do at most: those of its first arm, all alike."""
+    stations = study.layout(study.plan.arms[0]).pick_stations
+    return 3600.0 / min(station.unit_transfer_s for station in stations)
 
 
 def _reference(given: argparse.Namespace) -> tuple[dict[str, str] | None, str]:

@@ -1,0 +1,141 @@
+"""What joint decisions are worth: tables that the studies of solver-backed controllers share."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from experiments.papers.study import FAILED
+from experiments.statistics import interval
+from experiments.tables import HALF, Table, digits, rows_frame
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pandas as pd
+
+CONTROLLERS = "controllers"
+RATES = ("units_per_h", "lines_per_h", "orders_per_h")
+EFFORT = ("units_per_visit", "orders_per_visit", "distance_per_unit_m", "distance_per_order_m")
+SHARES = tuple(f"{kind}_decision_share" for kind in ("optimiser", "heuristic", "stale", "failed"))
+COLUMNS = (*RATES, "station_share", *EFFORT, "order_turnover_median_s")
+DECISION_S = "optimiser_wall_median_s"
+LEAST_SHARE = 0.9
+"""Share of decisions by optimisers below which a run says nothing about optimisers."""
+
+
+def completed(frame: pd.DataFrame, station_units_per_h: float) -> pd.DataFrame:
+    """Return the runs with two measures more.
+
+    Parameters
+    ----------
+    frame
+        Results of a design.
+    station_units_per_h
+        What a pick station can do at most: 3600 s / the time a unit takes.
+
+    Returns
+    -------
+    The frame with `distance_per_order_m`, metres of all robots per completed order, and
+    `station_share`, units per hour / what all stations can do.
+    """
+    limit = frame["pick_stations"] * station_units_per_h
+    return frame.assign(
+        distance_per_order_m=frame["distance_m"] / frame["orders_completed"],
+        station_share=frame["units_per_h"] / limit,
+    )
+
+
+def overview(frame: pd.DataFrame, groups: Sequence[str], columns: Sequence[str] = COLUMNS) -> Table:
+    """Return the means of every kind of run with intervals, decision times, and shares.
+
+    Parameters
+    ----------
+    frame
+        As `completed` returns it.
+    groups
+        Columns whose values tell the rows.
+    columns
+        Measures with intervals.
+    """
+    rows: dict[str, dict[tuple[str, str], float]] = {}
+    for levels, runs in frame.groupby(list(groups), sort=False):
+        row = {("seeds", ""): float(len(runs))}
+        for column in columns:
+            found = interval(runs[column])
+            row[column, "mean"], row[column, HALF] = found.mean, found.half_width
+        for column in (DECISION_S, *SHARES, "units_per_h_bound"):
+            row[column, ""] = float(runs[column].mean())
+        rows[", ".join(str(level) for level in levels)] = row
+    made = rows_frame(rows, ", ".join(groups))
+    decimals = {("seeds", ""): 0, (DECISION_S, ""): 3, ("units_per_h_bound", ""): 0}
+    decimals |= {(column, ""): 3 for column in SHARES}
+    for column in columns:
+        shown = digits(made[column, HALF], made[column, "mean"])
+        decimals |= {(column, "mean"): shown, (column, HALF): shown}
+    caption = (
+        "Means over seeds with 95% confidence intervals (Student's t). station_share: units per "
+        "hour / what the pick stations can do. Decisions: who took them, as shares of all that "
+        "optimisers were asked for. units_per_h_bound: proven for every controller."
+    )
+    return Table(made, decimals, caption)
+
+
+def gains(
+    frame: pd.DataFrame,
+    groups: Sequence[str],
+    baseline: str,
+    columns: Sequence[str] = (*RATES, *EFFORT),
+) -> Table:
+    """Return what each controller does better than the baseline, in percent, seed by seed.
+
+    Parameters
+    ----------
+    frame
+        As `completed` returns it.
+    groups
+        Columns within whose values controllers are compared.
+    baseline
+        Level of `controllers` that the others are compared with.
+    """
+    rows: dict[str, dict[tuple[str, str], float]] = {}
+    for levels, runs in frame.groupby(list(groups), sort=False):
+        where = ", ".join(str(level) for level in levels)
+        for controllers in runs[CONTROLLERS].unique():
+            if controllers == baseline:
+                continue
+            row: dict[tuple[str, str], float] = {}
+            for column in columns:
+                wide = runs.pivot_table(index="replication", columns=CONTROLLERS, values=column)
+                found = interval(100 * (wide[controllers] / wide[baseline] - 1))
+                row[column, "mean"], row[column, HALF] = found.mean, found.half_width
+            rows[f"{where}, {controllers}"] = row
+    made = rows_frame(rows, ", ".join((*groups, CONTROLLERS)))
+    caption = (
+        f"Difference to {baseline} in percent, seed by seed, with 95% confidence intervals "
+        "(Student's t)."
+    )
+    return Table(made, {(c, part): 1 for c in columns for part in ("mean", HALF)}, caption)
+
+
+def require_optimised(frame: pd.DataFrame, least: float = LEAST_SHARE) -> None:
+    """Refuse results of which optimisers decided too little.
+
+    Parameters
+    ----------
+    frame
+        Results; controllers that ask no optimisers have no shares and are passed over.
+    least
+        Least mean share per arm of decisions by optimisers.
+
+    Raises
+    ------
+    SystemExit
+        If an arm has less: what it shows is not the benefit of optimisers.
+    """
+    shares = frame.groupby("arm", sort=False)["optimiser_decision_share"].mean().dropna()
+    few = shares[shares < least]
+    if len(few):
+        told = "; ".join(f"{arm}: {share:.1%}" for arm, share in few.items())
+        print(f"under {least:.0%} of the decisions by optimisers: {told}", file=sys.stderr)
+        raise SystemExit(FAILED)

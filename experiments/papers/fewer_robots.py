@@ -1,0 +1,96 @@
+"""How many robots stations need: rules against orders and pods decided together.
+
+Units per hour over the size of the fleet on the small site, with what the stations can do and the
+proven bound in the picture, and the smallest fleet with which each controller reaches 95 % of what
+the stations can do. About 0.15 CPU hours.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from experiments.figures.lines import lines
+from experiments.figures.style import saving
+from experiments.papers.benefit import completed, overview, require_optimised
+from experiments.papers.study import command, done, parser, station_units_per_h
+from experiments.statistics import interval
+from experiments.tables import HALF, Table, rows_frame
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pandas as pd
+
+    from experiments.papers.study import Study
+
+ROBOTS = "layout.robots"
+ENOUGH = 0.95
+"""Share of what the stations can do that a fleet is to reach."""
+
+COLUMNS = ("units_per_h", "station_share", "units_per_visit", "distance_per_unit_m")
+
+
+def needed(frame: pd.DataFrame, enough: float = ENOUGH) -> Table:
+    """Return the smallest fleet with which each controller feeds the stations.
+
+    Parameters
+    ----------
+    frame
+        As `completed` returns it.
+    enough
+        Share of what the stations can do.
+
+    Returns
+    -------
+    Per controller `robots` (nan if no fleet of the design does it), and the share with that fleet.
+    """
+    rows: dict[str, dict[tuple[str, str], float]] = {}
+    for controllers, runs in frame.groupby("controllers", sort=False):
+        row = dict.fromkeys([("robots", ""), ("share", "mean"), ("share", HALF)], float("nan"))
+        for robots, fleet in runs.groupby(ROBOTS):
+            found = interval(fleet["station_share"])
+            if found.mean >= enough:
+                row |= {("robots", ""): float(str(robots))}
+                row |= {("share", "mean"): found.mean, ("share", HALF): found.half_width}
+                break
+        rows[str(controllers)] = row
+    caption = (
+        f"Smallest fleet of the design that reaches {enough:.0%} of what the pick stations can do."
+    )
+    decimals = {("robots", ""): 0, ("share", "mean"): 3, ("share", HALF): 3}
+    return Table(rows_frame(rows, "controllers"), decimals, caption)
+
+
+def picture(study: Study, frame: pd.DataFrame, limit: float) -> Path:
+    """Draw units per hour over the fleet, with the bounds."""
+    path = study.place("fewer-robots.png")
+    with saving(path, 6.0, 4.0) as figure:
+        ax = figure.subplots()
+        lines(frame, ROBOTS, "units_per_h", "controllers", ax)
+        bound = frame.groupby(ROBOTS)["units_per_h_bound"].max()
+        ax.plot(bound.index, bound, color="black", linestyle=":", label="proven bound")
+        ax.axhline(
+            ENOUGH * limit, color="0.5", linewidth=0.8, label=f"{ENOUGH:.0%} of the stations"
+        )
+        ax.set_xlabel("robots")
+        ax.set_ylim(bottom=0)
+        ax.legend(fontsize=8)
+    study.record(path, ["units_per_h", "units_per_h_bound"], kind="lines", confidence=0.95)
+    return path
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the study and publish it."""
+    study = done(parser("fewer-robots", __doc__).parse_args(arguments))
+    each = station_units_per_h(study)
+    frame = completed(study.frame, each)
+    table = overview(frame, ("controllers", ROBOTS), COLUMNS)
+    study.publish(table, "fewer-robots", COLUMNS)
+    study.publish(needed(frame), "fewer-robots-needed", ("station_share",))
+    print(picture(study, frame, each * frame["pick_stations"].iloc[0]))
+    require_optimised(study.frame)
+
+
+if __name__ == "__main__":
+    sys.exit(command(main))

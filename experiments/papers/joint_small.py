@@ -1,0 +1,40 @@
+"""Orders, pods and robots decided together on a small site (Jiao, Huang, Song, Li, Wang 2025).
+
+That paper lets a model decide pick orders, pods and robots together (M1G), by its heuristic too
+(HADGS), and finds 16 % more orders per hour, and 30 % less distance per order, than rules that
+decide one after the other (SEQU). Here its site is rebuilt as far as it is published, with ten and
+six robots, and with a backlog of 100 orders as in the paper as well as with orders that arrive in
+time whatever the controllers do. Beside M1G and HADGS stand our joint controllers, with whole
+orders and with split orders (Xie, Thieme, Krenzler, Li 2021). About 0.3 CPU hours.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from experiments.papers.benefit import (
+    COLUMNS,
+    completed,
+    gains,
+    overview,
+    require_optimised,
+)
+from experiments.papers.study import command, done, parser, station_units_per_h
+
+GROUPS = ("demand", "layout.robots")
+BASELINE = "sequ"
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the study and publish it."""
+    study = done(parser("joint-small", __doc__).parse_args(arguments))
+    frame = completed(study.frame, station_units_per_h(study))
+    study.publish(overview(frame, (*GROUPS, "controllers")), "joint-small", COLUMNS)
+    study.publish(gains(frame, GROUPS, BASELINE), "joint-small-gains", COLUMNS)
+    unsplit = frame[frame["controllers"].isin(["pile-on", "pile-on-split"])]
+    study.publish(gains(unsplit, GROUPS, "pile-on"), "joint-small-split", COLUMNS)
+    require_optimised(study.frame)
+
+
+if __name__ == "__main__":
+    sys.exit(command(main))

@@ -1,0 +1,72 @@
+"""What thinking costs: units per hour over the time limit of the optimiser.
+
+The small site with six robots and split orders. `fixed`: an answer takes its whole limit, as if
+the solver used all of it. `work`: it takes the work it was; a solver that has proven its optimum
+stops. Both repeat. About 0.1 CPU hours; with `--wall` the same under wall time at four limits,
+which does not repeat, to be run on a machine with nothing else to do (0.02 CPU hours).
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from experiments.figures.lines import lines
+from experiments.figures.style import saving
+from experiments.papers.benefit import completed, overview, require_optimised
+from experiments.papers.study import command, done, parser, station_units_per_h
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pandas as pd
+
+    from experiments.papers.study import Study
+
+THINKING, LIMIT = "thinking", "controllers.poa.work_s"
+COLUMNS = ("units_per_h", "units_per_visit", "distance_per_unit_m", "paced_mean_s")
+
+
+def paced(frame: pd.DataFrame) -> pd.DataFrame:
+    """Return the runs with `paced_mean_s`: simulated time that an answer took, on average."""
+    return frame.assign(paced_mean_s=frame["paced_s"] / frame["optimiser_calls"])
+
+
+def picture(study: Study, frame: pd.DataFrame) -> Path:
+    """Draw units per hour over the limit, a line per mode."""
+    path = study.place("price-of-thinking.png")
+    with saving(path, 6.0, 4.0) as figure:
+        ax = figure.subplots()
+        timed = frame[frame[THINKING] != "none"]
+        words = timed[THINKING].str.split(expand=True)
+        timed = timed.assign(mode=words[0], limit_s=words[1].astype(float))
+        lines(timed, "limit_s", "units_per_h", "mode", ax)
+        at_once = frame.loc[frame[THINKING] == "none", "units_per_h"]
+        if len(at_once):
+            ax.axhline(at_once.mean(), color="0.5", linewidth=0.8, label="no time at all")
+        ax.set_xscale("log")
+        ax.set_xlabel("time limit of the optimiser, s")
+        ax.legend(fontsize=8)
+    study.record(path, ["units_per_h"], kind="lines", confidence=0.95)
+    return path
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the study and publish it."""
+    options = parser("price-of-thinking", __doc__)
+    options.add_argument("--wall", action="store_true", help="wall time at four limits instead")
+    given = options.parse_args(arguments)
+    if given.wall:
+        given.design = "price-of-thinking-wall"
+    study = done(given)
+    frame = paced(completed(study.frame, station_units_per_h(study)))
+    level = LIMIT if LIMIT in frame and THINKING not in frame else THINKING
+    name = study.plan.design.name
+    study.publish(overview(frame, (level,), COLUMNS), name, ["units_per_h", "paced_s"])
+    if level == THINKING:
+        print(picture(study, frame))
+    require_optimised(study.frame)
+
+
+if __name__ == "__main__":
+    sys.exit(command(main))
