@@ -168,7 +168,7 @@ def plan(
     base
         Entries that replace or complete those of the table `base`.
     replications
-        Number of seeds in place of that of the design; only for designs without stages.
+        Number of seeds in place of the design's own; only for designs without stages.
     told
         Called with the number of arms resolved so far and in all.
 
@@ -182,6 +182,7 @@ def plan(
     if base or replications is not None:
         table = {**table, "base": {**table["base"], **(base or {})}}
         if replications is not None:
+            table = {key: value for key, value in table.items() if key != "seeds"}
             table["replications"] = replications
         design = config.validate(DesignFile, table, str(path))
     made, problems = arms(design, path.parent)

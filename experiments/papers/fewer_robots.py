@@ -89,7 +89,7 @@ def main(arguments: list[str] | None = None) -> None:
     study.publish(table, "fewer-robots", COLUMNS)
     study.publish(needed(frame), "fewer-robots-needed", ("station_share",))
     print(picture(study, frame, each * frame["pick_stations"].iloc[0]))
-    require_optimised(study.frame)
+    require_optimised(study)
 
 
 if __name__ == "__main__":

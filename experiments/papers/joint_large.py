@@ -29,7 +29,7 @@ def main(arguments: list[str] | None = None) -> None:
     frame = completed(study.frame, station_units_per_h(study))
     study.publish(overview(frame, ("demand", "controllers")), "joint-large", COLUMNS)
     study.publish(gains(frame, ("demand",), BASELINE), "joint-large-gains", COLUMNS)
-    require_optimised(study.frame)
+    require_optimised(study)
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ def main(arguments: list[str] | None = None) -> None:
     study.publish(gains(frame, GROUPS, BASELINE), "joint-small-gains", COLUMNS)
     unsplit = frame[frame["controllers"].isin(["pile-on", "pile-on-split"])]
     study.publish(gains(unsplit, GROUPS, "pile-on"), "joint-small-split", COLUMNS)
-    require_optimised(study.frame)
+    require_optimised(study)
 
 
 if __name__ == "__main__":

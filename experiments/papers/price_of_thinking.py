@@ -65,7 +65,7 @@ def main(arguments: list[str] | None = None) -> None:
     study.publish(overview(frame, (level,), COLUMNS), name, ["units_per_h", "paced_s"])
     if level == THINKING:
         print(picture(study, frame))
-    require_optimised(study.frame)
+    require_optimised(study)
 
 
 if __name__ == "__main__":

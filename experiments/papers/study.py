@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 PUBLISHED = Path("results") / "published"
 RESULTS = Path("results")
+_SMOKE = "-smoke"
 SMOKE = {"scenario.duration_s": 300.0, "scenario.warmup_s": 0.0}
 FAILED = 1
 WRONG_INPUT = 2
@@ -56,6 +57,11 @@ class Study:
     folder: Path
     published: Path
     suffix: str = ""
+
+    @property
+    def smoke(self) -> bool:
+        """Whether its runs are short, to show only that everything works."""
+        return self.suffix.endswith(_SMOKE)
 
     def table(self, name: str) -> pd.DataFrame:
         """Return a table that was kept of every run."""
@@ -150,7 +156,11 @@ def done(given: argparse.Namespace, *, layout: str | None = None, part: str = ""
     base, suffix = _reference(given)
     if base is None and layout is not None:
         base = {"layout": layout}
-    made = plan(given.design, base=base)
+    if given.smoke:
+        suffix += _SMOKE
+        made = plan(given.design, base={**(base or {}), **SMOKE}, replications=2)
+    else:
+        made = plan(given.design, base=base)
     folder = given.out if given.out is not None else RESULTS / f"{made.design.name}{suffix}"
     folder = folder / part
     with watching(made.design.name) as watcher:

@@ -17,6 +17,7 @@ from rmfs.control.problems import Problem
 from rmfs.control.solutions import from_text, to_text
 from rmfs.errors import InputError
 from rmfs.simulation.pacing import OptimiserError, pacing_settings
+from rmfs.simulation.pacing.computed import SECONDS_PER_CALL, SECONDS_PER_UNIT
 
 
 def asked(pacing: str, overrides=(), orders: int = 2, **parameters):
@@ -46,7 +47,7 @@ def test_instant_answers_are_applied_before_the_controller_goes_on() -> None:
         ("fixed=5", (), 5.0),
         ("fixed=0", (), 0.0),
         ("work", [(["seconds_per_unit"], 1.5), (["seconds_per_call"], 0.25)], 3.25),
-        ("work", [(["seconds_per_unit", "rule"], 2.0)], 4.0),
+        ("work", [(["seconds_per_unit", "rule"], 2.0), (["seconds_per_call"], 0.0)], 4.0),
     ],
 )
 def test_an_answer_takes_the_time_of_its_mode(pacing, overrides, expected_s) -> None:
@@ -54,6 +55,13 @@ def test_an_answer_takes_the_time_of_its_mode(pacing, overrides, expected_s) -> 
     time_s, call = rule.told[0]
     assert (time_s, call.paced_s) == (1.0 + expected_s, expected_s)
     assert [order.assigned_s for order in made.ledger.orders.values()] == [time_s] * 2
+
+
+def test_by_default_a_call_and_a_unit_take_what_was_measured() -> None:
+    """Two units of work of the back end `rule`, to the microsecond above."""
+    rule, _ = asked("work")
+    expected_s = SECONDS_PER_CALL["rule"] + 2 * SECONDS_PER_UNIT["rule"]
+    assert expected_s <= rule.told[0][1].paced_s < expected_s + 2e-6
 
 
 def test_a_distribution_is_drawn_from_the_seed() -> None:

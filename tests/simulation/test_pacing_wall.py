@@ -5,7 +5,11 @@ Lower limits are exact. The upper one allows a busy machine `LATE_S` of wall tim
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import asking
 import pytest
@@ -151,3 +155,41 @@ def test_work_repeats() -> None:
     first, second = (whole("work", more=[rates]) for _ in range(2))
     assert first.footprint["paced_s"] > 0
     assert repeating(first).equals(repeating(second))
+
+
+SPIN = "import time\nend = time.monotonic() + 60\nwhile time.monotonic() < end: pass"
+
+
+@contextmanager
+def busy(cores: int) -> Iterator[None]:
+    """Keep cores busy with something else."""
+    others = [subprocess.Popen([sys.executable, "-c", SPIN]) for _ in range(cores)]
+    try:
+        yield
+    finally:
+        for other in others:
+            other.kill()
+            other.wait()
+
+
+def test_work_repeats_with_one_core_busy_or_two() -> None:
+    """What else the machine does changes the wall time of a question, and nothing of the run."""
+    rates = (["pacing", "seconds_per_unit"], 0.05)
+    with busy(1):
+        one = repeating(whole("work", more=[rates]))
+    with busy(2):
+        two = repeating(whole("work", more=[rates]))
+    assert one.equals(two)
+
+
+@pytest.mark.slow
+def test_a_real_solver_repeats_with_one_core_busy_or_two() -> None:
+    """The same with CP-SAT in the loop: the joint controller of orders and pods."""
+    overrides = [(["scenario", "duration_s"], 900)]
+    footprints = []
+    for cores in (1, 2):
+        with busy(cores):
+            run = simulate("small", "small", "pile-on", seed=1, pacing="work", overrides=overrides)
+        footprints.append(repeating(run))
+    assert footprints[0]["optimiser_calls"] > 20
+    assert footprints[0].equals(footprints[1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from math import ceil
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from rmfs.simulation.agenda import NEVER_US
 from rmfs.simulation.pacing.errors import OptimiserError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
 
     from rmfs.control.asks import Answer, Call
     from rmfs.simulation.pacing.settings import FixedPacing, WorkPacing
@@ -29,7 +30,14 @@ SECONDS_PER_UNIT = {
 """Wall seconds of a unit of work of each back end, measured (docs: optimisers in the loop)."""
 
 
-class Computed:
+SECONDS_PER_CALL = {
+    "cp_sat": 0.01,
+    "rule": 0.001,
+}
+"""Wall seconds that a call of each back end takes besides, by the same measurement."""
+
+
+class Computed(ABC):
     """Solves in this process; nothing runs beside the simulation."""
 
     def begin(self, modules: Iterable[str], give: Callable[[Call, int], None]) -> None:
@@ -60,12 +68,12 @@ class Computed:
         """No limit: what is held back is in the agenda."""
         return NEVER_US
 
-    def end(self) -> None:
+    def end(self) -> None:  # noqa: B027 - not for subclasses: there is nothing to end
         """Nothing is held."""
 
+    @abstractmethod
     def seconds(self, answer: Answer) -> float:
-        """Simulated time that an answer takes."""
-        raise NotImplementedError
+        """Work out the simulated time that an answer takes."""
 
 
 class Instant(Computed):
@@ -84,25 +92,25 @@ class Work(Computed):
         self._per_unit = settings.seconds_per_unit
 
     def seconds(self, answer: Answer) -> float:
-        """Work times the seconds per unit of the back end.
+        """Seconds per call and work times the seconds per unit of the back end.
 
         Raises
         ------
         InputError
             If nothing says what a unit of this back end takes.
         """
-        given = self._per_unit
-        if isinstance(given, dict):
-            rates = SECONDS_PER_UNIT | given
-            if answer.backend not in rates:
-                raise InputError(
-                    f"pacing work: seconds_per_unit.{answer.backend} is missing; known: "
-                    f"{', '.join(rates)}"
-                )
-            rate = rates[answer.backend]
-        else:
-            rate = given
-        return self._per_call + answer.work * rate
+        unit, call = self._per_unit, self._per_call
+        if isinstance(unit, dict):
+            unit = _rate("seconds_per_unit", SECONDS_PER_UNIT | unit, answer.backend)
+        if call is None:
+            call = SECONDS_PER_CALL.get(answer.backend, 0.0)
+        return call + answer.work * unit
+
+
+def _rate(key: str, rates: Mapping[str, float], backend: str) -> float:
+    if backend not in rates:
+        raise InputError(f"pacing work: {key}.{backend} is missing; known: {', '.join(rates)}")
+    return rates[backend]
 
 
 class Fixed(Computed):

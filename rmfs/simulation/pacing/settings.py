@@ -48,8 +48,9 @@ class WorkPacing(_Mode):
     seconds_per_unit: NotNegative | dict[str, NotNegative] = Field(default_factory=dict)
     """Simulated seconds per unit of work: one number for all back ends, or one for each by name;
     those not named take what they take on the machine of the published figures."""
-    seconds_per_call: NotNegative = 0.0
-    """Simulated seconds that every call takes besides."""
+    seconds_per_call: NotNegative | None = None
+    """Simulated seconds that every call takes besides: one number for all back ends; by default
+    what building and the like take on the machine of the published figures."""
 
 
 class FixedPacing(_Mode):

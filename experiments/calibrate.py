@@ -1,0 +1,146 @@
+"""What a unit of work of each solver takes on this machine: the rates of the pacing mode `work`.
+
+`python -m experiments.calibrate` collects the questions that controllers ask in short runs, answers
+each again three times, and takes the least processor time (which other programs disturb little).
+Per back end, seconds of a call and seconds per unit of work are fitted to that by least squares,
+neither below zero. It writes `results/published/seconds-per-unit.md` and .csv, and prints the key
+`pacing.seconds_per_unit` for one's own runs. The defaults in `rmfs/simulation/pacing/computed.py`
+are those of the published table.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import platform
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+from scipy.optimize import nnls
+
+from rmfs import simulate
+from rmfs.files import write_text
+from rmfs.measure.observer import Observer
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.control.asks import Ask, Call
+
+PLACE = Path("results") / "published" / "seconds-per-unit"
+DURATION_S = 600.0
+QUESTIONS = 40
+"""Most questions of a run that are answered again, evenly spread over it."""
+REPETITIONS = 3
+LONG = 1.0
+"""Limit in deterministic seconds of the runs that let CP-SAT search."""
+
+Overrides = list[tuple[list[str], Any]]
+
+CASES: list[tuple[str, str, str, Overrides]] = [
+    ("small", "small", "hadgs", []),
+    ("small", "small", "pile-on", []),
+    ("small", "small", "pile-on-split", []),
+    ("small", "small", "m1g", [(["controllers", "ta", "work_s"], LONG)]),
+    ("large", "large", "pile-on", [(["scenario", "duration_s"], 120.0)]),
+    ("small", "small", "psa-placement", []),
+    ("small", "small", "psa-prices", []),
+    ("small", "small", "psa-stays", []),
+    ("small", "small", "ta-matching", []),
+    ("small", "small", "ta-balance", []),
+    ("small", "small", "ta-routes", []),
+    ("small", "small", "stocking", []),
+]
+"""Layout, scenario, controllers, overrides."""
+
+
+class Collector(Observer):
+    """Keeps the questions of a run."""
+
+    def __init__(self) -> None:
+        self.asks: list[Ask[Any]] = []
+
+    def optimiser_answered(self, call: Call) -> None:
+        """Keep what was asked."""
+        self.asks.append(call.ask)
+
+
+def questions(layout: str, scenario: str, controllers: str, more: Overrides) -> list[Ask[Any]]:
+    """Return questions that controllers ask in a short run."""
+    collector = Collector()
+    overrides: Overrides = [(["scenario", "duration_s"], DURATION_S), *more]
+    simulate(layout, scenario, controllers, seed=1, overrides=overrides, observers=[collector])
+    step = max(1, -(-len(collector.asks) // QUESTIONS))
+    return collector.asks[::step]
+
+
+def answered(asks: Sequence[Ask[Any]], controllers: str) -> pd.DataFrame:
+    """Answer questions again; a row each with `backend`, `work` and `seconds` of the processor."""
+    rows = []
+    for ask in asks:
+        seconds = []
+        for _ in range(REPETITIONS):
+            begin = time.process_time()
+            answer = ask.solve(ask.question)
+            seconds.append(time.process_time() - begin)
+        rows.append((controllers, answer.backend, answer.work, min(seconds)))
+    return pd.DataFrame(rows, columns=["controllers", "backend", "work", "seconds"])
+
+
+def rates(measured: pd.DataFrame) -> pd.DataFrame:
+    """Fit seconds per call and per unit of work, per back end.
+
+    Parameters
+    ----------
+    measured
+        As `answered` returns it.
+
+    Returns
+    -------
+    Indexed by back end: `calls`, `seconds_per_call`, `seconds_per_unit`, and `error`, the mean
+    absolute difference between fitted and measured seconds / the mean of the measured.
+    """
+    rows = {}
+    for backend, calls in measured.groupby("backend"):
+        work, seconds = calls["work"].to_numpy(), calls["seconds"].to_numpy()
+        # columns of like size: units of work differ by ten orders of magnitude
+        unit = max(float(work.max()), 1e-12)
+        found, _ = nnls(np.stack([np.ones_like(work), work / unit], axis=1), seconds)
+        fitted = found[0] + found[1] * work / unit
+        rows[backend] = {
+            "calls": len(calls),
+            "seconds_per_call": found[0],
+            "seconds_per_unit": found[1] / unit,
+            "error": float(np.abs(fitted - seconds).mean() / seconds.mean()),
+        }
+    made = pd.DataFrame.from_dict(rows, orient="index")
+    made.index.name = "backend"
+    return made.astype({"calls": int})
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Measure, and write the table."""
+    options = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    options.add_argument("--out", type=Path, default=PLACE, help=f"default: {PLACE}")
+    given = options.parse_args(arguments)
+    measured = pd.concat([answered(questions(*case), case[2]) for case in CASES])
+    found = rates(measured)
+    told = (
+        f"Measured by `python -m experiments.calibrate` on {datetime.date.today()}: "
+        f"{platform.processor() or platform.machine()}, Python {platform.python_version()}. "
+        "seconds_per_call: of building and all else that does not grow with the work."
+    )
+    given.out.parent.mkdir(parents=True, exist_ok=True)
+    write_text(given.out.with_suffix(".csv"), found.to_csv(float_format="%.4g"))
+    text = found.reset_index().to_markdown(index=False, floatfmt=".3g")
+    write_text(given.out.with_suffix(".md"), f"{text}\n\n{told}\n")
+    print(f"{text}\n\n{told}")
+    values = ", ".join(f"{name} = {rate:.3g}" for name, rate in found["seconds_per_unit"].items())
+    print(f"pacing.seconds_per_unit = {{ {values} }}")
+
+
+if __name__ == "__main__":
+    main()
