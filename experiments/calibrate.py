@@ -52,7 +52,10 @@ CASES: list[tuple[str, str, str, Overrides]] = [
     ("small", "small", "ta-matching", []),
     ("small", "small", "ta-balance", []),
     ("small", "small", "ta-routes", []),
+    ("default", "default", "psa-prices", []),
     ("small", "small", "stocking", []),
+    ("small", "small", "stocking", [(["controllers", "rps", "method"], "highs")]),
+    ("small", "small", "stocking", [(["controllers", "rps", "method"], "rounding")]),
 ]
 """Layout, scenario, controllers, overrides."""
 
@@ -108,7 +111,9 @@ def rates(measured: pd.DataFrame) -> pd.DataFrame:
         work, seconds = calls["work"].to_numpy(), calls["seconds"].to_numpy()
         # columns of like size: units of work differ by ten orders of magnitude
         unit = max(float(work.max()), 1e-12)
-        found, _ = nnls(np.stack([np.ones_like(work), work / unit], axis=1), seconds)
+        # questions of equal work cannot tell a call from its units: then all is in the units
+        per_call = np.full_like(work, float(np.ptp(work) > 0))
+        found, _ = nnls(np.stack([per_call, work / unit], axis=1), seconds)
         fitted = found[0] + found[1] * work / unit
         rows[backend] = {
             "calls": len(calls),

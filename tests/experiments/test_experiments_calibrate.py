@@ -1,0 +1,38 @@
+"""Seconds of a call and of a unit of work: fitted by hand, and measured of a controller."""
+
+from __future__ import annotations
+
+import pandas as pd
+import pytest
+
+from experiments import calibrate
+
+
+def test_a_line_through_the_calls() -> None:
+    """Half a second a call, two seconds a unit; of equal work all is in the units."""
+    measured = pd.DataFrame(
+        [("one", 1.0, 2.5), ("one", 2.0, 4.5), ("one", 4.0, 8.5), ("same", 4.0, 2.0)],
+        columns=["backend", "work", "seconds"],
+    )
+    found = calibrate.rates(measured)
+    assert found.loc["one", "seconds_per_call"] == pytest.approx(0.5)
+    assert found.loc["one", "seconds_per_unit"] == pytest.approx(2.0)
+    assert found.loc["one", "error"] == pytest.approx(0.0, abs=1e-12)
+    assert found.loc["same", "seconds_per_call"] == 0.0
+    assert found.loc["same", "seconds_per_unit"] == pytest.approx(0.5)
+
+
+def test_rates_below_zero_are_not_believed() -> None:
+    measured = pd.DataFrame(
+        [("one", 1.0, 3.0), ("one", 2.0, 2.0)], columns=["backend", "work", "seconds"]
+    )
+    found = calibrate.rates(measured)
+    assert found.loc["one", "seconds_per_unit"] == 0.0
+    assert found.loc["one", "seconds_per_call"] == pytest.approx(2.5)
+
+
+def test_questions_of_a_run_are_answered_again() -> None:
+    asks = calibrate.questions("small", "small", "hadgs", [(["scenario", "duration_s"], 60.0)])
+    measured = calibrate.answered(asks[:3], "hadgs")
+    assert list(measured["backend"]) == ["rule"] * 3
+    assert (measured["work"] > 0).all() and (measured["seconds"] > 0).all()
