@@ -126,6 +126,14 @@ def rates(measured: pd.DataFrame) -> pd.DataFrame:
     return made.astype({"calls": int})
 
 
+def processor() -> str:
+    """Return the name of the processor as far as the system tells it."""
+    told = Path("/proc/cpuinfo")
+    lines = told.read_text(encoding="utf-8").splitlines() if told.is_file() else []
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Measure, and write the table."""
     options = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
@@ -135,7 +143,7 @@ def main(arguments: list[str] | None = None) -> None:
     found = rates(measured)
     told = (
         f"Measured by `python -m experiments.calibrate` on {datetime.date.today()}: "
-        f"{platform.processor() or platform.machine()}, Python {platform.python_version()}. "
+        f"{processor()}, Python {platform.python_version()}. "
         "seconds_per_call: of building and all else that does not grow with the work."
     )
     given.out.parent.mkdir(parents=True, exist_ok=True)

@@ -6,6 +6,7 @@ import pandas as pd
 import pytest
 
 from experiments import calibrate
+from rmfs.simulation.pacing.computed import SECONDS_PER_CALL, SECONDS_PER_UNIT
 
 
 def test_a_line_through_the_calls() -> None:
@@ -32,7 +33,16 @@ def test_rates_below_zero_are_not_believed() -> None:
 
 
 def test_questions_of_a_run_are_answered_again() -> None:
-    asks = calibrate.questions("small", "small", "hadgs", [(["scenario", "duration_s"], 60.0)])
+    asks = calibrate.questions("small", "small", "hadgs", [(["scenario", "duration_s"], 120.0)])
     measured = calibrate.answered(asks[:3], "hadgs")
     assert list(measured["backend"]) == ["rule"] * 3
     assert (measured["work"] > 0).all() and (measured["seconds"] > 0).all()
+
+
+def test_the_defaults_are_those_published() -> None:
+    published = pd.read_csv(calibrate.PLACE.with_suffix(".csv"), index_col="backend")
+    for name, rates in (
+        ("seconds_per_unit", SECONDS_PER_UNIT),
+        ("seconds_per_call", SECONDS_PER_CALL),
+    ):
+        assert rates == pytest.approx(published[name].to_dict(), rel=0.005)

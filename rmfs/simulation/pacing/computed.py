@@ -19,22 +19,28 @@ if TYPE_CHECKING:
     from rmfs.simulation.pacing.settings import FixedPacing, WorkPacing
 
 SECONDS_PER_UNIT = {
-    "cp_sat": 1.0,
-    "highs": 1e-4,
-    "clarabel": 1e-3,
-    "rule": 1e-7,
-    "scipy": 1e-8,
-    "min_cost_flow": 1e-6,
-    "rounding": 1e-4,
+    "cp_sat": 1.18,
+    "highs": 2.10e-4,
+    "clarabel": 2.79e-4,
+    "rule": 1.98e-7,
+    "scipy": 0.0,
+    "min_cost_flow": 1.74e-6,
+    "rounding": 2.89e-5,
 }
-"""Wall seconds of a unit of work of each back end, measured (docs: optimisers in the loop)."""
-
+"""Seconds of a unit of work of each back end, as measured by `python -m experiments.calibrate` on an
+AMD EPYC on 2026-11-21 (results/published/seconds-per-unit.md). An assignment by scipy takes so
+little in a warehouse that nothing is left beside the call."""
 
 SECONDS_PER_CALL = {
-    "cp_sat": 0.01,
-    "rule": 0.001,
+    "cp_sat": 0.0115,
+    "highs": 0.00358,
+    "clarabel": 0.0,
+    "rule": 4.18e-4,
+    "scipy": 8.61e-5,
+    "min_cost_flow": 2.52e-4,
+    "rounding": 1.92e-3,
 }
-"""Wall seconds that a call of each back end takes besides, by the same measurement."""
+"""Seconds of a call besides, such as for building the model: of the same measurement."""
 
 
 class Computed(ABC):
@@ -103,7 +109,7 @@ class Work(Computed):
         if isinstance(unit, dict):
             unit = _rate("seconds_per_unit", SECONDS_PER_UNIT | unit, answer.backend)
         if call is None:
-            call = SECONDS_PER_CALL.get(answer.backend, 0.0)
+            call = _rate("seconds_per_call", SECONDS_PER_CALL, answer.backend)
         return call + answer.work * unit
 
 
