@@ -13,7 +13,7 @@ from rmfs.simulation.agenda import NEVER_US
 from rmfs.simulation.pacing.errors import OptimiserError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable
 
     from rmfs.control.asks import Answer, Call
     from rmfs.simulation.pacing.settings import FixedPacing, WorkPacing
@@ -27,8 +27,8 @@ SECONDS_PER_UNIT = {
     "min_cost_flow": 1.74e-6,
     "rounding": 2.89e-5,
 }
-"""Seconds of a unit of work of each back end, as measured by `python -m experiments.calibrate` on an
-AMD EPYC on 2026-11-21 (results/published/seconds-per-unit.md). An assignment by scipy takes so
+"""Seconds of a unit of work of each back end, as measured by `python -m experiments.calibrate` on
+an AMD EPYC on 2026-11-21 (results/published/seconds-per-unit.md). An assignment by scipy takes so
 little in a warehouse that nothing is left beside the call."""
 
 SECONDS_PER_CALL = {
@@ -40,7 +40,8 @@ SECONDS_PER_CALL = {
     "min_cost_flow": 2.52e-4,
     "rounding": 1.92e-3,
 }
-"""Seconds of a call besides, such as for building the model: of the same measurement."""
+"""Seconds of a call besides, such as for building the model, by the same measurement; of other
+back ends none."""
 
 
 class Computed(ABC):
@@ -107,16 +108,16 @@ class Work(Computed):
         """
         unit, call = self._per_unit, self._per_call
         if isinstance(unit, dict):
-            unit = _rate("seconds_per_unit", SECONDS_PER_UNIT | unit, answer.backend)
+            rates = SECONDS_PER_UNIT | unit
+            if answer.backend not in rates:
+                raise InputError(
+                    f"pacing work: seconds_per_unit.{answer.backend} is missing; known: "
+                    f"{', '.join(rates)}"
+                )
+            unit = rates[answer.backend]
         if call is None:
-            call = _rate("seconds_per_call", SECONDS_PER_CALL, answer.backend)
+            call = SECONDS_PER_CALL.get(answer.backend, 0.0)
         return call + answer.work * unit
-
-
-def _rate(key: str, rates: Mapping[str, float], backend: str) -> float:
-    if backend not in rates:
-        raise InputError(f"pacing work: {key}.{backend} is missing; known: {', '.join(rates)}")
-    return rates[backend]
 
 
 class Fixed(Computed):
