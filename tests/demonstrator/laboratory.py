@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 from rmfs import layout as layouts
 from rmfs.demonstrator import settings
+from rmfs.demonstrator.emulator.pace import RealTime
 from rmfs.demonstrator.emulator.room import Address, Room
 from rmfs.demonstrator.emulator.unkind import Unkindness
 from rmfs.demonstrator.server.demonstration import Demonstration, expected
@@ -23,14 +24,14 @@ class Laboratory:
     `mischief(room)` is called after each tick of the room.
     """
 
-    def __init__(self, folder, unkindness=None, *, real=None, seed=7, mischief=None, memory=None):
+    def __init__(self, folder, unkindness=None, *, real=None, mischief=None, in_step=True):
         self.plan = layouts.load("demonstrator")
         self.robots = settings.robots(self.plan, real)
         self.tags = settings.tags(self.plan, None)
-        self.hub = Hub("127.0.0.1", 0, SECRET, expected(self.robots, is_emulated=True))
+        self.hub = Hub("127.0.0.1", 0, SECRET, expected(self.robots, is_emulated=in_step))
         self.address = Address(*self.hub.address, SECRET)
         self.demonstration = Demonstration(
-            self.hub, self.robots, self.tags, folder / "journal", is_emulated=True
+            self.hub, self.robots, self.tags, folder / "journal", is_emulated=in_step
         )
         self.room = Room(
             self.plan,
@@ -38,10 +39,10 @@ class Laboratory:
             self.tags,
             self.address,
             unkindness or Unkindness(),
-            seed,
-            memory,
+            7,
+            pace=None if in_step else RealTime(),
         )
-        self._mischief = mischief
+        self._mischief, self._in_step = mischief, in_step
 
     @property
     def counts(self):
@@ -71,6 +72,8 @@ class Laboratory:
         try:
             yield
         finally:
+            if not self._in_step:
+                self.room.stop()
             thread.join(30)
         if failed:
             raise failed[0]

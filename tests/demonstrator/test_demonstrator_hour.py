@@ -56,6 +56,15 @@ def test_an_hour_of_four_robots_in_an_unkind_room(tmp_path, controllers):
     assert real["sim_per_wall"] > 1
 
 
+def test_in_real_time_like_a_laboratory(tmp_path):
+    """No room keeps the clock: server, two real robots and two simulated ones follow the wall's."""
+    lab = Laboratory(tmp_path, real="0,3", in_step=False)
+    run = lab.run(15.0)
+    assert lab.room.truth.nearest_m >= RADII_M
+    assert (run.traffic.motion()["distance_m"] > 0.3).all()
+    assert lab.room.truth.driven_m > 0.6
+
+
 def test_a_server_that_is_killed_goes_on_where_it_was(tmp_path, monkeypatch):
     """As a user does it: the same command once more. What was done is done, and work goes on."""
     with socket.create_server(("127.0.0.1", 0)) as free:

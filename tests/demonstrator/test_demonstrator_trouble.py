@@ -38,10 +38,10 @@ def driving(room):
     return None
 
 
-def troubled(folder, second, act, duration_s, unkindness=KIND):
+def troubled(folder, second, act, duration_s, real=None):
     """Run with mischief; the trips that ended well after it say whether work goes on."""
     mischief = Mischief(second, act)
-    lab = Laboratory(folder, unkindness, mischief=mischief)
+    lab = Laboratory(folder, KIND, mischief=mischief, real=real)
     run = lab.run(duration_s)
     assert mischief.victim is not None
     assert not mischief.later
@@ -62,7 +62,8 @@ def test_a_robot_whose_program_is_killed_goes_on_when_it_is_started_again(tmp_pa
     assert lab.counts["given_up"] == 0
 
 
-def test_a_robot_pushed_off_its_path_finds_a_new_one(tmp_path):
+@pytest.mark.parametrize("real", [None, pytest.param("0,2", marks=pytest.mark.slow)])
+def test_a_robot_pushed_off_its_path_finds_a_new_one(tmp_path, real):
     """Carried to the next lane, where its next tag is one it was not sent to."""
 
     def act(mischief):
@@ -80,7 +81,7 @@ def test_a_robot_pushed_off_its_path_finds_a_new_one(tmp_path):
                 return
         mischief.victim = None  # not here, not now
 
-    lab, trips, _ = troubled(tmp_path, 10, act, 120)
+    lab, trips, _ = troubled(tmp_path, 10, act, 120, real)
     assert lab.counts["strayed"] >= 1
     assert lab.counts["regroupings"] >= 1
     assert (trips > 0).all()
@@ -97,7 +98,8 @@ def test_an_unknown_tag_is_noted_and_work_goes_on(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_silent_robot_is_planned_around_and_taken_back(tmp_path):
+@pytest.mark.parametrize("real", [None, "1,3"])
+def test_a_silent_robot_is_planned_around_and_taken_back(tmp_path, real):
     """Its computer hangs for a minute: after half of it the others go around it."""
 
     def act(mischief):
@@ -105,7 +107,7 @@ def test_a_silent_robot_is_planned_around_and_taken_back(tmp_path):
         victim.kill()
         mischief.after(60, victim.start)
 
-    lab, trips, index = troubled(tmp_path, 10, act, 160)
+    lab, trips, index = troubled(tmp_path, 10, act, 160, real)
     assert lab.counts["given_up"] == 1
     assert lab.counts["regroupings"] >= 2
     others = [robot for robot in range(4) if robot != index]

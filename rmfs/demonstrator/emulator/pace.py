@@ -33,7 +33,8 @@ class Pace(Protocol):
 class RealTime:
     """A tick lasts as long as it says; the server has a clock of its own."""
 
-    has_ended = False
+    def __init__(self) -> None:
+        self.has_ended = False
 
     def begin(self) -> None:
         """Begin now."""

@@ -162,6 +162,10 @@ class Room:
                 each(self)
             self.now_us += TICK_US
 
+    def stop(self) -> None:
+        """Let no more time pass."""
+        self._pace.has_ended = True
+
     def close(self) -> None:
         """End all connections."""
         for robot in self.robots.values():
