@@ -60,16 +60,17 @@ class Floor:
         rng
             Draws what spoils the image.
         """
-        ahead = np.array([math.cos(heading_rad), math.sin(heading_rad)])
-        left = np.array([-ahead[1], ahead[0]])
-        here = np.array([x_m, y_m])
-        near, far = here + NEAR_M * ahead, here + (NEAR_M + DEEP_M) * ahead
-        side = WIDE_M / 2 * left
-        seen = np.array(
-            [self._pixel(far + side), self._pixel(far - side), self._pixel(near + side)]
+        # one pixel to the right, and one down, in the picture; its rows run against y
+        right = WIDE_M / IMAGE[0] / PIXEL_M
+        down = DEEP_M / IMAGE[1] / PIXEL_M
+        cos, sin = math.cos(heading_rad), math.sin(heading_rad)
+        far = NEAR_M + DEEP_M
+        left, top = self._origin
+        corner_x = (x_m + far * cos - WIDE_M / 2 * sin - left) / PIXEL_M
+        corner_y = (top - y_m - far * sin - WIDE_M / 2 * cos) / PIXEL_M
+        to_picture = np.array(
+            [[right * sin, -down * cos, corner_x], [right * cos, down * sin, corner_y]]
         )
-        image = np.array([[0, 0], [IMAGE[0], 0], [0, IMAGE[1]]], np.float32)
-        to_picture = cv2.getAffineTransform(image, seen.astype(np.float32))
         flags = cv2.INTER_NEAREST | cv2.WARP_INVERSE_MAP
         grey: Any = cv2.warpAffine(
             self._picture, to_picture, IMAGE, flags=flags, borderMode=cv2.BORDER_REPLICATE
@@ -79,7 +80,7 @@ class Floor:
     def _spoilt(self, grey: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[np.uint8]:
         if self._unkindness.noise > 0:
             noise = self._noise[rng.integers(len(self._noise))]
-            grey = np.clip(grey + noise, 0, 255).astype(np.uint8)
+            grey = np.asarray(cv2.add(grey, noise, dtype=cv2.CV_8U), np.uint8)
         if rng.random() < self._unkindness.glare:
             at = (int(rng.integers(IMAGE[0])), int(rng.integers(IMAGE[1])))
             cv2.circle(grey, at, int(rng.integers(3, 9)), 250, -1)

@@ -55,12 +55,17 @@ class FloorTags:
     ) -> None:
         self._tags, self._x, self._y = tags, x_m, y_m
         self._base, self._missed, self._rng = base, missed, rng
+        self._here: tuple[float, float] | None = None
         self._above: int | None = None
         self._found: str | None = None
 
     def look(self) -> None:
         """Notice a tag that has come into reach; called whenever the robot has moved."""
-        distance = np.hypot(self._x - self._base.x_m, self._y - self._base.y_m)
+        here = (self._base.x_m, self._base.y_m)
+        if here == self._here:
+            return
+        self._here = here
+        distance = np.hypot(self._x - here[0], self._y - here[1])
         nearest = int(distance.argmin())
         above = nearest if distance[nearest] <= REACH_M else None
         if above is not None and above != self._above and self._rng.random() >= self._missed:

@@ -35,8 +35,8 @@ class Truth:
         How far robots that drive are from the line they are on.
     """
 
-    lines_x_m: np.ndarray[tuple[int], np.dtype[np.float64]]
-    lines_y_m: np.ndarray[tuple[int], np.dtype[np.float64]]
+    lines_x_m: list[float]
+    lines_y_m: list[float]
     nearest_m: float = float("inf")
     driven_m: float = 0.0
     lateral_max_m: float = 0.0
@@ -47,7 +47,7 @@ class Truth:
     @classmethod
     def of(cls, layout: Layout) -> Truth:
         """Return the truth of a floor with lines along all edges of a layout."""
-        return cls(np.unique(layout.x_m), np.unique(layout.y_m))
+        return cls(np.unique(layout.x_m).tolist(), np.unique(layout.y_m).tolist())
 
     @property
     def lateral_mean_m(self) -> float:
@@ -79,7 +79,7 @@ class Truth:
         if moved < _DRIVING_M_S * seconds or abs(new[2] - old[2]) > _TURNING_RAD_S * seconds:
             return
         lines, at = (self.lines_y_m, new[1]) if abs(dx) > abs(dy) else (self.lines_x_m, new[0])
-        lateral = float(np.abs(lines - at).min())
+        lateral = min(abs(line - at) for line in lines)
         self._lateral_sum += lateral
         self._looks += 1
         self.lateral_max_m = max(self.lateral_max_m, lateral)
