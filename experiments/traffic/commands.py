@@ -110,6 +110,27 @@ def duel(
         raise typer.Exit(UNSAFE)
 
 
+@app.command("scale")
+def scale_command(
+    most: Annotated[int, typer.Option(min=32, help="The biggest fleet.")] = 2000,
+    planner: Annotated[str, typer.Option(help=f"{PLANNER_HELP}.")] = "time-windows",
+    duration: Duration = 600.0,
+    seed: Seed = 1,
+    out: Annotated[Path, typer.Option(help="Folder of table and picture.")] = Path("results/scale"),
+) -> None:
+    """Measure how work and memory grow from 32 to 2000 robots, density kept."""
+    from experiments.traffic import scale
+
+    duels.check_planners([planner])
+    frame = scale.table(most, planner, duration, seed)
+    typer.echo(duels.markdown(frame, scale.DECIMALS))
+    typer.echo(f"CPU time grows like trips to the power of {scale.exponent(frame):.2f}")
+    for ending in (".csv", ".md"):
+        duels.save(frame, out / f"scale{ending}", scale.DECIMALS)
+    scale.picture(frame, out / "scale.png")
+    typer.echo(out)
+
+
 def _loaded(
     layout: str, robots: int | None, set_: list[str] | None, *, allow_not_well_formed: bool
 ) -> Layout:

@@ -132,6 +132,7 @@ class _Loop:
         self._later: list[tuple[int, int, Command]] = []
         self._serial = 0
         self._take(stream.begin())
+        self._give()
 
     def until(self, end_s: float) -> None:
         """Go on until a time, or until nothing can move any more."""
@@ -152,7 +153,6 @@ class _Loop:
         for command in commands:
             self._serial += 1
             heapq.heappush(self._later, (command.at_us, self._serial, command))
-        self._give()
 
     def _give(self) -> None:
         """Hand over the commands that are due."""

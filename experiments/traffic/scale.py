@@ -1,0 +1,167 @@
+"""How work and memory grow with the fleet: `rmfs traffic scale`.
+
+Layouts of the default kind, with about 26 waypoints and 1/16 of a station for each robot whatever
+their number, and random trips planned by one planner. Each size runs in a process of its own, so
+that its memory is its own. The time that counts is processor time: on a core that is free it is
+wall time.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import resource
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from experiments.figures.style import saving
+from experiments.traffic.duel import settings
+from rmfs.layout import load
+from rmfs.measure.memory import peak_rss_mb
+from rmfs.traffic import Traffic
+from rmfs.trips import drive, random_trips
+
+if TYPE_CHECKING:
+    from rmfs.layout.model import Layout
+
+WARMUP_S = 600.0
+"""Until the rush of the start is over and the tables that come again and again are there."""
+
+ENOUGH_ROBOTS = 1000
+FASTER = 60.0
+"""The mark: so many robots, so many times faster than they drive."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """A layout for so many robots.
+
+    Attributes
+    ----------
+    horizontal, vertical
+        Aisles.
+    long_sides, short_sides
+        Stations in the east and as many in the west; in the north and as many in the south.
+    """
+
+    robots: int
+    horizontal: int
+    vertical: int
+    long_sides: int
+    short_sides: int
+
+    def layout(self, robots: int | None = None) -> Layout:
+        """Generate it, with its robots or others."""
+        long_, short = self.long_sides, self.short_sides
+        values: dict[str, Any] = {
+            "robots": self.robots if robots is None else robots,
+            "horizontal_aisles": self.horizontal,
+            "vertical_aisles": self.vertical,
+            "pick_stations": {"east": long_, "west": 0, "north": short, "south": 0},
+            "replenishment_stations": {"east": 0, "west": long_, "north": 0, "south": short},
+        }
+        return load("default", [([key], value) for key, value in values.items()])
+
+
+SIZES = [
+    Size(32, 4, 4, 1, 1),
+    Size(64, 6, 8, 1, 1),
+    Size(128, 16, 8, 3, 1),
+    Size(256, 22, 14, 5, 3),
+    Size(512, 38, 18, 11, 5),
+    Size(1000, 48, 30, 19, 12),
+    Size(2000, 70, 44, 35, 22),
+]
+
+DECIMALS = {
+    **dict.fromkeys(("robots", "waypoints", "stations", "trips/h", "times faster"), 0),
+    **dict.fromkeys(("simulated s", "expansions per trip", "peak MB", "bytes per waypoint"), 0),
+    **dict.fromkeys(("delay s", "CPU s per h", "kB per robot"), 1),
+    "CPU ms per trip": 2,
+}
+
+
+def table(
+    most: int = 2000, planner: str = "time-windows", duration_s: float = 600.0, seed: int = 1
+) -> pd.DataFrame:
+    """Measure all sizes up to `most` robots, a row each."""
+    rows = []
+    for size in SIZES:
+        if size.robots <= most:
+            with multiprocessing.get_context("spawn").Pool(1) as pool:
+                rows.append(pool.apply(measure, (asdict(size), planner, duration_s, seed)))
+    return pd.DataFrame(rows).set_index("robots")
+
+
+def measure(size: dict[str, int], planner: str, duration_s: float, seed: int) -> dict[str, float]:
+    """Measure one size; this process must have done nothing else."""
+    made = Size(**size)
+    small, layout = made.layout(1), made.layout()
+    before_mb = resident_mb()
+    only_network = Traffic(small, cost_table_bytes=0)
+    network_mb = resident_mb() - before_mb
+    del only_network
+    stream, chosen = random_trips(layout, seed), settings(planner, seed)
+    marks: list[float] = []
+
+    def noted(traffic: Traffic) -> None:
+        if not marks and traffic.now_us >= WARMUP_S * 1e6:
+            marks.append(time.process_time())
+
+    run = drive(layout, stream, chosen, duration_s=duration_s, warmup_s=WARMUP_S, each=noted)
+    cpu_s = time.process_time() - marks[0]
+    hours, trips = duration_s / 3600.0, len(run.delays_s)
+    driving_mb = resident_mb() - before_mb - network_mb
+    return {
+        "robots": layout.robots,
+        "waypoints": layout.waypoints,
+        "stations": len(layout.stations),
+        "simulated s": duration_s,
+        "trips/h": run.trips_per_h,
+        "delay s": float(np.mean(run.delays_s)),
+        "CPU s per h": cpu_s / hours,
+        "times faster": duration_s / cpu_s,
+        "CPU ms per trip": 1e3 * cpu_s / trips,
+        "expansions per trip": run.traffic.counters()["expansions"] / trips,
+        "peak MB": peak_rss_mb(),
+        "bytes per waypoint": 1e6 * network_mb / layout.waypoints,
+        "kB per robot": 1e3 * driving_mb / layout.robots,
+    }
+
+
+def resident_mb() -> float:
+    """Return the resident memory of this process, in MB (10^6 bytes), or nan where nobody tells."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    except (OSError, ValueError, IndexError):
+        return float("nan")
+    return pages * resource.getpagesize() / 1e6
+
+
+def exponent(frame: pd.DataFrame) -> float:
+    """Return b of `CPU = a trips^b`, by least squares on logarithms: 1 is linear growth."""
+    trips, cpu = np.log(frame["trips/h"].to_numpy()), np.log(frame["CPU s per h"].to_numpy())
+    return float(np.polyfit(trips, cpu, 1)[0])
+
+
+def picture(frame: pd.DataFrame, path: Path) -> None:
+    """Draw time and memory over the number of robots."""
+    robots = frame.index.to_numpy()
+    with saving(path, 8.0, 3.6) as figure:
+        left, right = figure.subplots(1, 2)
+        left.loglog(robots, frame["CPU s per h"], marker="o", label="measured")
+        straight = frame["trips/h"] * (frame["CPU s per h"] / frame["trips/h"]).iloc[0]
+        left.loglog(robots, straight, linestyle=":", color="0.5", label="linear in trips")
+        left.axhline(3600.0 / FASTER, linewidth=0.8, color="black")
+        left.set_ylabel("CPU seconds per simulated hour")
+        left.legend(fontsize=8)
+        right.loglog(robots, frame["peak MB"], marker="o")
+        right.set_ylabel("peak memory (MB)")
+        for ax in (left, right):
+            ax.set_xlabel("robots")
+            ax.set_xticks(robots, [str(n) for n in robots])
+            ax.minorticks_off()
