@@ -169,6 +169,8 @@ class Traffic:
         Memory for tables of unhindered times; the least recently used are dropped.
     planner
         Who plans the ways.
+    slow_shares
+        Shares of its top speed to which a robot may be slowed down.
 
     Raises
     ------
@@ -184,8 +186,10 @@ class Traffic:
         record_trace: bool = False,
         cost_table_bytes: int = COST_TABLE_BYTES,
         planner: PlannerSettings = TIME_WINDOWS,
+        slow_shares: Sequence[float] = (),
     ) -> None:
         self._kind = layout.robot_kind
+        self._kinds = len(layout.robot_kinds)
         self._from_cache: dict[tuple[int, int, bool], NDArray[np.float64]] = {}
         self._to_cache: dict[tuple[int, int, bool], NDArray[np.float64]] = {}
         self._core = Core(
@@ -215,10 +219,11 @@ class Traffic:
                 (
                     kind.acceleration_m_s2,
                     kind.deceleration_m_s2,
-                    kind.top_speed_m_s,
+                    kind.top_speed_m_s * share,
                     _us(kind.full_turn_s),
                     _us(kind.pod_transfer_s),
                 )
+                for share in (1.0, *slow_shares)
                 for kind in layout.robot_kinds
             ],
             (
@@ -325,6 +330,34 @@ class Traffic:
             has changed then.
         """
         self._core.regroup(list(rests))
+
+    def hold(self, robot: int, by_us: int) -> int | None:
+        """Let a robot stand still for a while where it next comes to rest: a breakdown.
+
+        Others who are to use a waypoint after it wait; all keep their ways and their order.
+
+        Returns
+        -------
+        When it goes on, in microseconds; None, and nothing has changed, if somebody is already
+        driving who would have to wait: try again a moment later.
+        """
+        return self._core.hold(robot, by_us)
+
+    def slow_down(self, robot: int, level: int) -> bool:
+        """Let a robot that stands still drive slower from now on, or as fast as it should again.
+
+        Parameters
+        ----------
+        level
+            0 for its own top speed, k for the k-th of `slow_shares`.
+
+        Returns
+        -------
+        Whether that was done; not if the robot is in motion, or somebody is already driving who
+        would have to wait for it.
+        """
+        kind = int(self._kind[robot]) + level * self._kinds
+        return self._core.change_kind(robot, kind)
 
     def close(self, waypoints: Sequence[int]) -> list[int]:
         """Close waypoints from now on: nobody enters them until they are opened again.

@@ -22,14 +22,21 @@ from .report import Finding as Finding
 from .report import FindingKind as FindingKind
 from .trace import Kinematics, read
 from .trace import Motion as Motion
+from .trace import Slow as Slow
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from rmfs.layout.model import Layout
 
 
-def check(layout: Layout, trace: Mapping[str, Any], until_us: int | None = None) -> CheckReport:
+def check(
+    layout: Layout,
+    trace: Mapping[str, Any],
+    until_us: int | None = None,
+    *,
+    slow: Sequence[Slow] = (),
+) -> CheckReport:
     """Check a whole trace.
 
     Parameters
@@ -41,6 +48,8 @@ def check(layout: Layout, trace: Mapping[str, Any], until_us: int | None = None)
     until_us
         When the trace ends, in microseconds: every robot must be told of until then. Motions that
         reach it may end later or be cut short. Default: when the last row of all begins.
+    slow
+        Times at which robots drive slower than they should; they must do so then.
 
     Raises
     ------
@@ -49,7 +58,7 @@ def check(layout: Layout, trace: Mapping[str, Any], until_us: int | None = None)
     """
     rows = read(layout, trace)
     end_us = int(rows.t0_us.max(initial=0)) if until_us is None else until_us
-    limits = Kinematics.of(layout, rows.robot)
+    limits = Kinematics.of(layout, rows.robot).slowed(rows, slow)
     pieces = motion.cut(layout, rows, limits)
     collisions, pairs = separation.check(layout, rows, limits, pieces)
     findings = [

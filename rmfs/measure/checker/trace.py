@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from rmfs.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -128,6 +128,21 @@ def read(layout: Layout, columns: Mapping[str, Any]) -> Trace:
     return Trace(**{name: array[order] for name, array in arrays.items()})
 
 
+class Slow(NamedTuple):
+    """A robot drives with a share of its top speed.
+
+    Attributes
+    ----------
+    from_us, to_us
+        What begins in [from_us, to_us) is slow.
+    """
+
+    robot: int
+    from_us: int
+    to_us: int
+    share: float
+
+
 @dataclass(frozen=True, slots=True)
 class Kinematics:
     """The limits of the robot of each row, each of shape (K,).
@@ -155,3 +170,13 @@ class Kinematics:
                 for name in cls.__slots__
             }
         )
+
+    def slowed(self, trace: Trace, slow: Sequence[Slow]) -> Kinematics:
+        """Return the limits with the top speeds of robots that are slow at times."""
+        if not slow:
+            return self
+        top = self.top_speed_m_s.copy()
+        for one in slow:
+            meant = (trace.robot == one.robot) & (trace.t0_us >= one.from_us)
+            top[meant & (trace.t0_us < one.to_us)] *= one.share
+        return replace(self, top_speed_m_s=top)

@@ -416,6 +416,19 @@ impl Core {
         self.fleet.regroup(&rests).map_err(PyValueError::new_err)
     }
 
+    fn hold(&mut self, robot: u32, by: Us) -> PyResult<Option<Us>> {
+        self.robot(robot as usize)?;
+        Ok(self.fleet.hold(robot, by))
+    }
+
+    fn change_kind(&mut self, robot: u32, kind: u8) -> PyResult<bool> {
+        self.robot(robot as usize)?;
+        if kind as usize >= self.fleet.kinds.len() {
+            return Err(PyValueError::new_err(format!("no kind {kind}")));
+        }
+        Ok(self.fleet.change_kind(robot, kind))
+    }
+
     fn close(&mut self, waypoints: Vec<u32>) -> PyResult<Vec<u32>> {
         self.fleet.close(&waypoints).map_err(PyValueError::new_err)
     }

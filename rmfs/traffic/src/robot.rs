@@ -65,8 +65,10 @@ pub struct Robot {
     pub pod: Option<u32>,
     pub program: VecDeque<Step>,
     pub phase: Phase,
-    /// When the current lift or set-down ends; the robot stays until then.
+    /// The robot stays until then: it lifts, sets down or is broken down.
     pub busy_until: Us,
+    /// When the current lift or set-down ends.
+    pub transfer_end: Us,
     /// Station and place promised in its queue.
     pub place: Option<(u32, usize)>,
     /// Changes whenever the plan changes, so that events of old plans are recognised.
@@ -88,6 +90,7 @@ impl Robot {
             program: VecDeque::new(),
             phase: Phase::Idle,
             busy_until: 0,
+            transfer_end: 0,
             place: None,
             version: 0,
         }

@@ -13,6 +13,7 @@ use crate::robot::{Held, Robot};
 use crate::search::Move;
 use crate::units::{FOREVER, Us};
 
+use super::disturbed::stretched;
 use super::{Due, Fleet};
 
 /// What may be shifted.
@@ -25,9 +26,11 @@ pub enum Shift {
 }
 
 /// The plans of all robots while one delay makes others.
-struct Delays<'a> {
+pub(super) struct Delays<'a> {
     fleet: &'a Fleet,
     shift: Shift,
+    /// What kind each robot is of from now on.
+    kinds: Vec<u8>,
     /// What each robot occupies by the plan it has.
     held: Vec<Vec<Held>>,
     /// The next user of each of these: robot and index into its `held`.
@@ -62,7 +65,7 @@ impl Fleet {
     }
 
     /// Makes shifted plans the robots' own.
-    fn follow(&mut self, plans: BTreeMap<u32, VecDeque<Move>>) {
+    pub(super) fn follow(&mut self, plans: BTreeMap<u32, VecDeque<Move>>) {
         for &robot in plans.keys() {
             self.forget(robot);
         }
@@ -109,7 +112,7 @@ impl Fleet {
 }
 
 impl<'a> Delays<'a> {
-    fn new(fleet: &'a Fleet, shift: Shift) -> Self {
+    pub(super) fn new(fleet: &'a Fleet, shift: Shift) -> Self {
         let occupation =
             |state: &Robot| state.occupation(&fleet.network, &fleet.kinds[state.kind as usize]);
         let held: Vec<Vec<Held>> = fleet.robots.iter().map(occupation).collect();
@@ -127,7 +130,8 @@ impl<'a> Delays<'a> {
                 next[robot as usize][index] = Some((follower, at));
             }
         }
-        Self { fleet, shift, held, next, plans: BTreeMap::new() }
+        let kinds = fleet.robots.iter().map(|state| state.kind).collect();
+        Self { fleet, shift, kinds, held, next, plans: BTreeMap::new() }
     }
 
     fn plan(&mut self, robot: u32) -> &mut VecDeque<Move> {
@@ -139,7 +143,7 @@ impl<'a> Delays<'a> {
     fn push(&mut self, robot: u32, index: usize, by: Us) -> bool {
         let fleet = self.fleet;
         let state = &fleet.robots[robot as usize];
-        let kind = &fleet.kinds[state.kind as usize];
+        let kind = &fleet.kinds[self.kinds[robot as usize] as usize];
         let begun = state.committed(&fleet.network, kind, fleet.now);
         if index < begun && self.shift == Shift::Planned {
             return false;
@@ -196,6 +200,24 @@ impl<'a> Delays<'a> {
         };
         let state = &self.fleet.robots[robot as usize];
         let shifted = Robot { moves: moves.clone(), ..state.clone() };
-        shifted.occupation(&self.fleet.network, &self.fleet.kinds[state.kind as usize])
+        let kind = self.kinds[robot as usize] as usize;
+        shifted.occupation(&self.fleet.network, &self.fleet.kinds[kind])
+    }
+
+    /// Makes a robot at rest one of another kind. Returns whether everybody else can wait for it.
+    pub(super) fn change_kind(&mut self, robot: u32, kind: u8) -> bool {
+        self.kinds[robot as usize] = kind;
+        let fleet = self.fleet;
+        let moves = &fleet.robots[robot as usize].moves;
+        if moves.is_empty() {
+            return true;
+        }
+        let longer = stretched(&fleet.network, &fleet.kinds[kind as usize], moves);
+        self.plans.insert(robot, longer.into());
+        self.spread(robot)
+    }
+
+    pub(super) fn into_plans(self) -> BTreeMap<u32, VecDeque<Move>> {
+        self.plans
     }
 }

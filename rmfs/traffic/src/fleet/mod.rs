@@ -6,6 +6,7 @@
 
 mod blocked;
 mod closing;
+mod disturbed;
 mod late;
 mod planning;
 mod programs;

@@ -83,11 +83,15 @@ impl Fleet {
         let now = self.now;
         let state = &mut self.robots[robot as usize];
         state.phase = Phase::Transferring;
-        state.busy_until = now + self.kinds[state.kind as usize].pod_transfer;
-        self.agenda.push(Reverse((state.busy_until, robot, Due::TransferEnd, 0)));
+        // a robot that is broken down begins when it can
+        let begin = now.max(state.busy_until);
+        state.transfer_end = begin + self.kinds[state.kind as usize].pod_transfer;
+        state.busy_until = state.transfer_end;
+        self.agenda.push(Reverse((state.transfer_end, robot, Due::TransferEnd, 0)));
     }
 
     pub(super) fn transfer_ended(&mut self, robot: u32) {
+        self.stand_until_transfer(robot);
         let state = &mut self.robots[robot as usize];
         let (step, node, heading) =
             (state.program.pop_front().expect("a transfer"), state.anchor, state.heading);

@@ -52,6 +52,7 @@ impl Fleet {
             state.rested = step.end;
         }
         if state.phase == Phase::Transferring {
+            self.stand_until_transfer(robot);
             return;
         }
         let standing_until = match state.moves.front() {
@@ -65,6 +66,17 @@ impl Fleet {
             None => now,
         };
         self.record.stand(robot, standing_until, state.anchor, state.heading, state.pod, why);
+    }
+
+    /// Records that a robot stood until it began to lift or set down: it was broken down.
+    pub(super) fn stand_until_transfer(&mut self, robot: u32) {
+        let state = &self.robots[robot as usize];
+        let begin = state.transfer_end - self.kinds[state.kind as usize].pod_transfer;
+        let lifting = matches!(state.program.front(), Some(Step::Lift(_)));
+        let pod = if lifting { None } else { state.pod };
+        let why = Standing::Waiting(state.purpose(self.network.stations.len()));
+        let until = begin.min(self.now);
+        self.record.stand(robot, until, state.anchor, state.heading, pod, why);
     }
 
     /// Brings all robots' states and records up to now.
@@ -140,6 +152,7 @@ impl Fleet {
             let robot = id as u32;
             let kind = &self.kinds[state.kind as usize];
             match (state.phase, state.program.front()) {
+                (Phase::Transferring, _) if state.transfer_end - kind.pod_transfer >= self.now => {}
                 (Phase::Transferring, Some(&(Step::Lift(pod) | Step::SetDown(pod)))) => {
                     let piece = if matches!(state.program.front(), Some(Step::Lift(_))) {
                         Piece::Lift
@@ -149,7 +162,7 @@ impl Fleet {
                     rows.push(Row {
                         robot,
                         start: self.record.recorded(robot),
-                        end: state.busy_until,
+                        end: state.transfer_end,
                         piece,
                         from: state.anchor,
                         to: state.anchor,

@@ -224,15 +224,18 @@ impl Fleet {
         self.need_plan(robot);
     }
 
+    /// A robot on the way has to be planned anew, if it is by wishes.
+    pub(super) fn forget_wish(&mut self, robot: u32) {
+        let phase = self.robots[robot as usize].phase;
+        if self.rolling.is_some() && matches!(phase, Phase::Driving | Phase::Blocked) {
+            self.drop_wish(robot);
+        }
+    }
+
     /// The network has changed: nobody's wish counts any more.
     pub(super) fn forget_wishes(&mut self) {
-        if self.rolling.is_none() {
-            return;
-        }
         for robot in 0..self.robots.len() as u32 {
-            if matches!(self.robots[robot as usize].phase, Phase::Driving | Phase::Blocked) {
-                self.drop_wish(robot);
-            }
+            self.forget_wish(robot);
         }
     }
 
