@@ -134,7 +134,13 @@ def parser(
     return made
 
 
-def done(given: argparse.Namespace, *, layout: str | None = None, part: str = "") -> Study:
+def done(
+    given: argparse.Namespace,
+    *,
+    layout: str | None = None,
+    part: str = "",
+    replications: int | None = None,
+) -> Study:
     """Run what is not finished of a study's design and return the results.
 
     Parameters
@@ -145,6 +151,8 @@ def done(given: argparse.Namespace, *, layout: str | None = None, part: str = ""
         Takes the place of the design's, unless one of the reference does.
     part
         Name of the runs' folder, if the study has several.
+    replications
+        Another number of seeds.
 
     Raises
     ------
@@ -160,7 +168,7 @@ def done(given: argparse.Namespace, *, layout: str | None = None, part: str = ""
         suffix += _SMOKE
         made = plan(given.design, base={**(base or {}), **SMOKE}, replications=2)
     else:
-        made = plan(given.design, base=base)
+        made = plan(given.design, base=base, replications=replications)
     folder = given.out if given.out is not None else RESULTS / f"{made.design.name}{suffix}"
     folder = folder / part
     with watching(made.design.name) as watcher:

@@ -63,7 +63,7 @@ def test_disturbed_traffic_is_safe_and_goes_on(name):
 
 
 def test_the_checker_holds_slow_robots_to_their_speed():
-    """Told that they should be fast, or slow at other times, it finds the runs too long or short."""
+    """Told that they should be fast, or slow at other times, runs are too long or short."""
     tasks, slow = driven("time-windows", seed=2, until_s=300)
     trace, until_us = tasks.traffic.trace(), tasks.traffic.now_us
     assert check(tasks.layout, trace, until_us=until_us, slow=slow).ok
