@@ -17,7 +17,6 @@ from scipy import stats
 
 from rmfs.errors import InputError
 from rmfs.measure import load_run, write_run
-from rmfs.measure.checker import check
 from rmfs.simulation.run import simulate
 
 if TYPE_CHECKING:
@@ -53,7 +52,7 @@ def interval(values: pd.Series, confidence: float = 0.95) -> tuple[float, float]
 def run(seed: int) -> pd.DataFrame:
     """Simulate one seed, prove its trace safe, write its folder and return its footprint."""
     done = simulate("default", "default", "default", seed=seed, trace=True)
-    report = check(done.layout, done.trace, until_us=round(done.end_s * 1e6))
+    report = done.check()
     if not report.ok:
         raise SystemExit(f"seed {seed}: {report.summary()}")
     write_run(done, TARGET / f"seed{seed}", report=report)

@@ -441,10 +441,8 @@ def default_name(inputs: dict[str, str], seed: int) -> str:
 
 def proven(done: Run) -> CheckReport:
     """Check the trace of a run."""
-    from rmfs.measure.checker import check
-
     step("checking the trace")
-    return check(done.layout, done.trace, until_us=round(done.end_s * 1e6))
+    return done.check()
 
 
 def conclude(target: Path, report: CheckReport | None) -> None:

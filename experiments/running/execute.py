@@ -15,7 +15,6 @@ from experiments.design import resolve
 from experiments.running.job import Job, Outcome
 from rmfs.errors import InputError
 from rmfs.measure import tables
-from rmfs.measure.checker import check
 from rmfs.simulation.run import simulate
 
 if TYPE_CHECKING:
@@ -79,7 +78,7 @@ def _simulated(job: Job) -> dict[str, pd.DataFrame]:
 
 
 def _tables(run: Run, job: Job) -> dict[str, pd.DataFrame]:
-    report = check(run.layout, run.trace, until_us=round(run.end_s * 1e6)) if job.check else None
+    report = run.check() if job.check else None
     if report is not None and not report.ok:
         raise RuntimeError(f"unsafe motion: {report.summary()}")
     return tables.some_tables(run, job.keep, report)

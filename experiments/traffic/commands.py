@@ -122,7 +122,7 @@ def scale_command(
     from experiments.traffic import scale
 
     duels.check_planners([planner])
-    frame = scale.table(most, planner, duration, seed)
+    frame = scale.table(most, planner, duration, seed, _tell)
     typer.echo(duels.markdown(frame, scale.DECIMALS))
     typer.echo(f"CPU time grows like trips to the power of {scale.exponent(frame):.2f}")
     for ending in (".csv", ".md"):

@@ -26,9 +26,11 @@ from rmfs.traffic import Traffic
 from rmfs.trips import drive, random_trips
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rmfs.layout.model import Layout
 
-WARMUP_S = 600.0
+WARMUP_S = 300.0
 """Until the rush of the start is over and the tables that come again and again are there."""
 
 ENOUGH_ROBOTS = 1000
@@ -86,14 +88,25 @@ DECIMALS = {
 
 
 def table(
-    most: int = 2000, planner: str = "time-windows", duration_s: float = 600.0, seed: int = 1
+    most: int = 2000,
+    planner: str = "time-windows",
+    duration_s: float = 600.0,
+    seed: int = 1,
+    tell: Callable[[str], None] = print,
 ) -> pd.DataFrame:
-    """Measure all sizes up to `most` robots, a row each."""
+    """Measure all sizes up to `most` robots, a row each.
+
+    Parameters
+    ----------
+    tell
+        Told of each row as soon as it is there.
+    """
     rows = []
     for size in SIZES:
         if size.robots <= most:
             with multiprocessing.get_context("spawn").Pool(1) as pool:
                 rows.append(pool.apply(measure, (asdict(size), planner, duration_s, seed)))
+            tell(", ".join(f"{name} {value:.6g}" for name, value in rows[-1].items()))
     return pd.DataFrame(rows).set_index("robots")
 
 

@@ -267,5 +267,12 @@ FOOTPRINT = (
         "Replenishment stations' time switched on / duration",
     ),
     Column("expansions", INTEGER, "labels", "Labels expanded by the path planner"),
+    Column(
+        "disturbances",
+        INTEGER,
+        "disturbances",
+        "Breakdowns, slow robots, closed waypoints and elevators out of use in the measured time",
+    ),
+    Column("disturbed_s", REAL, "s", "How long these lasted, added up, within the measured time"),
     Column("planning_wall_s", REAL, "s", "Wall time spent in path planning", measured=True),
 )

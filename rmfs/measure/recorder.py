@@ -15,6 +15,7 @@ from rmfs.measure.log import Log
 from rmfs.measure.observer import Observer
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any
 
     from numpy.typing import NDArray
@@ -119,6 +120,7 @@ class Recorder(Observer):
         self.counters: dict[str, float] = {}
         self._at_station: dict[int, tuple[float, int, int]] = {}
         self._before = {"order_redraws": 0, "orders_short": 0}
+        self._disturbed: Callable[[float, float], tuple[int, float]]
 
     @property
     def duration_s(self) -> float:
@@ -129,6 +131,7 @@ class Recorder(Observer):
         """Keep hold of the world and the traffic."""
         self.layout, self.world = simulation.layout, simulation.world
         self.traffic = simulation.traffic
+        self._disturbed = simulation.disturbances.within
         self.stored_space_start = simulation.world.inventory.stored_space
 
     def warmup_ended(self, time_s: float) -> None:
@@ -148,6 +151,8 @@ class Recorder(Observer):
         self.trips = self.traffic.trips()
         self.edges = self.traffic.edges()
         self.counters = self.traffic.counters()
+        number_of, seconds = self._disturbed(self.start_s, time_s)
+        self.counters |= {"disturbances": number_of, "disturbed_s": seconds}
         for name, number in self._order_counts().items():
             self.counters[name] = number - self._before[name]
         for station, (since, pod, robot) in self._at_station.items():

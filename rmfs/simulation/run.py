@@ -12,6 +12,7 @@ from rmfs import measure
 from rmfs.control.pp import planner_settings
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
+from rmfs.measure.checker import check
 from rmfs.measure.provenance import MARK
 from rmfs.simulation.inputs import Overrides, load_inputs, name_of
 from rmfs.simulation.pacing import pacing_settings
@@ -29,8 +30,10 @@ if TYPE_CHECKING:
     from rmfs.control.settings import ControllerSettings
     from rmfs.layout.model import Layout
     from rmfs.measure import EventLog, Recorder
+    from rmfs.measure.checker import CheckReport
     from rmfs.measure.observer import Observer
     from rmfs.scenario import Scenario, StreamRecorder
+    from rmfs.simulation.disturbances import DisturbanceSource
     from rmfs.simulation.pacing import PacingSettings
     from rmfs.simulation.statistics import DecisionStatistics
     from rmfs.world import World
@@ -63,6 +66,8 @@ class Run:
         Per decision problem, how often its controller was asked and how long it took.
     recorder
         What was measured.
+    disturbances
+        What went wrong.
     events
         What happened; only if the run was asked to record its trace.
     interventions
@@ -86,6 +91,7 @@ class Run:
     traffic: Traffic
     statistics: list[DecisionStatistics]
     recorder: Recorder
+    disturbances: DisturbanceSource
     events: EventLog | None = None
     interventions: Sequence[tuple[float, Choice]] = ()
 
@@ -103,6 +109,11 @@ class Run:
     def decisions(self) -> pd.DataFrame:
         """Measures per decision problem."""
         return measure.decisions(self)
+
+    def check(self) -> CheckReport:
+        """Have the independent checker prove the motion safe; the trace must be recorded."""
+        until_us = round(self.end_s * 1e6)
+        return check(self.layout, self.trace, until_us=until_us, slow=self.disturbances.slow)
 
     @property
     def trace(self) -> dict[str, NDArray[Any]]:
@@ -179,7 +190,9 @@ def simulate(
     if events is None and trace:
         events = measure.EventLog()
     planner = planner_settings(rules.choices[Problem.PP], seed)
-    traffic = traffic_maker(plan, record_trace=events is not None, planner=planner)
+    slow = work.disturbances.slow
+    slower = {} if slow is None else {"slow_shares": (slow.speed_share,)}
+    traffic = traffic_maker(plan, record_trace=events is not None, planner=planner, **slower)
     simulation = Simulation(
         plan,
         work,
@@ -211,6 +224,7 @@ def simulate(
         traffic=traffic,
         statistics=list(simulation.phase.statistics.values()),
         recorder=recorder,
+        disturbances=simulation.disturbances,
         events=events,
         interventions=list(simulation.interventions),
     )

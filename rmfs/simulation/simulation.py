@@ -11,6 +11,7 @@ from rmfs.control.view import View
 from rmfs.scenario import initial_stock, sku_set
 from rmfs.simulation.agenda import Agenda
 from rmfs.simulation.dispatch import Dispatch
+from rmfs.simulation.disturbances import DisturbanceSource
 from rmfs.simulation.late_binding import LateBinding
 from rmfs.simulation.observers import Observers
 from rmfs.simulation.pacing import InstantPacing, pacing_of
@@ -130,6 +131,7 @@ class Simulation:
                 )
             ),
         ]
+        self.disturbances = DisturbanceSource(self, scenario.disturbances, seed)
         self.thinking = Thinking(self, pacing_of(pacing or InstantPacing(), seed))
         self._end_us = self.us_at(self.end_s)
         self._moved_us = 0
@@ -232,6 +234,7 @@ class Simulation:
 
     def _begin(self, progress: Callable[[float, float], None] | None) -> None:
         self.observers.run_started(self)
+        self.disturbances.begin()
         self.supply.top_up()
         self.phase.signal(Trigger.START)
         if self.warmup_s == 0:

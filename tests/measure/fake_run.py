@@ -185,7 +185,10 @@ class Skus:
 def recorded() -> Recorder:
     """Tell a recorder the whole story."""
     recorder, traffic, place = Recorder(), FakeTraffic(), world()
-    recorder.run_started(SimpleNamespace(layout=layout(), world=place, traffic=traffic))
+    quiet = SimpleNamespace(within=lambda start_s, end_s: (2, end_s - start_s))
+    recorder.run_started(
+        SimpleNamespace(layout=layout(), world=place, traffic=traffic, disturbances=quiet)
+    )
     # warm-up: order 0 arrives, is assigned and done; order 1 arrives; a unit is picked
     zero, one = order(0, 0.0, [(0, 1)]), order(1, 0.0, [(0, 2), (1, 1)], due=300.0)
     recorder.order_created(zero)

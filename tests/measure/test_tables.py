@@ -90,6 +90,8 @@ EXPECTED = {
     "replans": 1,
     "expansions": 99,
     "planning_wall_s": 0.25,
+    "disturbances": 2,
+    "disturbed_s": 400.0,
     # two by the rule, two by a solution, one by the rule in place of a solution
     "decisions": 5,
     "decision_wall_s": 0.001,

@@ -264,6 +264,8 @@ def _planning(logs: Logs, report: CheckReport | None) -> dict[str, Any]:
     return {
         **{name: int(counters[name]) for name in names},
         "planning_wall_s": counters["planning_s"],
+        "disturbances": int(counters["disturbances"]),
+        "disturbed_s": counters["disturbed_s"],
         "collisions": pd.NA if report is None else report.collisions,
     }
 

@@ -8,6 +8,7 @@ import pydantic
 from pydantic import Field
 
 from rmfs.scenario.parameters.demand import BacklogDemand, Demand
+from rmfs.scenario.parameters.disturbances import Disturbances
 from rmfs.scenario.parameters.orders import AnyOrders, Orders, WordOrders, not_above_skus
 from rmfs.scenario.parameters.replenishment import BacklogReplenishment, Replenishment
 from rmfs.scenario.parameters.skus import GeneratedSkus, LetterSkus, Skus
@@ -37,6 +38,8 @@ class Scenario(Block):
     stock: Stock = Field(Stock(), description="what the pods hold at time zero")
     demand: Demand = Field(BacklogDemand(), description="when orders arrive")
     replenishment: Replenishment = Field(BacklogReplenishment(), description="when bundles arrive")
+
+    disturbances: Disturbances = Field(Disturbances(), description="what goes wrong in the run")
 
     @pydantic.field_validator("orders", "demand", "replenishment", mode="before")
     @classmethod

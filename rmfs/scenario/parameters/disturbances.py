@@ -1,0 +1,56 @@
+"""What goes wrong while a warehouse runs: nothing, unless a file says so."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import pydantic
+from pydantic import Field
+
+from rmfs.scenario.quantities import Block, Natural, NotNegative, Positive
+
+
+class _Repeated(Block):
+    every_s: Positive = Field(description="mean s from one to the next, exponential")
+    lasting_s: Positive = Field(
+        description="mean s it lasts, drawn evenly from half of it to one and a half"
+    )
+
+
+class Breakdowns(_Repeated):
+    """A robot stands still for a while where its present straight run ends."""
+
+
+class SlowRobots(_Repeated):
+    """A robot drives slower for a while, from and until a moment at which it stands still."""
+
+    speed_share: float = Field(0.5, gt=0, lt=1, description="of its top speed")
+
+
+class Closures(_Repeated):
+    """A waypoint of the aisles that everything can do without is closed for a while."""
+
+
+Outage = Annotated[tuple[Natural, NotNegative, Positive], pydantic.Strict(strict=False)]
+Outages = Annotated[tuple[Outage, ...], pydantic.Strict(strict=False)]
+
+
+class Disturbances(Block):
+    """Each kind has random times of its own, of the run's seed."""
+
+    breakdowns: Breakdowns | None = Field(None, description="robots that stop; default: none")
+    slow: SlowRobots | None = Field(None, description="robots that are slow; default: none")
+    closures: Closures | None = Field(None, description="closed waypoints; default: none")
+    elevators_out: Outages = Field(
+        (), description="triples of an elevator's index and the first and last s it is out of use"
+    )
+
+    @pydantic.field_validator("elevators_out")
+    @classmethod
+    def _in_order(cls, value: tuple[Outage, ...]) -> tuple[Outage, ...]:
+        for elevator, begin_s, end_s in value:
+            if not begin_s < end_s:
+                raise ValueError(
+                    f"must end after they begin: [{elevator}, {begin_s:g}, {end_s:g}] does not"
+                )
+        return value

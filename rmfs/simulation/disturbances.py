@@ -1,0 +1,204 @@
+"""What goes wrong while a warehouse runs, and when: breakdowns, slow robots, closed ways."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.measure.checker import Slow
+from rmfs.random import Stream, generator
+from rmfs.scenario.intake.rates import exponential_us
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from rmfs.scenario.parameters import Disturbances
+    from rmfs.simulation.simulation import Simulation
+
+AGAIN_US = 1_000_000
+"""When something cannot begin or end now, it is tried again so much later."""
+
+TRIES = 20
+"""Waypoints looked at for one that can be closed."""
+
+FOR_EVER_US = 2**62
+
+_BREAKDOWNS, _SLOW, _CLOSURES = range(3)
+
+
+class Disturbance(NamedTuple):
+    """Something that went wrong.
+
+    Attributes
+    ----------
+    kind
+        `breakdown`, `slow`, `closure` or `elevator`.
+    element
+        Robot, waypoint or elevator.
+    from_us, to_us
+        When.
+    """
+
+    kind: str
+    element: int
+    from_us: int
+    to_us: int
+
+
+class DisturbanceSource:
+    """Disturbs a run as its scenario says; does nothing if that says nothing.
+
+    Parameters
+    ----------
+    seed
+        Of the run.
+
+    Attributes
+    ----------
+    begun
+        What has gone wrong so far, by its beginning; what has not ended ends far in the future.
+
+    Raises
+    ------
+    InputError
+        If an elevator does not exist.
+    """
+
+    def __init__(self, simulation: Simulation, given: Disturbances, seed: int) -> None:
+        elevators = len(simulation.layout.elevators)
+        for elevator, *_ in given.elevators_out:
+            if elevator >= elevators:
+                raise InputError(
+                    f"scenario.disturbances.elevators_out: there is no elevator {elevator} (the "
+                    f"layout has {elevators}, numbered from 0)"
+                )
+        self._simulation, self._given = simulation, given
+        self._draw = [generator(seed, Stream.DISTURBANCES, kind) for kind in range(3)]
+        self._slow_since: dict[int, int] = {}
+        self.begun: list[Disturbance] = []
+
+    @property
+    def slow(self) -> list[Slow]:
+        """When which robots were slow, as the checker wants to know it."""
+        share = self._given.slow.speed_share if self._given.slow is not None else 1.0
+        slow = (one for one in self.begun if one.kind == "slow")
+        return [Slow(one.element, one.from_us, one.to_us, share) for one in slow]
+
+    def within(self, start_s: float, end_s: float) -> tuple[int, float]:
+        """Return how many were going on in a stretch of time, and their seconds in it."""
+        start_us, end_us = round(start_s * 1e6), round(end_s * 1e6)
+        parts = [
+            min(one.to_us, end_us) - max(one.from_us, start_us)
+            for one in self.begun
+            if one.from_us < end_us and one.to_us > start_us
+        ]
+        return len(parts), sum(parts) / 1e6
+
+    def begin(self) -> None:
+        """Enter what comes first of each kind."""
+        kinds = [
+            (_BREAKDOWNS, self._given.breakdowns, self._break_down),
+            (_SLOW, self._given.slow, self._slow_down),
+            (_CLOSURES, self._given.closures, self._close_somewhere),
+        ]
+        for kind, given, start in kinds:
+            if given is not None:
+                self._repeat(kind, given.every_s, given.lasting_s, start)
+        for elevator, begin_s, end_s in self._given.elevators_out:
+            self._elevator_out(elevator, round(begin_s * 1e6), round(end_s * 1e6))
+
+    def _repeat(
+        self, kind: int, every_s: float, lasting_s: float, start: Callable[[int], None]
+    ) -> None:
+        """Start one of a kind at a random time, and then the next."""
+
+        def come() -> None:
+            start(round(lasting_s * 1e6 * (0.5 + self._draw[kind].random())))
+            self._repeat(kind, every_s, lasting_s, start)
+
+        gap_us = exponential_us(self._draw[kind].random(), 3600.0 / every_s)
+        self._after(gap_us, come)
+
+    def _after(self, us: int, callback: Callable[[], None]) -> None:
+        self._simulation.agenda.at(self._simulation.now_us + us, callback)
+
+    def _note(self, kind: str, element: int, to_us: int = FOR_EVER_US) -> int:
+        """Note that something begins now; returns its number."""
+        self.begun.append(Disturbance(kind, element, self._simulation.now_us, to_us))
+        return len(self.begun) - 1
+
+    def _end(self, number: int) -> None:
+        self.begun[number] = self.begun[number]._replace(to_us=self._simulation.now_us)
+
+    def _robot(self, kind: int) -> int:
+        return int(self._draw[kind].integers(self._simulation.layout.robots))
+
+    def _break_down(self, lasting_us: int) -> None:
+        self._hold(self._robot(_BREAKDOWNS), lasting_us)
+
+    def _hold(self, robot: int, lasting_us: int) -> None:
+        until_us = self._simulation.traffic.hold(robot, lasting_us)
+        if until_us is None:
+            self._after(AGAIN_US, lambda: self._hold(robot, lasting_us))
+            return
+        self.begun.append(Disturbance("breakdown", robot, until_us - lasting_us, until_us))
+
+    def _slow_down(self, lasting_us: int) -> None:
+        robot = self._robot(_SLOW)
+        if robot in self._slow_since:
+            return
+        self._slow_since[robot] = -1
+        self._begin_slow(robot, lasting_us)
+
+    def _begin_slow(self, robot: int, lasting_us: int) -> None:
+        if not self._simulation.traffic.slow_down(robot, 1):
+            self._after(AGAIN_US, lambda: self._begin_slow(robot, lasting_us))
+            return
+        self._slow_since[robot] = self._note("slow", robot)
+        self._after(lasting_us, lambda: self._end_slow(robot))
+
+    def _end_slow(self, robot: int) -> None:
+        if not self._simulation.traffic.slow_down(robot, 0):
+            self._after(AGAIN_US, lambda: self._end_slow(robot))
+            return
+        self._end(self._slow_since.pop(robot))
+
+    def _close_somewhere(self, lasting_us: int) -> None:
+        """Close a waypoint without which all can still be served, if there is one."""
+        traffic, layout = self._simulation.traffic, self._simulation.layout
+        shafts = [place for elevator in layout.elevators for place in elevator.waypoints]
+        may_close = ~layout.is_storage & ~layout.is_queue
+        may_close[shafts] = False
+        may_close[[one.element for one in self._now("closure")]] = False
+        places = np.flatnonzero(may_close)
+        already = traffic.cut_off()
+        for _ in range(TRIES):
+            waypoint = int(places[self._draw[_CLOSURES].integers(len(places))])
+            traffic.close([waypoint])
+            if traffic.cut_off() == already:
+                self._closed(waypoint, lasting_us)
+                return
+            traffic.reopen([waypoint])
+
+    def _closed(self, waypoint: int, lasting_us: int) -> None:
+        number = self._note("closure", waypoint)
+        self._after(lasting_us, lambda: self._reopen([waypoint], number))
+
+    def _now(self, kind: str) -> list[Disturbance]:
+        return [one for one in self.begun if one.kind == kind and one.to_us == FOR_EVER_US]
+
+    def _reopen(self, waypoints: Sequence[int], number: int) -> None:
+        self._simulation.traffic.reopen(waypoints)
+        self._end(number)
+
+    def _elevator_out(self, elevator: int, begin_us: int, end_us: int) -> None:
+        waypoints = self._simulation.layout.elevators[elevator].waypoints
+
+        def stop() -> None:
+            self._simulation.traffic.close(waypoints)
+            number = self._note("elevator", elevator)
+            self._after(end_us - begin_us, lambda: self._reopen(waypoints, number))
+
+        self._after(begin_us, stop)
