@@ -20,6 +20,7 @@ def test_a_day_of_breakdowns():
     ledger = Ledger()
     overrides = {
         "layout.robots": 43,
+        "controllers.psa.prefer_same_tier": False,  # robots ride elevators
         "scenario.duration_s": DAY_S,
         "scenario.disturbances.breakdowns": {"every_s": 600.0, "lasting_s": 120.0},
         "scenario.disturbances.elevators_out": [[1, 8 * HOUR_S, 9 * HOUR_S]],
@@ -42,6 +43,7 @@ def test_a_day_of_breakdowns():
     orders = tables.orders(tables.Logs(run.recorder))
     waiting_s = DAY_S - orders.loc[orders["completed_s"].isna(), "assigned_s"]
     assert waiting_s.max() < HOUR_S
+    assert run.traffic.motion()["riding_s"].sum() > DAY_S / 10
     trips = run.traffic.trips()
     assert ((trips["t1_us"] - trips["t0_us"]) / 1e6).max() < HOUR_S / 2
     for hour in range(24):
