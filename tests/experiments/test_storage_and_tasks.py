@@ -5,7 +5,7 @@ from __future__ import annotations
 import pandas as pd
 import pytest
 
-from experiments.papers import storage_and_tasks
+from experiments.papers import benefit, storage_and_tasks
 from experiments.papers.study import command
 
 
@@ -55,4 +55,4 @@ def test_runs_with_too_few_decisions_by_the_optimiser_are_not_published():
             "optimiser_decision_share": [float("nan"), 0.95, 0.89, 0.9],
         }
     )
-    assert storage_and_tasks.too_few(frame) == ["a"]
+    assert benefit.too_few(frame) == ["a"]
