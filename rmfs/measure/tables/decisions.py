@@ -34,10 +34,10 @@ _OF_ANSWERS: dict[str, Callable[[Answer], Any]] = {
 def decisions(logs: Logs) -> pd.DataFrame:
     """One row per call of a controller that came to a decision, and one per question it asked."""
     calls = _calls(logs)
-    names = np.array([*logs.recorder.problems, ""])
+    names = [str(problem) for problem in logs.recorder.problems]
     rules = {
         **calls,
-        "problem": names[calls["problem"]],
+        "problem": pd.Categorical.from_codes(calls["problem"], pd.Index(names)),
         "source": "rule",
         "call": pd.NA,
         **dict.fromkeys(("sizes", "outcome", "failure", "backend", "status"), ""),
@@ -45,7 +45,7 @@ def decisions(logs: Logs) -> pd.DataFrame:
         **dict.fromkeys(("work", "build_s", "solve_s"), nan),
         **dict.fromkeys(("applied", "stale", "fallback"), pd.NA),
     }
-    by_rule = tidy("decisions", pd.DataFrame(rules))
+    by_rule = tidy("decisions", rules)
     asked = _measured(logs)
     if not asked:
         return by_rule
