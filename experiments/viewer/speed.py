@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 import pandas as pd
+import psutil  # type: ignore[import-untyped]
 
+import rmfs
 from experiments.viewer.chromium import chromium, served, show
-from rmfs.measure import load_run
+from rmfs.measure import load_run, write_run
 from rmfs.view.answers import replay_server
 
 if TYPE_CHECKING:
@@ -50,6 +53,8 @@ class Speed:
         Drawn while the run plays.
     script_ms
         Time of the page's own code per frame, which does not depend on the graphics.
+    processor_ms
+        Processor time of the whole browser per frame, drawing included.
     draw_calls
         Of one frame.
     load
@@ -61,8 +66,23 @@ class Speed:
     pods: int
     frames_per_s: float
     script_ms: float
+    processor_ms: float
     draw_calls: int
     load: float
+
+
+def recorded(path: Path) -> Path:
+    """Write a run of 128 robots and 2,000 pods with its trace into a folder; returns it."""
+    run = rmfs.simulate(
+        "study-128",
+        "pp-minimal",
+        "random",
+        seed=1,
+        overrides=[(["layout", "pod_share"], 0.866), (["scenario", "duration_s"], 600.0)],
+        trace=True,
+    )
+    write_run(run, path, trace=True)
+    return path
 
 
 def table(run: Path, seconds: float = SECONDS) -> pd.DataFrame:
@@ -85,7 +105,9 @@ def table(run: Path, seconds: float = SECONDS) -> pd.DataFrame:
     return pd.DataFrame([asdict(one) for one in measured])
 
 
-def _measure(browser: Browser, url: str, change: str, seconds: float) -> tuple[float, float, int]:
+def _measure(
+    browser: Browser, url: str, change: str, seconds: float
+) -> tuple[float, float, float, int]:
     # waiting for a function of the page is what its policy forbids
     context = browser.new_context(viewport={"width": WIDTH, "height": HEIGHT}, bypass_csp=True)
     page = context.new_page()
@@ -94,16 +116,27 @@ def _measure(browser: Browser, url: str, change: str, seconds: float) -> tuple[f
     show(page, url)
     page.evaluate(f"rmfs.store.set({{ time_s: 120, speed: 10, playing: true, {change} }})")
     page.evaluate(FRAMES, 1.0)
-    before, begun = _script_s(session), _frames(page)
+    before = _script_s(session), _processor_s(), _frames(page)
     rate = float(page.evaluate(FRAMES, seconds))
-    script_s, frames = _script_s(session) - before, _frames(page) - begun
+    after = _script_s(session), _processor_s(), _frames(page)
+    script_s, processor_s, frames = (b - a for a, b in zip(before, after, strict=True))
     calls = int(page.evaluate("rmfs.panes[0].stage.renderer.info.render.calls"))
     context.close()
-    return rate, 1000 * script_s / max(frames, 1), calls
+    return rate, 1000 * script_s / max(frames, 1), 1000 * processor_s / max(frames, 1), calls
 
 
 def _frames(page: Page) -> int:
     return int(page.evaluate("rmfs.frames"))
+
+
+def _processor_s() -> float:
+    """Processor time of the browser so far: that of all processes below this one."""
+    total = 0.0
+    for process in psutil.Process().children(recursive=True):
+        with contextlib.suppress(psutil.NoSuchProcess):
+            times = process.cpu_times()
+            total += times.user + times.system
+    return total
 
 
 def _script_s(session: CDPSession) -> float:
