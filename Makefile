@@ -50,6 +50,10 @@ format: setup ## Format the Python and Rust sources
 	$(BIN)/ruff format
 	$(CARGO) fmt --manifest-path $(CRATE)/Cargo.toml
 
+.PHONY: browse
+browse: setup ## Test the viewer in Chromium and build its page again, where Chromium and npm are
+	$(BIN)/python -m pytest -m slow -rs tests/view
+
 .PHONY: bench
 bench: setup ## Measure speed
 	$(BIN)/rmfs bench
@@ -66,6 +70,7 @@ docs: $(VENV)/.docs ## Build the documentation: docs/_build/html/index.html
 .PHONY: pictures
 pictures: setup ## Draw the pictures of the documentation (needs LaTeX and Poppler)
 	$(BIN)/rmfs layout show default --out docs/images/default-layout.png
+	$(BIN)/python -m experiments.viewer pictures
 	$(BIN)/python -m experiments.typeset results/published/figure-5a.tex docs/images/figure-5a-table.png
 
 .PHONY: viewer

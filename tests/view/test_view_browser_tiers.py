@@ -24,12 +24,12 @@ END_S = 900.0
 def tiers(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
     path = tmp_path_factory.mktemp("tiers") / "run"
     overrides: list[tuple[list[str], Any]] = [
-        (["layout", "robots"], 8),
+        (["layout", "robots"], 16),
         (["scenario", "warmup_s"], 0.0),
         (["scenario", "duration_s"], END_S),
     ]
     run = rmfs.simulate(
-        "study-tiers", "pp-minimal", "random", seed=1, overrides=overrides, trace=True
+        "study-tiers", "pp-minimal", "default", seed=1, overrides=overrides, trace=True
     )
     write_run(run, path, trace=True)
     return load_run(path)
@@ -43,10 +43,8 @@ def shown(page: Any, tiers: RunFolder) -> Iterator[Any]:
 
 
 def put(page: Any, change: str) -> None:
-    """Change what is shown, and wait until it is drawn."""
-    frames = page.evaluate("rmfs.frames")
-    page.evaluate(f"rmfs.store.set({{ {change} }})")
-    page.wait_for_function(f"rmfs.frames > {frames}")
+    """Change what is shown, and draw it."""
+    page.evaluate(f"rmfs.store.set({{ {change} }}); rmfs.picture(); null")
 
 
 def drawn(page: Any) -> str:
@@ -64,8 +62,8 @@ def test_a_robot_in_an_elevator_is_between_the_tiers(shown: Any, tiers: RunFolde
             [int(ride["robot"]), middle_s],
         )
         assert pose["ride"] == pytest.approx(0.5, abs=1e-6)
-        assert pose["tier"] == tiers.layout.tier[ride["from_wp"]]
-        assert pose["tierTo"] == tiers.layout.tier[ride["to_wp"]]
+        assert pose["tier"] == tiers.layout.tier[int(ride["from_wp"])]
+        assert pose["tierTo"] == tiers.layout.tier[int(ride["to_wp"])]
         assert pose["tier"] != pose["tierTo"]
 
 
@@ -102,11 +100,11 @@ def test_every_choice_looks_different_and_has_a_legend(
     pictures, legends = set(), set()
     for value in values:
         put(shown, f"{key}: '{value}'")
-        shown.wait_for_timeout(400)
         pictures.add(drawn(shown))
         legends.add(shown.text_content(".legend") + shown.inner_html(".legend"))
     assert len(pictures) == len(values)
-    assert len(legends) == len(values)
+    # the theme changes the scales only
+    assert len(legends) == (1 if key == "theme" else len(values))
 
 
 @pytest.mark.parametrize("key", ["paths", "zones"])
@@ -166,8 +164,8 @@ def test_next_event_and_following(shown: Any, tiers: RunFolder) -> None:
 
 
 def test_a_click_in_a_chart_seeks(shown: Any) -> None:
-    box = shown.locator(".charts canvas").first.bounding_box()
-    shown.mouse.click(box["x"] + 40 + (box["width"] - 40) / 2, box["y"] + 40)
+    chart = shown.locator(".charts canvas").first
+    chart.click(position={"x": 40 + (chart.bounding_box()["width"] - 40) / 2, "y": 40})
     assert state(shown, "time_s") == pytest.approx(END_S / 2, abs=END_S / 100)
 
 
