@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from rmfs.measure import RunFolder
 
 WIDTH, HEIGHT = 1100, 620
-COLOURS = 128
-"""Of a picture: enough for flat surfaces, and a third of the bytes."""
+COLOURS = 256
+"""Of a picture: enough for flat surfaces, and half the bytes."""
 
 RULES = ("nearest", "random")
 """Where pods go after a visit, in the two runs."""

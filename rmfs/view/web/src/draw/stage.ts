@@ -98,7 +98,7 @@ export class Stage {
       this.plan.position.set(x, y, FAR_M / 2);
       this.planControls.target.set(x, y, 0);
     } else {
-      const away = 0.8 * Math.max(width / Math.max(this.width / this.height, 1), depth) + 2 * z;
+      const away = 1.1 * Math.max(width / Math.max(this.width / this.height, 1), depth) + 2 * z;
       this.space.position.set(x, y - away, z + 0.85 * away);
       this.spaceControls.target.set(x, y, z);
     }
