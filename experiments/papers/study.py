@@ -119,6 +119,9 @@ def parser(
     made.add_argument("--jobs", type=int, help="runs at a time (default: one per core)")
     made.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler or cluster profile")
     made.add_argument(
+        "--replications", type=int, metavar="N", help="the first N seeds only; more can follow"
+    )
+    made.add_argument(
         "--smoke",
         action="store_true",
         help="two seeds, five simulated minutes: shows that everything works",
@@ -168,7 +171,8 @@ def done(
         suffix += _SMOKE
         made = plan(given.design, base={**(base or {}), **SMOKE}, replications=2)
     else:
-        made = plan(given.design, base=base, replications=replications)
+        first = replications if given.replications is None else given.replications
+        made = plan(given.design, base=base, replications=first)
     folder = given.out if given.out is not None else RESULTS / f"{made.design.name}{suffix}"
     folder = folder / part
     with watching(made.design.name) as watcher:
