@@ -129,17 +129,24 @@ def too_few(frame: pd.DataFrame) -> list[str]:
     return sorted(asked.loc[asked["optimiser_decision_share"] < LEAST_SHARE, "arm"].unique())
 
 
-def require_optimised(study: Study) -> None:
+def require_optimised(study: Study, shown: pd.DataFrame | None = None) -> None:
     """Refuse results of which optimisers decided too little.
 
     In a smoke run, which is all beginning, this is only said.
+
+    Parameters
+    ----------
+    study
+        The study.
+    shown
+        The runs on which what it shows rests. Default: all.
 
     Raises
     ------
     SystemExit
         If a run has too few decisions by optimisers: it does not show what they are worth.
     """
-    if few := too_few(study.frame):
+    if few := too_few(study.frame if shown is None else shown):
         print(f"too few decisions by optimisers: {'; '.join(few)}", file=sys.stderr)
         if not study.smoke:
             raise SystemExit(FAILED)

@@ -89,7 +89,8 @@ def main(arguments: list[str] | None = None) -> None:
     study.publish(table, "fewer-robots", COLUMNS)
     study.publish(needed(frame), "fewer-robots-needed", ("station_share",))
     print(picture(study, frame, each * frame["pick_stations"].iloc[0]))
-    require_optimised(study)
+    # fleets far too small keep no plan: they are shown, and nothing is claimed of them
+    require_optimised(study, frame[frame["station_share"] >= ENOUGH])
 
 
 if __name__ == "__main__":
