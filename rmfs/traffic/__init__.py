@@ -153,7 +153,7 @@ class PlannerSettings(NamedTuple):
     code: PathPlanner | None = None
 
 
-TIME_WINDOWS = PlannerSettings("time-windows", {"labels": EXPANSION_BUDGET})
+TIME_WINDOWS = PlannerSettings("time-windows", {"labels": EXPANSION_BUDGET, "improve_labels": 0})
 
 
 class Traffic:
@@ -485,7 +485,7 @@ class Traffic:
         """Count the work of planning.
 
         `plans` (legs), `plan_failures`, `replans`, `refusals` (runs a rolling planner wanted that
-        were not free), `expansions`, `cost_tables`, and wall time, `planning_s`.
+        were not free), `improvements`, `expansions`, `cost_tables`, and wall time, `planning_s`.
         """
         counts: dict[str, float] = dict(self._core.counters())
         counts["planning_s"] = counts.pop("planning_ns") / 1e9

@@ -13,6 +13,8 @@ class TimeWindowsParameters(Parameters):
 
     labels: int = pydantic.Field(50_000, ge=1)
     """Labels a search may look at before the robot waits until all planned motion is over."""
+    improve_labels: int = pydantic.Field(0, ge=0)
+    """Labels for each robot when a late plan and those in front of it are made anew; 0: never."""
 
 
 class TimeWindows(PathPlanning[TimeWindowsParameters]):

@@ -368,6 +368,7 @@ impl Core {
             ("plan_failures", fleet.counters.failures),
             ("replans", fleet.counters.replans),
             ("refusals", fleet.counters.refusals),
+            ("improvements", fleet.counters.improvements),
             ("expansions", fleet.pathfinder.expansions),
             ("cost_tables", fleet.costs.computed),
             ("planning_ns", fleet.counters.planning.as_nanos() as u64),

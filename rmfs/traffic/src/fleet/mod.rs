@@ -7,6 +7,7 @@
 mod blocked;
 mod closing;
 mod disturbed;
+mod improve;
 mod late;
 mod planning;
 mod programs;
@@ -78,6 +79,8 @@ pub struct Counters {
     pub replans: u64,
     /// Runs that a rolling planner wanted and that were not free.
     pub refusals: u64,
+    /// How often plans have been replaced by better ones.
+    pub improvements: u64,
     /// Wall time spent planning.
     pub planning: Duration,
     /// Wall time of each call of the planner, in nanoseconds.
@@ -126,6 +129,8 @@ pub struct Fleet {
     /// Stations in whose queue somebody could not move up although places are free.
     stalled: Vec<u32>,
     released: Vec<u32>,
+    /// Robots whose legs have just been planned.
+    fresh: Vec<u32>,
     retry_due: bool,
     agenda: BinaryHeap<Reverse<(Us, u32, Due, u32)>>,
     outbox: Vec<Event>,
@@ -146,7 +151,7 @@ impl Fleet {
         with_trace: bool,
     ) -> Result<Self, String> {
         let (per_leg, rolling): (Box<dyn Planner>, _) = match Rolling::of(planner, robots.len()) {
-            Ok(rolling) => (Box::new(TimeWindows { budget }), Some(rolling)),
+            Ok(rolling) => (Box::new(TimeWindows { budget, improvement: 0 }), Some(rolling)),
             Err(per_leg) => (per_leg, None),
         };
         let mut fleet = Self {
@@ -163,6 +168,7 @@ impl Fleet {
             counters: Counters::default(),
             blocked: Vec::new(),
             released: Vec::new(),
+            fresh: Vec::new(),
             retry_due: false,
             agenda: BinaryHeap::new(),
             outbox: Vec::new(),
@@ -255,6 +261,7 @@ impl Fleet {
             }
         }
         self.retry_released();
+        self.improve();
     }
 
     fn emit(&mut self, kind: EventKind, robot: u32, value: u32) {

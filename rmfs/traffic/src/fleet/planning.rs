@@ -103,6 +103,7 @@ impl Fleet {
             self.emit(EventKind::Departed, robot, start);
         }
         self.released.push(start);
+        self.fresh.push(robot);
         true
     }
 

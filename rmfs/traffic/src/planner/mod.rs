@@ -96,6 +96,12 @@ pub trait Planner: Debug + Send + Sync {
     /// When it is asked.
     fn rhythm(&self) -> Rhythm;
 
+    /// Planners per leg: labels that may be looked at for each robot of a group when plans are to be
+    /// improved; 0 for never.
+    fn improvement(&self) -> u64 {
+        0
+    }
+
     /// Plans ways for agents; one answer each.
     ///
     /// A planner per leg returns a way to the goal that is free in the scene's table and ends where

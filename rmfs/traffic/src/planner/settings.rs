@@ -67,7 +67,10 @@ impl Settings {
 pub fn build(settings: &Settings, network: &Network) -> Result<Box<dyn Planner>, String> {
     let table = Table::new(network.resources);
     Ok(match settings.name.as_str() {
-        "time-windows" => Box::new(TimeWindows { budget: settings.count("labels")? }),
+        "time-windows" => Box::new(TimeWindows {
+            budget: settings.count("labels")?,
+            improvement: settings.count("improve_labels").unwrap_or(0),
+        }),
         "whca-v" => Box::new(WhcaVolatile {
             rhythm: settings.rhythm()?,
             window: settings.time("window_s")?,

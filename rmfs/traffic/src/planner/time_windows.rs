@@ -9,6 +9,8 @@ use super::{Agent, Answer, Planner, Rhythm, Scene};
 pub struct TimeWindows {
     /// Labels a search may look at before the robot waits until all planned motion is over.
     pub budget: u64,
+    /// Labels for each robot of a group when plans are to be improved; 0 for never.
+    pub improvement: u64,
 }
 
 impl TimeWindows {
@@ -49,6 +51,10 @@ impl TimeWindows {
 impl Planner for TimeWindows {
     fn rhythm(&self) -> Rhythm {
         Rhythm::PerLeg
+    }
+
+    fn improvement(&self) -> u64 {
+        self.improvement
     }
 
     fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
