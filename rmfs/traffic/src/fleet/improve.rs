@@ -52,9 +52,8 @@ impl Fleet {
         let now = self.now;
         let held = self.robots[robot as usize].held.clone();
         for own in held.iter().filter(|own| own.start > now) {
-            let row = self.table.row(own.resource).iter();
-            let before =
-                row.filter(|used| used.robot != robot && used.end <= own.start).last().copied();
+            let mut row = self.table.row(own.resource).iter();
+            let before = row.rfind(|used| used.robot != robot && used.end <= own.start).copied();
             if let Some(used) = before
                 && own.start - used.end < CLOSE
                 && self.can_change(used.robot)
