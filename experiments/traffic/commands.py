@@ -11,11 +11,14 @@ import typer
 from experiments.traffic import duel as duels
 from rmfs import layout as layouts
 from rmfs.config import parse_override
-from rmfs.trips import drive, random_trips
+from rmfs.errors import InputError
+from rmfs.trips import drive, mapf, random_trips
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rmfs.layout.model import Layout
-    from rmfs.trips import TripRun
+    from rmfs.trips import TripRun, TripStream
 
 app = typer.Typer(
     help="Path planners alone: random trips, duels, growth, random cases.", no_args_is_help=True
@@ -46,6 +49,10 @@ Allow = Annotated[
 ]
 Out = Annotated[
     Path | None, typer.Option(help="A .csv or .md file for the table.", show_default=False)
+]
+Lists = Annotated[
+    Path | None,
+    typer.Option(help="Robots and trips on a .map; a list of its format.", show_default=False),
 ]
 PLANNER_HELP = "Name, or NAME:KEY=VALUE,KEY=VALUE with parameters"
 
@@ -82,17 +89,22 @@ def duel(
     set_: Settings = None,
     allow_not_well_formed: Allow = False,
     out: Out = None,
+    scen: Lists = None,
+    agents: Lists = None,
+    tasks: Lists = None,
 ) -> None:
-    """Drive the same random trips by several planners."""
+    """Drive the same trips by several planners: random ones, or on a .map those of its files."""
     names = planner or duels.all_planners()
     duels.check_planners(names)
-    loaded = _loaded(layout, robots, set_, allow_not_well_formed=allow_not_well_formed)
+    loaded, trips = _given(
+        layout, robots, set_, seed, (scen, agents, tasks), allowed=allow_not_well_formed
+    )
     rows, unsafe = {}, []
     for name in names:
         _tell(f"{layout}, {loaded.robots} robots: {name}")
         run = drive(
             loaded,
-            random_trips(loaded, seed),
+            trips(),
             duels.settings(name, seed),
             duration_s=duration,
             warmup_s=warmup,
@@ -131,6 +143,52 @@ def scale_command(
     typer.echo(out)
 
 
+@app.command()
+def fuzz(
+    seconds: Annotated[float, typer.Option(min=0.0, help="Wall time to go on for.")] = 600.0,
+    seed: Annotated[int, typer.Option(min=0, help="Number of the first case.")] = 0,
+    out: Annotated[Path, typer.Option(help="Folder for cases that fail.")] = Path("results/fuzz"),
+    replay: Annotated[
+        Path | None, typer.Option(help="Run the case of a file again.", show_default=False)
+    ] = None,
+) -> None:
+    """Drive random trips on random layouts, some of them spoilt, and look for failures."""
+    from experiments.traffic import fuzz as fuzzing
+
+    if replay is not None:
+        verdict = fuzzing.run(fuzzing.read(replay))
+        typer.echo(f"{replay} {verdict.outcome}: {verdict.told}")
+        return
+    counts = fuzzing.fuzz(seed, seconds, out, typer.echo)
+    typer.echo(", ".join(f"{number} {name}" for name, number in counts.items()))
+    if counts["failed"]:
+        raise typer.Exit(UNSAFE)
+
+
+def _given(
+    layout: str,
+    robots: int | None,
+    set_: list[str] | None,
+    seed: int,
+    lists: tuple[Path | None, Path | None, Path | None],
+    *,
+    allowed: bool,
+) -> tuple[Layout, Callable[[], TripStream]]:
+    """Return the layout and what makes its stream of trips."""
+    scen, agents, tasks = lists
+    is_map = layout.lower().endswith(".map")
+    if any(lists) and not is_map:
+        raise InputError(f"{layout}: --scen, --agents and --tasks need a .map")
+    if (scen is not None and agents is not None) or (tasks is not None and agents is None):
+        raise InputError("give --scen, or --agents with or without --tasks")
+    if scen is not None:
+        return mapf.scenario(Path(layout), scen, robots)
+    if agents is not None:
+        return mapf.league(Path(layout), agents, tasks, robots, seed)
+    loaded = _loaded(layout, robots, set_, allow_not_well_formed=allowed or is_map)
+    return loaded, lambda: random_trips(loaded, seed)
+
+
 def _loaded(
     layout: str, robots: int | None, set_: list[str] | None, *, allow_not_well_formed: bool
 ) -> Layout:
@@ -139,7 +197,8 @@ def _loaded(
         path, value = parse_override(text)
         overrides.append((path[1:] if path[0] == "layout" else path, value))
     loaded = layouts.load(layout, overrides)
-    layouts.refuse(loaded, layout, allow_not_well_formed=allow_not_well_formed)
+    if not layout.lower().endswith(".map"):  # a grid without stations is refused by every check
+        layouts.refuse(loaded, layout, allow_not_well_formed=allow_not_well_formed)
     return loaded
 
 

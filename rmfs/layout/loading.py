@@ -9,6 +9,7 @@ from rmfs.config import Table, apply_overrides, read_toml, validate
 from rmfs.errors import InputError
 from rmfs.layout.explicit import read_json
 from rmfs.layout.generator import generate
+from rmfs.layout.mapf import read_map
 from rmfs.layout.overrides import FACTORS, override
 from rmfs.layout.parameters import LayoutParameters
 from rmfs.layout.rawsimo.xinst import read_xinst
@@ -43,7 +44,7 @@ def load_with_notes(
     ----------
     name_or_path
         A shipped layout, or a file: `.toml` (parameters), `.json` (explicit layout), `.xlayo` or
-        `.xinst` (RAWSim-O).
+        `.xinst` (RAWSim-O), `.map` (grid map without pods and stations, for traffic alone).
     overrides
         (path, value) pairs such as `(["robots"], 16)`, applied to the parameters before they are
         validated. On explicit layouts only the keys of `ExplicitOverrides`; its `FACTORS` serve
@@ -71,7 +72,11 @@ def load_with_notes(
         case ".xinst":
             layout, notes = read_xinst(path)
             return override(layout, overrides, source), notes
-    raise InputError(f"{path}: unknown kind of layout; expected .toml, .json, .xlayo or .xinst")
+        case ".map":
+            return override(read_map(path), overrides, source), []
+    raise InputError(
+        f"{path}: unknown kind of layout; expected .toml, .json, .xlayo, .xinst or .map"
+    )
 
 
 def _generated(table: Table, overrides: Sequence[Override], source: str) -> Layout:

@@ -1,0 +1,129 @@
+"""Grid maps of the path-finding community as layouts (Stern et al. 2019: `.map` and `.scen`).
+
+A free cell is a waypoint, a metre from its neighbours; undirected edges are two-way lanes. There
+are no pods and no stations: robots drive from point to point. Cells count from the top left, rows
+downwards, as in these files; y grows upwards here.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.layout.graph import compressed
+from rmfs.layout.model import Layout, RobotKind, Tier
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+BLOCKED = "@OTW"
+"""Signs of cells that cannot be entered; all others (`.GSE`) are free."""
+
+KIND = RobotKind(0.35, 1.0, 1.0, 1.5, 2.5, 2.2)
+"""The robot of the default layout: these files say nothing of size and speed."""
+
+
+def read_map(path: Path, robots: list[int] | None = None) -> Layout:
+    """Read a `.map` file.
+
+    Parameters
+    ----------
+    robots
+        Cells (row times width plus column) where robots stand. Default: the first free cell of
+        each row with one, at most ten.
+
+    Raises
+    ------
+    InputError
+        If the file is not a grid map, or a robot stands where there is no free cell.
+    """
+    free = _free(path)
+    number = cell_waypoints(free)
+    rows, columns = np.nonzero(free)
+    edges = [
+        (int(number[row, column]), int(number[r, c]))
+        for row, column in zip(rows.tolist(), columns.tolist(), strict=True)
+        for r, c in ((row, column + 1), (row, column - 1), (row + 1, column), (row - 1, column))
+        if 0 <= r < free.shape[0] and 0 <= c < free.shape[1] and free[r, c]
+    ]
+    count = len(rows)
+    start, target = compressed(count, sorted(edges))
+    if robots is None:
+        first = [int(number[row][free[row]][0]) for row in range(len(free)) if free[row].any()]
+        places = np.array(first[:10], np.int32)
+    else:
+        places = np.array([waypoint_at(number, cell, str(path)) for cell in robots], np.int32)
+    if len(set(places.tolist())) < len(places):
+        raise InputError(f"{path}: two robots stand on one cell")
+    none = np.zeros(0, np.int32)
+    return Layout(
+        name=path.stem,
+        tiers=(Tier(float(free.shape[1]), float(free.shape[0])),),
+        x_m=columns + 0.5,
+        y_m=free.shape[0] - rows - 0.5,
+        tier=np.zeros(count, np.int16),
+        edge_start=start,
+        edge_target=target,
+        is_storage=np.zeros(count, np.bool_),
+        is_queue=np.zeros(count, np.bool_),
+        pick_stations=(),
+        replenishment_stations=(),
+        elevators=(),
+        pod_waypoint=none,
+        pod_capacity=np.zeros(0),
+        pod_radius_m=0.45,
+        robot_waypoint=places,
+        robot_heading_rad=np.zeros(len(places)),
+        robot_kind=np.zeros(len(places), np.int16),
+        robot_kinds=(KIND,),
+    )
+
+
+def read_cells(path: Path) -> NDArray[np.int64]:
+    """Return the waypoint of each cell of a map, -1 where it is blocked, shape (H, W)."""
+    return cell_waypoints(_free(path))
+
+
+def cell_waypoints(free: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Number the free cells row by row."""
+    number = np.full(free.shape, -1, np.int64)
+    number[free] = np.arange(free.sum())
+    return number
+
+
+def waypoint_at(number: NDArray[np.int64], cell: int, source: str) -> int:
+    """Return the waypoint of a cell.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    if not 0 <= cell < number.size or number.flat[cell] < 0:
+        raise InputError(f"{source}: cell {cell} is not a free cell of the map")
+    return int(number.flat[cell])
+
+
+def _free(path: Path) -> NDArray[np.bool_]:
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read ({error})") from None
+    head = [line.split() for line in lines[:4]]
+    if len(head) < 4 or [words[:1] for words in head] != [["type"], ["height"], ["width"], ["map"]]:
+        raise InputError(f"{path}: must begin with type, height, width and map, a line each")
+    try:
+        height, width = int(head[1][1]), int(head[2][1])
+    except (IndexError, ValueError):
+        raise InputError(f"{path}: height and width must be whole numbers") from None
+    rows = [line.rstrip() for line in lines[4:] if line.strip()]
+    if len(rows) != height or any(len(row) != width for row in rows):
+        raise InputError(f"{path}: expected {height} rows of {width} cells")
+    free = np.array([[sign not in BLOCKED for sign in row] for row in rows], np.bool_)
+    if free.sum() < 2:
+        raise InputError(f"{path}: has no two free cells")
+    return free.reshape(height, width)

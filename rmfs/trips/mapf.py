@@ -1,0 +1,104 @@
+"""Robots and trips of the path-finding community's files, on their maps.
+
+`.scen` (MovingAI): each line a robot with its start and its one goal. `.agents` and `.tasks`
+(League of Robot Runners): starts, and goals or chains of goals that are handed out in order to
+whoever has none left.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.errors import InputError
+from rmfs.layout.mapf import read_cells, read_map, waypoint_at
+from rmfs.trips.streams import PointTrips, TripStream, random_trips
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from rmfs.layout.model import Layout
+
+
+def scenario(
+    map_file: Path, scen: Path, robots: int | None = None
+) -> tuple[Layout, Callable[[], TripStream]]:
+    """Read a map with the first robots of a `.scen` file.
+
+    Returns
+    -------
+    The layout, and what makes its stream of trips: one for each robot.
+
+    Raises
+    ------
+    InputError
+        If a file is wrong or has fewer robots.
+    """
+    number = read_cells(map_file)
+    width = number.shape[1]
+    lines = _lines(scen)
+    rows = [line.split() for line in (lines[1:] if lines[:1] and "version" in lines[0] else lines)]
+    count = len(rows) if robots is None else robots
+    if len(rows) < count:
+        raise InputError(f"{scen}: has {len(rows)} robots, not {count}")
+    try:
+        cells = [[int(word) for word in row[4:8]] for row in rows[:count]]
+        pairs = [(y * width + x, gy * width + gx) for x, y, gx, gy in cells]
+    except ValueError:
+        raise InputError(
+            f"{scen}: expected nine columns a line: bucket, map, its width and "
+            "height, start x and y, goal x and y, length"
+        ) from None
+    layout = read_map(map_file, [start for start, _ in pairs])
+    goals = [waypoint_at(number, goal, str(scen)) for _, goal in pairs]
+    return layout, lambda: PointTrips([[goal] for goal in goals])
+
+
+def league(
+    map_file: Path, agents: Path, tasks: Path | None, robots: int | None = None, seed: int = 0
+) -> tuple[Layout, Callable[[], TripStream]]:
+    """Read a map with the first robots of an `.agents` file and the goals of a `.tasks` file.
+
+    Parameters
+    ----------
+    tasks
+        None: random goals without end.
+
+    Returns
+    -------
+    The layout, and what makes its stream of trips.
+
+    Raises
+    ------
+    InputError
+        If a file is wrong or has fewer robots.
+    """
+    number = read_cells(map_file)
+    starts = [cells[0] for cells in _numbered(agents)]
+    count = len(starts) if robots is None else robots
+    if len(starts) < count:
+        raise InputError(f"{agents}: has {len(starts)} robots, not {count}")
+    layout = read_map(map_file, starts[:count])
+    if tasks is None:
+        return layout, lambda: random_trips(layout, seed)
+    goals = [waypoint_at(number, cell, str(tasks)) for chain in _numbered(tasks) for cell in chain]
+    return layout, lambda: PointTrips([[] for _ in range(count)], shared=goals)
+
+
+def _numbered(path: Path) -> list[list[int]]:
+    """Read a list of cells, or of chains of cells, that begins with its length."""
+    try:
+        rows = [[int(cell) for cell in line.replace(",", " ").split()] for line in _lines(path)]
+    except ValueError:
+        raise InputError(f"{path}: expected whole numbers, the number of lines first") from None
+    if not rows or rows[0] != [len(rows) - 1]:
+        raise InputError(f"{path}: must begin with the number of lines that follow")
+    return rows[1:]
+
+
+def _lines(path: Path) -> list[str]:
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read ({error})") from None
+    return [line for line in lines if line.strip() and not line.startswith("#")]
