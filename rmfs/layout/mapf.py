@@ -63,8 +63,8 @@ def read_map(path: Path, robots: list[int] | None = None) -> Layout:
     return Layout(
         name=path.stem,
         tiers=(Tier(float(free.shape[1]), float(free.shape[0])),),
-        x_m=columns + 0.5,
-        y_m=free.shape[0] - rows - 0.5,
+        x_m=columns.astype(np.float64) + 0.5,
+        y_m=free.shape[0] - rows.astype(np.float64) - 0.5,
         tier=np.zeros(count, np.int16),
         edge_start=start,
         edge_target=target,
