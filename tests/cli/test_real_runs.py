@@ -181,11 +181,17 @@ def test_recorded_streams_replay_the_run(tmp_path):
 
 def test_a_file_of_rawsimo_says_what_is_different(tmp_path, capsys):
     controllers = tmp_path / "far.xconf"
-    controllers.write_text("<ControlConfiguration><Name>far</Name><Old/></ControlConfiguration>")
+    controllers.write_text(
+        '<ControlConfiguration xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance">'
+        "<Name>far</Name><Old/>"
+        '<PathPlanningConfig xsi:type="FARPathPlanningConfiguration">'
+        "<RuntimeLimitPerAgent>0.1</RuntimeLimitPerAgent></PathPlanningConfig>"
+        "</ControlConfiguration>"
+    )
     short = ["--set", "scenario.warmup_s=0", "--set", "scenario.duration_s=60"]
     arguments = ["run", "--controllers", str(controllers), *short, "--out", str(tmp_path / "run")]
     assert main(arguments) == 0
     told = capsys.readouterr().err
     assert "Old unknown, left out" in told
-    assert "FAR becomes time-windows" in told
+    assert "limits count work here" in told
     assert load_run(tmp_path / "run").footprint["controllers"] == "far"

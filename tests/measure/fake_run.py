@@ -18,6 +18,7 @@ from scripted_trace import Script, grid
 from rmfs.control.asks import Answer, Ask, Call, Outcome
 from rmfs.control.problems import Problem
 from rmfs.layout.model import PickStation, ReplenishmentStation
+from rmfs.measure.checker import check
 from rmfs.measure.events import EventLog
 from rmfs.measure.recorder import Recorder
 
@@ -182,13 +183,16 @@ class Skus:
         return 2
 
 
+def simulation(place, traffic):
+    """What a recorder asks of a simulation: two disturbances last from begin to end."""
+    disturbances = SimpleNamespace(within=lambda start_s, end_s: (2, end_s - start_s))
+    return SimpleNamespace(layout=layout(), world=place, traffic=traffic, disturbances=disturbances)
+
+
 def recorded() -> Recorder:
     """Tell a recorder the whole story."""
     recorder, traffic, place = Recorder(), FakeTraffic(), world()
-    quiet = SimpleNamespace(within=lambda start_s, end_s: (2, end_s - start_s))
-    recorder.run_started(
-        SimpleNamespace(layout=layout(), world=place, traffic=traffic, disturbances=quiet)
-    )
+    recorder.run_started(simulation(place, traffic))
     # warm-up: order 0 arrives, is assigned and done; order 1 arrives; a unit is picked
     zero, one = order(0, 0.0, [(0, 1)]), order(1, 0.0, [(0, 2), (1, 1)], due=300.0)
     recorder.order_created(zero)
@@ -288,8 +292,9 @@ def _sample(recorder, traffic, time_s):
 def run():
     """What `simulate` returns, as far as the measures read it."""
     recorder = recorded()
+    place, trace = recorder.layout, FakeTraffic().trace()
     return SimpleNamespace(
-        layout=recorder.layout,
+        layout=place,
         scenario=Settings(),
         controllers=Settings(),
         names=("fake-layout", "fake-scenario", "fake-controllers"),
@@ -304,6 +309,7 @@ def run():
         end_s=END_S,
         wall_s=0.5,
         recorder=recorder,
-        trace=FakeTraffic().trace(),
+        trace=trace,
+        check=lambda: check(place, trace, until_us=round(END_S * 1e6)),
         events=EventLog(),
     )

@@ -44,6 +44,7 @@ NOT_IN_TABLES = {
     "collisions": "found by the checker: tests/measure/test_checker_*.py",
     **dict.fromkeys(("plans", "plan_failures", "replans", "expansions"), "counted by traffic"),
     **dict.fromkeys(("order_redraws", "orders_short"), "counted when an order is drawn, or comes"),
+    **dict.fromkeys(("disturbances", "disturbed_s"), "tests/simulation/test_disturbances.py"),
     **dict.fromkeys(("planning_wall_s", "wall_s", "peak_rss_mb"), "of the machine, measured once"),
 }
 """Numbers of the footprint that no table tells again, and why."""

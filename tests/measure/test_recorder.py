@@ -5,10 +5,9 @@ from __future__ import annotations
 import struct
 import time
 from math import isnan
-from types import SimpleNamespace
 
 import pytest
-from fake_run import FakeTraffic, bundle, layout, order, recorded, world
+from fake_run import FakeTraffic, bundle, order, recorded, simulation, world
 
 from rmfs.measure import Recorder
 from rmfs.measure.log import Log
@@ -17,7 +16,7 @@ from rmfs.measure.log import Log
 def a_busy_run(callbacks: int) -> float:
     """Tell a fresh recorder so many events in the mix of a run; returns the wall time in s."""
     recorder = Recorder()
-    recorder.run_started(SimpleNamespace(layout=layout(), world=world(), traffic=FakeTraffic()))
+    recorder.run_started(simulation(world(), FakeTraffic()))
     rounds = callbacks // 15
     orders = [order(k, 1.0, [(0, 2), (1, 1)], station=0) for k in range(rounds)]
     bundles = [bundle(k, 1.0, station=2, pod=1) for k in range(rounds)]
@@ -56,7 +55,7 @@ def test_finished_work_is_let_go():
 
 def test_a_visit_at_the_end_stays_open():
     recorder = Recorder()
-    recorder.run_started(SimpleNamespace(layout=layout(), world=world(), traffic=FakeTraffic()))
+    recorder.run_started(simulation(world(), FakeTraffic()))
     recorder.visit_started(3.0, 0, 1, 1)
     recorder.run_ended(10.0)
     visits = {name: column.tolist() for name, column in recorder.visits.columns().items()}
