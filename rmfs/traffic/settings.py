@@ -1,0 +1,36 @@
+"""Which planner of the core plans the ways, and how much it may work."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from rmfs.traffic.planner import PathPlanner
+
+COST_TABLE_BYTES = 200_000_000
+EXPANSION_BUDGET = 50_000
+"""Labels a search for a leg may look at before the robot waits for all planned motion to end."""
+
+
+class PlannerSettings(NamedTuple):
+    """A planner of the core.
+
+    Attributes
+    ----------
+    name
+        As in a controllers file.
+    parameters
+        All it has; durations in seconds, switches as 0 and 1.
+    seed
+        Of its random decisions.
+    code
+        The planner itself, if it is written in Python (`rmfs.traffic.planner`).
+    """
+
+    name: str
+    parameters: dict[str, float]
+    seed: int = 0
+    code: PathPlanner | None = None
+
+
+TIME_WINDOWS = PlannerSettings("time-windows", {"labels": EXPANSION_BUDGET, "improve_labels": 0})

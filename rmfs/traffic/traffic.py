@@ -1,0 +1,382 @@
+"""The robots of one layout: a thin face of the compiled core."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rmfs.traffic._core import Core
+from rmfs.traffic.planner import Conversation
+from rmfs.traffic.settings import (
+    COST_TABLE_BYTES,
+    EXPANSION_BUDGET,
+    TIME_WINDOWS,
+    PlannerSettings,
+)
+from rmfs.traffic.trace import joined_holds
+from rmfs.traffic.vocabulary import CutOff, PlannedMove
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+
+_BY_PURPOSE = ("visits", "waiting_s")
+
+
+class Traffic:
+    """The robots of one layout.
+
+    Parameters
+    ----------
+    layout
+        The warehouse; its stations' common numbering names the queues.
+    record_trace
+        Whether every piece of motion is kept (see `trace`).
+    cost_table_bytes
+        Memory for tables of unhindered times; the least recently used are dropped.
+    planner
+        Who plans the ways.
+    slow_shares
+        Shares of its top speed to which a robot may be slowed down.
+
+    Raises
+    ------
+    ValueError
+        If two robots start at one waypoint, a waypoint has two edges in one direction, or the core
+        has no such planner.
+    """
+
+    def __init__(
+        self,
+        layout: Layout,
+        *,
+        record_trace: bool = False,
+        cost_table_bytes: int = COST_TABLE_BYTES,
+        planner: PlannerSettings = TIME_WINDOWS,
+        slow_shares: Sequence[float] = (),
+    ) -> None:
+        self._kind = layout.robot_kind
+        self._kinds = len(layout.robot_kinds)
+        self._from_cache: dict[tuple[int, int, bool], NDArray[np.float64]] = {}
+        self._to_cache: dict[tuple[int, int, bool], NDArray[np.float64]] = {}
+        self._core = Core(
+            layout.x_m,
+            layout.y_m,
+            layout.tier.astype(np.int16),
+            layout.edge_start.astype(np.uint32),
+            layout.edge_target.astype(np.uint32),
+            layout.is_storage,
+            layout.is_queue,
+            [list(station.queue) for station in layout.stations],
+            [list(elevator.waypoints) for elevator in layout.elevators],
+            [
+                (a, b, _us(seconds))
+                for elevator in layout.elevators
+                for (a, b), seconds in elevator.travel_s.items()
+            ],
+            list(
+                zip(
+                    layout.robot_waypoint.tolist(),
+                    layout.robot_heading_rad.tolist(),
+                    layout.robot_kind.tolist(),
+                    strict=True,
+                )
+            ),
+            [
+                (
+                    kind.acceleration_m_s2,
+                    kind.deceleration_m_s2,
+                    kind.top_speed_m_s * share,
+                    _us(kind.full_turn_s),
+                    _us(kind.pod_transfer_s),
+                )
+                for share in (1.0, *slow_shares)
+                for kind in layout.robot_kinds
+            ],
+            (
+                planner.name,
+                planner.parameters,
+                planner.seed,
+                planner.code and Conversation(planner.code),
+            ),
+            EXPANSION_BUDGET,
+            cost_table_bytes,
+            record_trace,
+        )
+        # the two calls of the hot path, without a frame in between
+        self.advance: Callable[[int], list[tuple[int, int, int, int]]] = self._core.advance
+        self.command = self._core.command
+
+    @property
+    def now_us(self) -> int:
+        """The time up to which traffic has advanced, in microseconds."""
+        return self._core.now
+
+    def rest_waypoint(self, robot: int) -> int:
+        """Where the robot stands, or where its plan ends."""
+        return self._core.rest_waypoint(robot)
+
+    def robot_waypoint(self, robot: int) -> int:
+        """Where the robot stands, or the next waypoint at which it stops."""
+        return self._core.next_stop(robot)
+
+    def blocked(self) -> list[int]:
+        """Robots that want to drive and have found no way yet."""
+        return self._core.blocked()
+
+    def travel_times_to(self, waypoint: int, loaded: bool, robot: int = 0) -> NDArray[np.float64]:
+        """Unhindered times from every waypoint to one, from rest to rest, best start heading.
+
+        Returns
+        -------
+        Seconds, shape (N,); infinite where there is no way. Do not write into it.
+        """
+        key = (waypoint, int(self._kind[robot]), loaded)
+        if key not in self._to_cache:
+            self._to_cache[key] = self._core.travel_times_to(*key)
+        return self._to_cache[key]
+
+    def travel_times_from(self, waypoint: int, loaded: bool, robot: int = 0) -> NDArray[np.float64]:
+        """Unhindered times from one waypoint to every other, from rest to rest, any start heading.
+
+        Returns
+        -------
+        Seconds, shape (N,); infinite where there is no way. Do not write into it.
+        """
+        key = (waypoint, int(self._kind[robot]), loaded)
+        if key not in self._from_cache:
+            self._from_cache[key] = self._core.travel_times_from(*key)
+        return self._from_cache[key]
+
+    def plan(self, robot: int) -> list[PlannedMove]:
+        """Pieces of motion a robot will do, from rest to rest, the present one included."""
+        return [PlannedMove(*move) for move in self._core.plan(robot)]
+
+    def delay(self, robot: int, by_us: int, *, begun: bool = False) -> bool:
+        """Shift what is left of a robot's plan; the order in which waypoints are used stays.
+
+        Whoever is to use a waypoint after this robot enters it later if need be, and so on.
+
+        Parameters
+        ----------
+        robot
+            Whose plan.
+        by_us
+            Microseconds, not negative.
+        begun
+            Whether motion in progress may be shifted too, as it must be when robots outside the
+            simulation are late. Otherwise nothing happens if that would be needed.
+
+        Returns
+        -------
+        Whether the plans were shifted.
+        """
+        return self._core.delay(robot, by_us, begun)
+
+    def clearance(self, robot: int) -> list[int]:
+        """Waypoints of the robot's present or next run, not passed, that it may drive to at once.
+
+        In order; whoever was to use them before has left them.
+        """
+        return self._core.clearance(robot)
+
+    def regroup(self, rests: Sequence[tuple[int, float, int] | None]) -> None:
+        """Give up plans, put the robots where they really are, and plan their programs anew.
+
+        Parameters
+        ----------
+        rests
+            For each robot the waypoint at which it stands or will stop, its heading in radians
+            (that of an edge), and the time it stands there, in microseconds. None for a robot that
+            keeps the run it is in the middle of, as far as the way is clear.
+
+        Raises
+        ------
+        ValueError
+            If two robots would have one waypoint, or a heading or waypoint does not exist; nothing
+            has changed then.
+        """
+        self._core.regroup(list(rests))
+
+    def hold(self, robot: int, by_us: int) -> int | None:
+        """Let a robot stand still for a while where it next comes to rest: a breakdown.
+
+        Others who are to use a waypoint after it wait; all keep their ways and their order.
+
+        Returns
+        -------
+        When it goes on, in microseconds; None, and nothing has changed, if somebody is already
+        driving who would have to wait: try again a moment later.
+        """
+        return self._core.hold(robot, by_us)
+
+    def slow_down(self, robot: int, level: int) -> bool:
+        """Let a robot that stands still drive slower from now on, or as fast as it should again.
+
+        Parameters
+        ----------
+        level
+            0 for its own top speed, k for the k-th of `slow_shares`.
+
+        Returns
+        -------
+        Whether that was done; not if the robot is in motion, or somebody is already driving who
+        would have to wait for it.
+        """
+        kind = int(self._kind[robot]) + level * self._kinds
+        return self._core.change_kind(robot, kind)
+
+    def close(self, waypoints: Sequence[int]) -> list[int]:
+        """Close waypoints from now on: nobody enters them until they are opened again.
+
+        Who is on one, or can no longer stop before it, goes on and leaves; whose plan leads there
+        later gets another, or stops before it and waits. A robot that stands there without anything
+        to do stays. Close all waypoints of an elevator to put it out of service.
+
+        Parameters
+        ----------
+        waypoints
+            Which; may be closed already.
+
+        Returns
+        -------
+        Robots that still drive through one: they cannot stop, or every place where they could is
+        needed by others.
+
+        Raises
+        ------
+        ValueError
+            If a waypoint does not exist; nothing has changed then.
+        """
+        still = self._core.close(list(waypoints))
+        self._forget_times()
+        return still
+
+    def reopen(self, waypoints: Sequence[int]) -> None:
+        """Open closed waypoints again.
+
+        Raises
+        ------
+        ValueError
+            If a waypoint does not exist; nothing has changed then.
+        """
+        self._core.reopen(list(waypoints))
+        self._forget_times()
+
+    def cut_off(self) -> CutOff:
+        """Say what cannot be served with what is closed: robots bound there would wait."""
+        return CutOff(*self._core.cut_off())
+
+    def _forget_times(self) -> None:
+        self._from_cache.clear()
+        self._to_cache.clear()
+
+    def motion(self) -> dict[str, NDArray[Any]]:
+        """Totals per robot since the last reset, up to now, each of shape (R,).
+
+        `distance_m`, `loaded_distance_m`; the times `moving_s`, `turning_s`, `waiting_s` (standing
+        with a way to go), `served_s` (standing at a station), `idle_s`, `transfer_s` (lifting,
+        setting down) and `riding_s` (elevators) add up to the time passed; `queueing_s` counts from
+        entering a queue zone to reaching the station and overlaps with the others.
+        """
+        return self._core.motion()
+
+    def heat(self) -> dict[str, NDArray[Any]]:
+        """Count visits and standing time of robots that are not idle, since the last reset.
+
+        Per waypoint, shape (N,): `visits`, `waiting_s`, and of these with a pod `loaded_visits`,
+        `loaded_waiting_s`. Per waypoint and purpose, shape (N, S + 2): `purpose_visits`,
+        `purpose_waiting_s`. The purpose is the station a robot is bound for or stands at (on the
+        way to the pod, too), column S for storing or fetching a pod otherwise, S + 1 for the rest.
+        """
+        counted = self._core.heat()
+        waypoints = len(counted["loaded_visits"])
+        by_purpose = {name: counted.pop(name).reshape(waypoints, -1) for name in _BY_PURPOSE}
+        whole = {name: table.sum(axis=1) for name, table in by_purpose.items()}
+        return {**whole, **counted, **{f"purpose_{name}": by_purpose[name] for name in by_purpose}}
+
+    def edges(self) -> dict[str, NDArray[Any]]:
+        """Edges and elevator rides used since the last reset, by their ends.
+
+        `from_wp`, `to_wp`, `passages`, and of these `loaded_passages` with a pod.
+        """
+        return self._core.edges()
+
+    def trips(self) -> dict[str, NDArray[Any]]:
+        """Trips finished since the last reset, in order of their end.
+
+        `robot`, `kind` (`TripKind`), `t0_us`, `t1_us` (a trip to a station ends at its queue
+        zone), `from_wp`, `to_wp`, `loaded`, `distance_m`, `unhindered_s` (lower bound of the
+        time from rest to rest).
+        """
+        return self._core.trips()
+
+    def trace(self) -> dict[str, NDArray[Any]]:
+        """Every piece of motion so far, sorted by robot and time.
+
+        `robot`, `t0_us`, `t1_us`, `kind` (`Piece`), `from_wp`, `to_wp`, `heading0_rad`,
+        `heading1_rad`, `pod` (carried, -1 without).
+
+        Raises
+        ------
+        ValueError
+            If the trace is not recorded.
+        """
+        return joined_holds(self._core.trace(0)[0])
+
+    def trace_after(self, known: int) -> tuple[dict[str, NDArray[Any]], int]:
+        """The trace without what is known of it already: for who follows a run as it goes.
+
+        The motion each robot is in the middle of is among the rows, and comes again as long as it
+        lasts: a row takes the place of what was known of its robot from `t0_us` on. Where a robot
+        stood while this was called, several rows follow each other (`joined_holds`).
+
+        Parameters
+        ----------
+        known
+            The number returned by the call before; 0 at first.
+
+        Returns
+        -------
+        tuple
+            The columns of `trace`, and the number to give next time.
+
+        Raises
+        ------
+        ValueError
+            If the trace is not recorded.
+        """
+        return self._core.trace(known)
+
+    def counters(self) -> dict[str, float]:
+        """Count the work of planning.
+
+        `plans` (legs), `plan_failures`, `replans`, `refusals` (runs a rolling planner wanted that
+        were not free), `improvements`, `expansions`, `cost_tables`, and wall time, `planning_s`.
+        """
+        counts: dict[str, float] = dict(self._core.counters())
+        counts["planning_s"] = counts.pop("planning_ns") / 1e9
+        return counts
+
+    def call_times_s(self) -> NDArray[np.float64]:
+        """Wall time of each call of the planner since the last reset, in seconds.
+
+        A planner per leg is called for one robot, a rolling one for all that drive.
+        """
+        return self._core.call_times() / 1e9
+
+    def reset_statistics(self) -> None:
+        """Forget totals, heat, trips and counters; the trace stays whole."""
+        self._core.reset_statistics()
+
+    def state_report(self) -> str:
+        """One line per robot, for a report when nothing can move any more."""
+        return self._core.state_report()
+
+
+def _us(seconds: float) -> int:
+    return round(seconds * 1e6)

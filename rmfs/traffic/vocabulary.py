@@ -1,0 +1,94 @@
+"""Words of traffic: what robots can be told, and what is reported of them."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import NamedTuple
+
+
+class Step(IntEnum):
+    """What a robot can be told to do."""
+
+    DRIVE = 0
+    LIFT = 1
+    SET_DOWN = 2
+    STATION = 3
+
+
+class EventKind(IntEnum):
+    """What traffic reports; the value of the event is named in brackets."""
+
+    ARRIVED = 0
+    """A drive ended (waypoint)."""
+    LIFT_STARTED = 1
+    """The robot stands beneath the pod and lifts it (pod)."""
+    LIFTED = 2
+    """The pod is up (pod)."""
+    DEPARTED = 3
+    """A plan that leaves a storage place was accepted (the waypoint left)."""
+    QUEUE_ENTERED = 4
+    """The robot reached a queue zone (station); not reported at present."""
+    AT_HEAD = 5
+    """The robot stands at the station (station)."""
+    SET_DOWN_STARTED = 6
+    """The robot starts to set its pod down (pod)."""
+    SET_DOWN = 7
+    """The pod stands (pod)."""
+    IDLE = 8
+    """The program is done (waypoint)."""
+
+
+class Piece(IntEnum):
+    """Kinds of rows in a trace."""
+
+    HOLD = 0
+    TURN = 1
+    RUN = 2
+    RIDE = 3
+    LIFT = 4
+    SET_DOWN = 5
+
+
+class TripKind(IntEnum):
+    """What a trip was for."""
+
+    TO_POD = 0
+    TO_STATION = 1
+    TO_STORAGE = 2
+    TO_REST = 3
+
+
+class TrafficEvent(NamedTuple):
+    """An event of traffic, as `Traffic.advance` yields it (a plain tuple in the same order)."""
+
+    time_us: int
+    kind: int
+    robot: int
+    value: int
+
+
+class PlannedMove(NamedTuple):
+    """A piece of a plan: a straight run or an elevator ride from rest to rest."""
+
+    from_waypoint: int
+    to_waypoint: int
+    heading_rad: float
+    start_us: int
+    end_us: int
+    is_ride: bool
+
+
+class CutOff(NamedTuple):
+    """What cannot be served while waypoints are closed.
+
+    Attributes
+    ----------
+    storage
+        Storage places (waypoints) that are closed, or from or to which no pod can be carried to or
+        from one of the stations left.
+    stations
+        Stations (numbers) that are closed or that no pod can reach or leave.
+    """
+
+    storage: list[int]
+    stations: list[int]
