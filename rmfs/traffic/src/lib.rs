@@ -18,6 +18,4 @@ pub mod search;
 pub mod units;
 
 #[cfg(feature = "python")]
-mod planner_in_python;
-#[cfg(feature = "python")]
 mod python;

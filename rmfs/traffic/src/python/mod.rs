@@ -1,5 +1,9 @@
 //! The Python face of the crate: arrays in, arrays and events out.
 
+mod motion;
+mod planner;
+mod tables;
+
 use std::collections::HashMap;
 
 use numpy::{IntoPyArray, PyReadonlyArray1};
@@ -9,14 +13,14 @@ use pyo3::types::PyDict;
 
 use crate::costs;
 use crate::fleet::{CutOff, Event, Fleet, Rest, Shift};
-use crate::heat::Passages;
-use crate::kinematics::{Kind, Profile};
+use crate::kinematics::Kind;
 use crate::network::{Lift, Network, Plan};
 use crate::planner::{Planner, Settings, build};
-use crate::planner_in_python::{Along, Conflict, Fault, PlannerInPython, Reserved, Search, Way};
-use crate::record::Totals;
 use crate::robot::Step;
 use crate::units::{Us, from_radians, to_radians};
+
+use motion::Motion;
+use planner::{Along, Conflict, Fault, PlannerInPython, Reserved, Search, Way};
 
 /// A robot kind as it comes from Python: acceleration, deceleration, top speed, full turn (µs),
 /// pod transfer (µs).
@@ -36,43 +40,6 @@ fn step_of((code, value): (u8, u32)) -> PyResult<Step> {
         2 => Ok(Step::SetDown(value)),
         3 => Ok(Step::Station(value)),
         _ => Err(PyValueError::new_err(format!("unknown step {code}"))),
-    }
-}
-
-/// Seconds, positions and speeds of a straight line driven from an initial speed.
-#[pyclass(frozen)]
-struct Motion {
-    profile: Profile,
-}
-
-#[pymethods]
-impl Motion {
-    #[new]
-    fn new(
-        acceleration: f64,
-        deceleration: f64,
-        top_speed: f64,
-        initial_speed: f64,
-        length: f64,
-    ) -> Self {
-        let kind = Kind { acceleration, deceleration, top_speed, full_turn: 0, pod_transfer: 0 };
-        Self { profile: Profile::new(&kind, initial_speed, length) }
-    }
-
-    fn duration(&self) -> f64 {
-        self.profile.duration()
-    }
-
-    fn time_at(&self, distance: f64) -> f64 {
-        self.profile.time_at(distance)
-    }
-
-    fn position_at(&self, time: f64) -> f64 {
-        self.profile.position_at(time)
-    }
-
-    fn speed_at(&self, time: f64) -> f64 {
-        self.profile.speed_at(time)
     }
 }
 
@@ -221,95 +188,24 @@ impl Core {
 
     /// Totals per robot since the last reset, at the current time.
     fn motion<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let totals = self.fleet.totals();
-        let result = PyDict::new(py);
-        let metres = |pick: fn(&Totals) -> f64| totals.iter().map(pick).collect::<Vec<f64>>();
-        let seconds = |pick: fn(&Totals) -> Us| {
-            totals.iter().map(|t| pick(t) as f64 / 1e6).collect::<Vec<f64>>()
-        };
-        result.set_item("distance_m", metres(|t| t.distance).into_pyarray(py))?;
-        result.set_item("loaded_distance_m", metres(|t| t.loaded_distance).into_pyarray(py))?;
-        for (name, pick) in [
-            ("moving_s", (|t: &Totals| t.moving) as fn(&Totals) -> Us),
-            ("turning_s", |t| t.turning),
-            ("waiting_s", |t| t.waiting),
-            ("served_s", |t| t.served),
-            ("idle_s", |t| t.idle),
-            ("transfer_s", |t| t.transferring),
-            ("riding_s", |t| t.riding),
-            ("queueing_s", |t| t.queueing),
-        ] {
-            result.set_item(name, seconds(pick).into_pyarray(py))?;
-        }
-        Ok(result)
+        tables::motion(py, &self.fleet.totals())
     }
 
-    /// Visits and standing time since the last reset: per waypoint, and per waypoint and purpose
-    /// (each station, then storing pods, then neither), the latter row by row in one dimension.
+    /// Visits and standing time since the last reset.
     fn heat<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.fleet.settle_all();
-        let heat = &self.fleet.record.heat;
-        let seconds = |times: &[Us]| times.iter().map(|&t| t as f64 / 1e6).collect::<Vec<f64>>();
-        let result = PyDict::new(py);
-        result.set_item("visits", heat.visits.clone().into_pyarray(py))?;
-        result.set_item("loaded_visits", heat.loaded_visits.clone().into_pyarray(py))?;
-        result.set_item("waiting_s", seconds(&heat.waiting).into_pyarray(py))?;
-        result.set_item("loaded_waiting_s", seconds(&heat.loaded_waiting).into_pyarray(py))?;
-        Ok(result)
+        tables::heat(py, &self.fleet.record.heat)
     }
 
     /// Edges and elevator rides used since the last reset.
     fn edges<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.fleet.settle_all();
-        let edges = self.fleet.record.heat.edges(&self.fleet.network);
-        let result = PyDict::new(py);
-        for (name, pick) in [
-            ("from_wp", (|e| e.0) as fn(&(u32, u32, Passages)) -> u32),
-            ("to_wp", |e| e.1),
-            ("passages", |e| e.2.all),
-            ("loaded_passages", |e| e.2.loaded),
-        ] {
-            let column: Vec<u32> = edges.iter().map(pick).collect();
-            result.set_item(name, column.into_pyarray(py))?;
-        }
-        Ok(result)
+        tables::edges(py, &self.fleet.record.heat.edges(&self.fleet.network))
     }
 
     /// Trips finished since the last reset.
     fn trips<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let trips = &self.fleet.record.trips;
-        let result = PyDict::new(py);
-        result.set_item(
-            "robot",
-            trips.iter().map(|t| t.robot).collect::<Vec<_>>().into_pyarray(py),
-        )?;
-        result.set_item(
-            "kind",
-            trips.iter().map(|t| t.kind as i8).collect::<Vec<_>>().into_pyarray(py),
-        )?;
-        result.set_item(
-            "t0_us",
-            trips.iter().map(|t| t.start).collect::<Vec<_>>().into_pyarray(py),
-        )?;
-        result
-            .set_item("t1_us", trips.iter().map(|t| t.end).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item(
-            "from_wp",
-            trips.iter().map(|t| t.from).collect::<Vec<_>>().into_pyarray(py),
-        )?;
-        result
-            .set_item("to_wp", trips.iter().map(|t| t.to).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item(
-            "loaded",
-            trips.iter().map(|t| t.loaded).collect::<Vec<_>>().into_pyarray(py),
-        )?;
-        result.set_item(
-            "distance_m",
-            trips.iter().map(|t| t.distance).collect::<Vec<_>>().into_pyarray(py),
-        )?;
-        let unhindered: Vec<f64> = trips.iter().map(|t| t.unhindered as f64 / 1e6).collect();
-        result.set_item("unhindered_s", unhindered.into_pyarray(py))?;
-        Ok(result)
+        tables::trips(py, &self.fleet.record.trips)
     }
 
     /// The trace up to now without the rows already known, sorted by robot and time, and the number
@@ -319,46 +215,11 @@ impl Core {
         py: Python<'py>,
         known: usize,
     ) -> PyResult<(Bound<'py, PyDict>, usize)> {
-        let headings: Vec<f64> =
-            self.fleet.network.headings.iter().map(|&h| to_radians(h)).collect();
         let (rows, count) = self
             .fleet
             .trace(known)
             .ok_or_else(|| PyValueError::new_err("the trace is not recorded"))?;
-        let result = PyDict::new(py);
-        result.set_item(
-            "robot",
-            rows.iter().map(|r| r.robot as i32).collect::<Vec<_>>().into_pyarray(py),
-        )?;
-        result
-            .set_item("t0_us", rows.iter().map(|r| r.start).collect::<Vec<_>>().into_pyarray(py))?;
-        result
-            .set_item("t1_us", rows.iter().map(|r| r.end).collect::<Vec<_>>().into_pyarray(py))?;
-        result.set_item(
-            "kind",
-            rows.iter().map(|r| r.piece as i8).collect::<Vec<_>>().into_pyarray(py),
-        )?;
-        result.set_item(
-            "from_wp",
-            rows.iter().map(|r| r.from as i32).collect::<Vec<_>>().into_pyarray(py),
-        )?;
-        result.set_item(
-            "to_wp",
-            rows.iter().map(|r| r.to as i32).collect::<Vec<_>>().into_pyarray(py),
-        )?;
-        result.set_item(
-            "heading0_rad",
-            rows.iter()
-                .map(|r| headings[r.heading_before as usize])
-                .collect::<Vec<_>>()
-                .into_pyarray(py),
-        )?;
-        result.set_item(
-            "heading1_rad",
-            rows.iter().map(|r| headings[r.heading as usize]).collect::<Vec<_>>().into_pyarray(py),
-        )?;
-        result.set_item("pod", rows.iter().map(|r| r.pod).collect::<Vec<_>>().into_pyarray(py))?;
-        Ok((result, count))
+        Ok((tables::trace(py, &self.fleet.network, &rows)?, count))
     }
 
     fn counters(&self) -> HashMap<&'static str, u64> {
