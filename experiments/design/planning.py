@@ -21,7 +21,7 @@ from rmfs.errors import InputError
 from rmfs.files import write_text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Collection, Mapping
 
     from rmfs.config import Table
 
@@ -157,6 +157,7 @@ def plan(
     *,
     base: Mapping[str, Any] | None = None,
     replications: int | None = None,
+    without: Collection[str] = (),
     told: Callable[[int, int], None] | None = None,
 ) -> Plan:
     """Read a design and resolve all of its arms.
@@ -169,6 +170,8 @@ def plan(
         Entries that replace or complete those of the table `base`.
     replications
         Number of seeds in place of the design's own; only for designs without stages.
+    without
+        Names of arms to leave out.
     told
         Called with the number of arms resolved so far and in all.
 
@@ -186,6 +189,7 @@ def plan(
             table["replications"] = replications
         design = config.validate(DesignFile, table, str(path))
     made, problems = arms(design, path.parent)
+    made = [arm for arm in made if arm.name not in without]
     if any(problem.startswith("base: ") for problem in problems):
         return Plan(design, table, made, {}, problems, str(path))
     resolver = Resolver(design.allow_not_well_formed)

@@ -2,7 +2,9 @@
 
 Three layouts of the size of that study's instances: 32 robots, 128 robots, and 96 on three tiers
 with elevators. The work is constant, all other decisions are random, an hour is simulated. A method
-that plans better lets the same robots complete more orders.
+that plans better lets the same robots complete more orders. On the three tiers the rules of that
+study keep pods, and with them robots, on their tier; so they are driven once more with pods stored
+anywhere.
 
 With `--reference DIR` (the public instances of RAWSim-O) the layouts of the study itself are taken
 instead of their twins, and RAWSim-O's own figures stand beside ours.
@@ -11,7 +13,7 @@ instead of their twins, and RAWSim-O's own figures stand beside ours.
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
@@ -21,6 +23,7 @@ from experiments.statistics import against, interval
 from experiments.tables import HALF, Table
 
 if TYPE_CHECKING:
+    import argparse
     from collections.abc import Mapping
 
     from experiments.papers.study import Study
@@ -46,18 +49,30 @@ class Instance:
         RAWSim-O's orders per hour and km per hour, measured over the simulated time of the third
         number in s, seed 0, for the methods that have been run there.
     seeds
-        Fewer where some methods take minutes for an hour.
+        Of all methods that are not slow.
+    slow
+        Methods that take minutes for an hour, and how many seeds they get.
+    riding
+        Whether pods may be stored on other tiers, so that robots ride elevators; RAWSim-O's rule
+        keeps them where they are if it can, and so do ours.
     """
 
     twin: str
     reference: str
     theirs: dict[str, tuple[float, float, int]]
     seeds: int = 10
+    slow: dict[str, int] = field(default_factory=dict)
+    riding: bool = False
 
     @property
-    def stem(self) -> str:
-        """Name of the layout itself."""
-        return self.reference.removeprefix("pp/").removesuffix(".xinst")
+    def part(self) -> str:
+        """Name of the folder of its runs."""
+        return self.twin + ("-riding" if self.riding else "")
+
+    def name(self, *, reference: bool) -> str:
+        """Name in the table: of the layout itself, or of its twin."""
+        stem = self.reference.removeprefix("pp/").removesuffix(".xinst")
+        return (stem if reference else self.twin) + (", riding" if self.riding else "")
 
 
 EVADING = "far, evading to a neighbour"
@@ -84,13 +99,16 @@ INSTANCES = [
             "whca-v": (1248.0, 372.4, 900),
         },
         seeds=3,
+        slow={"bcp": 1},
     ),
     Instance(
         "study-tiers",
         "pp/3-12-12-96-1650.xinst",
         {"far": (1347.0, 234.2, 3600), "whca-n": (1342.0, 231.5, 3600)},
         seeds=3,
+        slow={"bcp": 1},
     ),
+    Instance("study-tiers", "pp/3-12-12-96-1650.xinst", {}, seeds=3, slow={"bcp": 1}, riding=True),
 ]
 """The less time they were simulated, the more the start counts, when all robots are free."""
 
@@ -126,6 +144,7 @@ def row(runs: pd.DataFrame, difference: Mapping[Any, float] | None) -> dict[tupl
     else:
         cells["difference", "mean"] = cells["difference", HALF] = float("nan")
     cells["failures/h", ""] = float((runs["plan_failures"] / hours).mean())
+    cells["CPU s/run", ""] = float(runs["cpu_s"].mean())
     cells["collisions", ""] = float(runs["collisions"].sum())
     return cells
 
@@ -159,17 +178,35 @@ def as_table(made: Rows) -> Table:
     return Table(pd.DataFrame(cells, index=index, columns=columns), decimals, CAPTION)
 
 
+def finished(given: argparse.Namespace, instance: Instance) -> Study:
+    """Run all methods on an instance, each with its number of seeds."""
+    given.reference_layout = instance.reference
+    studies = []
+    for seeds in sorted({instance.seeds, *instance.slow.values()}):
+        studies.append(
+            done(
+                given,
+                layout=instance.twin,
+                more={"controllers.psa.prefer_same_tier": False} if instance.riding else {},
+                part=instance.part,
+                replications=seeds,
+                without=[f"pp={name}" for name, most in instance.slow.items() if most < seeds],
+            )
+        )
+    frames = pd.concat([study.frame for study in studies])
+    return replace(studies[-1], frame=frames.drop_duplicates("run", ignore_index=True))
+
+
 def main(arguments: list[str] | None = None) -> None:
-    """Run the study on all three layouts and publish one table."""
+    """Run the study on all layouts and publish one table."""
     options = parser("path-planning", __doc__, reference="pp/*.xinst")
     given = options.parse_args(arguments)
     made: Rows = {}
-    for instance in INSTANCES:
-        given.reference_layout = instance.reference
-        study = done(given, layout=instance.twin, part=instance.twin, replications=instance.seeds)
-        name = instance.stem if study.suffix else instance.twin
-        made |= rows(study, instance, name)
-    study.publish(
+    studies = [finished(given, instance) for instance in INSTANCES]
+    for instance, study in zip(INSTANCES, studies, strict=True):
+        made |= rows(study, instance, instance.name(reference=given.reference is not None))
+    every = replace(studies[-1], frame=pd.concat([study.frame for study in studies]))
+    every.publish(
         as_table(made), "path-planning", ["orders_per_h", "distance_m", "planning_wall_s"]
     )
 

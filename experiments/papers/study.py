@@ -17,7 +17,7 @@ from rmfs import layout as layouts
 from rmfs.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
 
     import pandas as pd
 
@@ -141,8 +141,10 @@ def done(
     given: argparse.Namespace,
     *,
     layout: str | None = None,
+    more: Mapping[str, Any] | None = None,
     part: str = "",
     replications: int | None = None,
+    without: Collection[str] = (),
 ) -> Study:
     """Run what is not finished of a study's design and return the results.
 
@@ -152,10 +154,14 @@ def done(
         Options of `parser`.
     layout
         Takes the place of the design's, unless one of the reference does.
+    more
+        Further entries of the design's table `base`.
     part
         Name of the runs' folder, if the study has several.
     replications
-        Another number of seeds.
+        Another number of seeds; not more than the option of that name says.
+    without
+        Names of arms to leave out.
 
     Raises
     ------
@@ -167,12 +173,14 @@ def done(
     base, suffix = _reference(given)
     if base is None and layout is not None:
         base = {"layout": layout}
+    base = {**(base or {}), **(more or {})}
     if given.smoke:
         suffix += _SMOKE
-        made = plan(given.design, base={**(base or {}), **SMOKE}, replications=2)
+        made = plan(given.design, base={**base, **SMOKE}, replications=2, without=without)
     else:
-        first = replications if given.replications is None else given.replications
-        made = plan(given.design, base=base, replications=first)
+        numbers = [n for n in (replications, given.replications) if n is not None]
+        first = min(numbers, default=None)
+        made = plan(given.design, base=base, replications=first, without=without)
     folder = given.out if given.out is not None else RESULTS / f"{made.design.name}{suffix}"
     folder = folder / part
     with watching(made.design.name) as watcher:

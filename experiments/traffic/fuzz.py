@@ -110,6 +110,8 @@ def run(case: dict[str, Any]) -> Verdict:
     except InputError as error:
         return Verdict("refused", str(error)[:160])
     violations = check(layout)
+    if violations and layout is whole:
+        raise FuzzError(f"what the generator made is not well-formed: {violations[0]}")
     if any(one.severity == IMPOSSIBLE for one in violations):
         return Verdict("refused", str(violations[0])[:160])
     return _driven(layout, case, well_formed=not violations)

@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 import pytest
 from layout_reference import INSTANCES, by_coordinates, needs_reference, read_reference
 
-from rmfs.layout import LayoutParameters, generate, load
+from rmfs.layout import LayoutParameters, check, generate, load
 
 pytestmark = needs_reference
 
@@ -63,10 +63,26 @@ def assert_same(ours, theirs):
             assert a == b, field.name
 
 
+INTO_CORNER = {"d-two-directional": ((0, 4.5, 0.5), (0, 3.5, 0.5))}
+"""Edges that we have in addition: there, nobody can reach a queue that begins at a corner."""
+
+
+def generated(name):
+    """What the generator makes, without that edge."""
+    ours = by_coordinates(load(INSTANCES / GENERATED[name]))
+    if name in INTO_CORNER:
+        ours.edges.remove(INTO_CORNER[name])
+    return ours
+
+
 @pytest.mark.parametrize("name", GENERATED)
 def test_generator_meets_reference_edge_by_edge_and_queue_by_queue(name):
-    ours = load(INSTANCES / GENERATED[name])
-    assert_same(by_coordinates(ours), read_reference(f"generated/{name}.xinst"))
+    assert_same(generated(name), read_reference(f"generated/{name}.xinst"))
+
+
+@pytest.mark.parametrize("name", GENERATED)
+def test_what_is_generated_is_well_formed(name):
+    assert check(load(INSTANCES / GENERATED[name])) == []
 
 
 @pytest.mark.parametrize("name", SHIPPED)
@@ -97,7 +113,7 @@ def test_generator_meets_shipped_instances(name):
 @pytest.mark.parametrize("name", GENERATED)
 def test_importer_meets_generator(name):
     imported = by_coordinates(load(INSTANCES / f"generated/{name}.xinst"))
-    assert_same(imported, by_coordinates(load(INSTANCES / GENERATED[name])))
+    assert_same(generated(name), imported)
 
 
 def test_shipped_basic_is_the_regression_layout():

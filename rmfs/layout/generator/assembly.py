@@ -107,8 +107,7 @@ class Assembly:
         outside = np.argwhere(self._used & (self._kinds != Kind.BUFFER)).tolist()
         steps = [step for row, column in outside for step in rules.steps((row, column))]
         for zone in self._buffers:
-            steps += zone.steps
-            steps += [step for step in zone.entrances if rules.opens(step[0])]
+            steps += [*zone.steps, *zone.entrances]
         number = self._number
         edges = [(int(number[tail]), int(number[head])) for tail, head in steps]
         offsets = [self._offset(tier) for tier in range(self._parameters.tiers)]

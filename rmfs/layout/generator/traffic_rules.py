@@ -50,14 +50,6 @@ class TrafficRules:
             if self._kind(target) not in (Kind.NOTHING, Kind.BUFFER):
                 yield tile, target
 
-    def opens(self, tile: Tile) -> bool:
-        """Tell whether a hall tile may lead into a buffer.
-
-        In the grid of a two-directional "tim" hall the two outer corners stay closed, as in
-        RAWSim-O: a buffer whose entrance lies there is entered by its other segments only.
-        """
-        return not (self._is_grid(Kind.HALL) and self._outer_corner(tile))
-
     def _directions(self, tile: Tile) -> set[Direction]:
         kind = self._kind(tile)
         if self._is_grid(kind):
@@ -117,10 +109,6 @@ class TrafficRules:
         """Return the sense of a line: the outermost runs with the ring road, then alternating."""
         inner = (self._parameters.hall_width - _beyond(position, length)) % 2
         return self._sense(with_ring.opposite if inner else with_ring)
-
-    def _outer_corner(self, tile: Tile) -> bool:
-        row, column = tile[0] - self._size.top, tile[1] - self._size.left
-        return row in (0, self._size.height - 1) or column in (0, self._size.width - 1)
 
     def _along_row(self, tile: Tile) -> Direction:
         east = (tile[0] - self._size.top) % 2 == 0
