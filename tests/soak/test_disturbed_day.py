@@ -15,11 +15,13 @@ HOUR_S = 3_600.0
 def test_a_day_of_breakdowns():
     """129 robots (43 a tier), a breakdown every ten minutes, an elevator out of use for an hour.
 
-    No collision, no order lost, no robot stuck.
+    Pods are stored on any tier, so that cabins are busy most of the time. No collision, no order
+    lost, no robot stuck.
     """
     ledger = Ledger()
     overrides = {
         "layout.robots": 43,
+        "controllers.psa.name": "random",
         "controllers.psa.prefer_same_tier": False,  # robots ride elevators
         "scenario.duration_s": DAY_S,
         "scenario.disturbances.breakdowns": {"every_s": 600.0, "lasting_s": 120.0},
@@ -28,7 +30,7 @@ def test_a_day_of_breakdowns():
     run = rmfs.simulate(
         "study-tiers",
         "pp-minimal",
-        "random",
+        "default",
         seed=1,
         overrides=[(key.split("."), value) for key, value in overrides.items()],
         observers=[ledger],
@@ -43,7 +45,7 @@ def test_a_day_of_breakdowns():
     orders = tables.orders(tables.Logs(run.recorder))
     waiting_s = DAY_S - orders.loc[orders["completed_s"].isna(), "assigned_s"]
     assert waiting_s.max() < HOUR_S
-    assert run.traffic.motion()["riding_s"].sum() > DAY_S / 10
+    assert run.traffic.motion()["riding_s"].sum() > DAY_S
     trips = run.traffic.trips()
     assert ((trips["t1_us"] - trips["t0_us"]) / 1e6).max() < HOUR_S / 2
     for hour in range(24):
