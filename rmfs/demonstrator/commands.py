@@ -106,7 +106,8 @@ def demonstrate(
 
     Killed and called again in the same way, it goes on where it was.
     """
-    from rmfs.cli import conclude, default_name, progress, step
+    from rmfs.cli.simulate import conclude, default_name
+    from rmfs.cli.terminal import progress, step
     from rmfs.measure.folder import fill, reserved
     from rmfs.simulation.pacing import OptimiserError
     from rmfs.simulation.simulation import StalledError

@@ -1,0 +1,132 @@
+"""The command line: the one place that may import everything.
+
+Whatever a user does wrong ends in one line on the standard error stream and exit code 2; an
+interruption ends in exit code 130. Imports are made inside the commands, so that help and errors
+come at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rmfs.cli.exit_codes import INTERRUPTED, WRONG_INPUT
+from rmfs.cli.groups import LazyGroup
+from rmfs.cli.results import compare, plot, report, view
+from rmfs.cli.simulate import run
+from rmfs.cli.terminal import step
+from rmfs.errors import InputError
+
+app = typer.Typer(
+    cls=LazyGroup,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    arguments
+        Without the program's name. Default: those of the process.
+
+    Returns
+    -------
+    int
+        The exit code.
+    """
+    command = typer.main.get_command(app)
+    try:
+        code = command.main(args=arguments, prog_name="rmfs", standalone_mode=False)
+    except InputError as error:
+        return _complain(str(error))
+    except typer.TyperException as error:
+        # without a message, a group was called without a command and has shown its help
+        return _complain(error.format_message()) if error.format_message() else 0
+    except (KeyboardInterrupt, typer.Abort):
+        _complain("interrupted")
+        return INTERRUPTED
+    if code == INTERRUPTED:
+        _complain("interrupted")
+    return code if isinstance(code, int) else 0
+
+
+def _complain(message: str) -> int:
+    """Tell the user in one line what is wrong."""
+    print(f"rmfs: {' '.join(message.split())}", file=sys.stderr)
+    return WRONG_INPUT
+
+
+@app.callback()
+def rmfs(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Show the version and exit.")] = False,
+) -> None:
+    """Simulate and optimise Robotic Mobile Fulfillment Systems."""
+    if version:
+        from rmfs.measure.provenance import version as installed
+
+        print(f"rmfs {installed()}")
+        raise typer.Exit
+    if context.invoked_subcommand is None:
+        print(context.get_help())
+
+
+for command in (run, plot, report, view, compare):
+    app.command()(command)
+
+
+@app.command()
+def bench(
+    runs: Annotated[int, typer.Option(min=1, help="Runs of each case; the median counts.")] = 5,
+    out: Annotated[Path, typer.Option(help="Folder of the tables.")] = Path("results/bench"),
+) -> None:
+    """Measure how fast runs are and where their time goes."""
+    from experiments import speed
+
+    frame = speed.table(runs=runs, tell=step)
+    speed.save(frame, out)
+    typer.echo(speed.to_markdown(frame))
+
+
+@app.command("import")
+def import_command(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            metavar="DIR", help="A folder with files of RAWSim-O, or one such file.", exists=False
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder to make. [default: below results/imported/]", show_default=False),
+    ] = None,
+) -> None:
+    """Turn RAWSim-O's files into ours; list what differs, is dead, unknown or refused."""
+    from rmfs.importing import LIST, Imported, import_files
+
+    def told(one: Imported) -> None:
+        print(*one.lines(), sep="\n", flush=True)
+
+    target = out or Path("results") / "imported" / source.resolve().stem
+    done = import_files(source, target, told)
+    print(target / LIST)
+    if any(one.refused for one in done):
+        raise typer.Exit(WRONG_INPUT)
+
+
+@app.command(hidden=True)
+def docs(
+    folder: Annotated[Path, typer.Argument(help="Folder of the pages.")] = Path("docs"),
+) -> None:
+    """Write the pages of the documentation that are generated."""
+    from rmfs.measure.pages import write_pages
+
+    write_pages(folder)

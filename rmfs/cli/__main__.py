@@ -1,0 +1,7 @@
+"""`python -m rmfs.cli`."""
+
+import sys
+
+from rmfs.cli import main
+
+sys.exit(main())

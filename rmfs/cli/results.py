@@ -1,0 +1,114 @@
+"""Commands that look at runs which are done: plot, report, view and compare."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rmfs.errors import InputError
+
+
+def plot(
+    run: Annotated[Path, typer.Argument(help="Run folder.")],
+    what: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Picture: progression, heat (or heat:COLUMN of its table), backlog, turnover, "
+            "stations, robots, pile-on, warmup; may be repeated. [default: all]",
+            show_default=False,
+        ),
+    ] = None,
+    format_: Annotated[str, typer.Option("--format", help="png, svg or pdf.")] = "png",
+    out: Annotated[
+        Path | None, typer.Option(help="Folder. [default: the run folder]", show_default=False)
+    ] = None,
+) -> None:
+    """Draw pictures of a run."""
+    from rmfs.measure import load_run
+    from rmfs.measure.pictures import PICTURES, save
+
+    folder = load_run(run)
+    for name in what or PICTURES:
+        path = (out or run) / f"{name.replace(':', '-')}.{format_}"
+        save(folder, name, path)
+        print(path)
+
+
+def report(
+    run: Annotated[Path, typer.Argument(help="Run folder.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="HTML file. [default: report.html in the run folder]", show_default=False
+        ),
+    ] = None,
+    csv: Annotated[
+        bool, typer.Option("--csv", help="Write every table as CSV, too, into the run folder.")
+    ] = False,
+) -> None:
+    """Write a report of a run: one HTML file."""
+    from rmfs.measure import load_run
+    from rmfs.measure.folder import write_csv
+    from rmfs.measure.report import write_report
+
+    folder = load_run(run)
+    path = out or run / "report.html"
+    write_report(folder, path)
+    for file in [path, *(write_csv(folder) if csv else [])]:
+        print(file)
+
+
+def view(
+    runs: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="[RUN [RUN]]",
+            help="Run folder with a trace; two side by side; none: a form that starts a run.",
+            show_default=False,
+        ),
+    ] = None,
+    export: Annotated[
+        Path | None,
+        typer.Option(help="Write one HTML file to send instead.", show_default=False),
+    ] = None,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page; 0: any free.")] = 0,
+    open_: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser.")] = True,
+) -> None:
+    """Look at a run in the browser: a replay of its trace."""
+    from rmfs.view.commands import export_runs, serve_runs
+
+    if export is None:
+        serve_runs(runs or [], port=port, open_browser=open_)
+    elif not runs:
+        raise InputError("--export: name the run to be written")
+    else:
+        export_runs(runs, export)
+        print(export)
+
+
+def compare(
+    sources: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="A B ...",
+            help="Run folders, folders of experiments, their arms (FOLDER#ARM), or tables.",
+        ),
+    ],
+    columns: Annotated[
+        list[str] | None,
+        typer.Option("--column", "-c", help="Column of the footprint; may be repeated."),
+    ] = None,
+    everything: Annotated[
+        bool, typer.Option("--all", help="Show every column that differs.")
+    ] = False,
+    confidence: Annotated[float, typer.Option(min=0.5, max=0.999, help="Of the intervals.")] = 0.95,
+) -> None:
+    """Say in what runs, arms or tables differ: input and output, paired by seed."""
+    from experiments.commands import print_comparisons
+    from experiments.compare import compare as compared
+
+    print_comparisons(
+        compared(sources, confidence=confidence), columns or [], everything=everything
+    )

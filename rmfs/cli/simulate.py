@@ -1,0 +1,184 @@
+"""`rmfs run`: simulate a warehouse and write a run folder."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rmfs.cli.exit_codes import GIVEN_UP, UNSAFE
+from rmfs.cli.terminal import progress, step
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from rmfs.measure.checker import CheckReport
+    from rmfs.simulation.run import Run
+
+
+def run(
+    layout: Annotated[str, typer.Option(help="Name of a shipped layout, or a file.")] = "default",
+    scenario: Annotated[
+        str, typer.Option(help="Name of a shipped scenario, or a file.")
+    ] = "default",
+    controllers: Annotated[
+        str, typer.Option(help="Name of a shipped set of controllers, or a file.")
+    ] = "default",
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all random streams.")] = 0,
+    out: Annotated[
+        Path | None, typer.Option(help="Run folder. [default: below results/]", show_default=False)
+    ] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Override a parameter, for example layout.robots=16; may be repeated.",
+        ),
+    ] = None,
+    pacing: Annotated[
+        str,
+        typer.Option(
+            metavar="MODE",
+            help="What the thinking of optimisers costs in simulated time: instant, wall, work, "
+            "fixed=SECONDS or replay=RUN_DIR; parameters by --set pacing.KEY=VALUE.",
+        ),
+    ] = "instant",
+    trace: Annotated[bool, typer.Option("--trace", help="Write the trace of all motion.")] = False,
+    record: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder for the orders and bundles that come, to be replayed (orders.csv, "
+            "bundles.csv).",
+            show_default=False,
+        ),
+    ] = None,
+    check: Annotated[
+        bool, typer.Option("--check", help="Prove the motion safe; fills `collisions`.")
+    ] = False,
+    allow_not_well_formed: Annotated[
+        bool,
+        typer.Option(
+            "--allow-not-well-formed", help="Run a layout in which robots may block each other."
+        ),
+    ] = False,
+    live: Annotated[
+        bool, typer.Option("--live", help="Show the run in the browser while it happens.")
+    ] = False,
+    speed: Annotated[
+        float | None,
+        typer.Option(
+            help="With --live: simulated seconds per second to begin with. "
+            "[default: as fast as it goes]",
+            show_default=False,
+        ),
+    ] = None,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="With --live: of the page; 0: any free.")
+    ] = 0,
+    open_: Annotated[
+        bool, typer.Option("--open/--no-open", help="With --live: open a browser.")
+    ] = True,
+    await_page: Annotated[bool, typer.Option("--await-page", hidden=True)] = False,
+) -> None:
+    """Simulate a warehouse and write a run folder."""
+    from rmfs.config import parse_override
+    from rmfs.measure.folder import fill, reserved
+    from rmfs.scenario import StreamRecorder, write_streams
+
+    overrides = [parse_override(text) for text in set_ or []]
+    inputs = {"layout": layout, "scenario": scenario, "controllers": controllers}
+    target = out or Path("results") / default_name(inputs, seed)
+    streams = None if record is None else StreamRecorder()
+    if speed is not None and not live:
+        raise InputError("--speed: only with --live")
+    with ExitStack() as stack:
+        watching: dict[str, Any] = {}
+        if live:
+            from rmfs.view.commands import watched
+
+            watcher = stack.enter_context(
+                watched(
+                    inputs,
+                    target.name,
+                    port=port,
+                    speed=speed,
+                    open_browser=open_,
+                    await_page=await_page,
+                )
+            )
+            watching = {"events": watcher.events, "observers": [watcher]}
+        folder = stack.enter_context(reserved(target))
+        done = simulated(
+            inputs,
+            seed=seed,
+            overrides=overrides,
+            pacing=pacing,
+            trace=trace or check,
+            streams=streams,
+            allow_not_well_formed=allow_not_well_formed,
+            **watching,
+        )
+        if record is not None and streams is not None:
+            step("writing the streams")
+            write_streams(streams, done.world.skus, record)
+        report = proven(done) if check else None
+        step("writing the tables")
+        fill(folder, done, report=report, trace=trace, inputs=inputs)
+    conclude(target, report)
+
+
+def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
+    """Simulate and show progress; a run in which nothing can move any more ends with a report.
+
+    Parameters
+    ----------
+    inputs
+        Layout, scenario and controllers as the user named them.
+    options
+        Further parameters of `rmfs.simulate`.
+    """
+    from rmfs.simulation.pacing import OptimiserError, ReplayError
+    from rmfs.simulation.run import simulate
+    from rmfs.simulation.simulation import StalledError
+
+    def told(part: str, note: str) -> None:
+        print(f"rmfs: {inputs[part]}: {note}", file=sys.stderr)
+
+    with progress(f"simulating {', '.join(inputs.values())}, seed {seed}") as advance:
+        try:
+            return simulate(*inputs.values(), seed=seed, progress=advance, remark=told, **options)
+        except (StalledError, OptimiserError, ReplayError) as error:
+            print(f"rmfs: {error}", file=sys.stderr)
+            raise typer.Exit(GIVEN_UP) from None
+
+
+def default_name(inputs: dict[str, str], seed: int) -> str:
+    """Return the name of the run folder: layout-scenario-controllers-seedN."""
+    return "-".join([*(Path(given).stem for given in inputs.values()), f"seed{seed}"])
+
+
+def proven(done: Run) -> CheckReport:
+    """Check the trace of a run."""
+    step("checking the trace")
+    return done.check()
+
+
+def conclude(target: Path, report: CheckReport | None) -> None:
+    """Print the main figures; an unsafe trace or a score above 1 is a defect: exit code 1."""
+    from rich.console import Console
+
+    from rmfs.measure import load_run
+    from rmfs.measure.summary import summary
+
+    footprint = load_run(target).footprint
+    Console(highlight=False).print(summary(footprint))
+    print(target)
+    if footprint["units_score"] > 1.0:
+        print("rmfs: more units were picked than is possible: a defect", file=sys.stderr)
+        raise typer.Exit(UNSAFE)
+    if report is not None and not report.ok:
+        print(f"rmfs: {report.summary()}", file=sys.stderr)
+        raise typer.Exit(UNSAFE)

@@ -1,0 +1,41 @@
+"""What a command says while it works: a bar on a terminal, lines elsewhere."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+
+def step(text: str) -> None:
+    """Say what is done now, where no progress bar says it."""
+    if not sys.stderr.isatty():
+        print(f"rmfs: {text}", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def progress(text: str) -> Iterator[Callable[[float, float], None]]:
+    """Yield a function that is told (done, total): a bar on a terminal, one line elsewhere.
+
+    The line is printed at the first call: what is wrong with the input is noticed before.
+    """
+    if not sys.stderr.isatty():
+        yield lambda done, total: None if done else step(text)
+        return
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TaskProgressColumn,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn())
+    console = Console(stderr=True)
+    with Progress(*columns, TimeRemainingColumn(), console=console, transient=True) as bar:
+        task = bar.add_task(text, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
