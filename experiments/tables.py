@@ -77,6 +77,7 @@ class Table:
         optional("jinja2", "experiments", "a LaTeX table")
         frame = self.frame.copy()
         frame.columns = _latex_header(_columns(frame))
+        frame.index.names = [name and _escaped(str(name)) for name in frame.index.names]
         style = frame.style.format(
             precision=0,
             formatter={
@@ -91,6 +92,7 @@ class Table:
                 hrules=True,
                 siunitx=True,
                 multicol_align="c",
+                multirow_align="naive",
                 caption=_escaped(self.caption),
                 position_float="centering",
                 column_format="l" * frame.index.nlevels + self._specification(),
@@ -320,7 +322,10 @@ class _Fixed:
 def _latex_header(columns: list[tuple[str, str]]) -> pd.MultiIndex:
     signs = {HALF: r"{$\pm$}", "mean": "{mean}", "difference": "{difference}", "p": "{$p$}"}
     return pd.MultiIndex.from_tuples(
-        [(f"{{{_escaped(first)}}}", signs.get(second, second)) for first, second in columns]
+        [
+            (f"{{{_escaped(first)}}}", signs.get(second, second and f"{{{_escaped(second)}}}"))
+            for first, second in columns
+        ]
     )
 
 

@@ -75,3 +75,6 @@ def test_arms_and_captions_may_hold_any_sign(tmp_path):
     table = means(frame, ["units_per_h"])
     named = Table(table.frame, table.decimals, f"Arm minus {arm}.")
     assert typeset.compiled(named.latex(), tmp_path).is_file()
+    grouped = table.frame.set_axis(pd.MultiIndex.from_tuples([(arm, arm)], names=[arm, "b, %"]))
+    grouped["theirs", "over 100 %"] = 1.0
+    assert typeset.compiled(Table(grouped, table.decimals, "").latex(), tmp_path).is_file()
