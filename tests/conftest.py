@@ -1,9 +1,14 @@
 """Makes what lies beside this file importable from the tests in all folders; bounds every run."""
 
+import signal
+
 import pytest
 from bounds import Counter
 
 from rmfs.simulation.simulation import Simulation
+
+# a shell ignores SIGINT in what it puts into the background, and children inherit that
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rmfs.cli.exit_codes import GIVEN_UP, UNSAFE
-from rmfs.cli.terminal import progress, step
+from rmfs.cli.terminal import progress, step, terminable
 from rmfs.errors import InputError
 
 if TYPE_CHECKING:
@@ -95,6 +95,7 @@ def run(
     if speed is not None and not live:
         raise InputError("--speed: only with --live")
     with ExitStack() as stack:
+        stack.enter_context(terminable())
         watching: dict[str, Any] = {}
         if live:
             from rmfs.view.commands import watched

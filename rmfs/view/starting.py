@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import subprocess
 import sys
 import threading
@@ -71,7 +70,7 @@ class Starter:
         """Stop the runs that still go on; none leaves a half-written folder."""
         for run in self._running:
             if run.poll() is None:
-                run.send_signal(signal.SIGINT)  # as Ctrl-C: what is half-written goes
+                run.terminate()  # as Ctrl-C: what is half-written goes
         for run in self._running:
             run.wait()
 

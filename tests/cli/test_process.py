@@ -1,10 +1,9 @@
-"""The command as a process: start-up time, streams, exit codes."""
+"""The command as a process: start, streams, exit codes."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -22,16 +21,13 @@ def rmfs(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_help_comes_at_once(tmp_path):
-    begin = time.perf_counter()
+def test_help_is_shown(tmp_path):
     done = rmfs("--help", cwd=tmp_path)
     assert done.returncode == 0
     assert "Usage: rmfs" in done.stdout
-    # an eighth of a second on an idle machine; numpy or pandas alone would take longer
-    assert time.perf_counter() - begin < 2.0
 
 
-def test_heavy_modules_are_not_loaded_for_help(tmp_path):
+def test_help_comes_at_once_as_heavy_modules_are_not_loaded():
     code = "import sys, rmfs.cli as c; c.main(['--help']); print(*sys.modules, file=sys.stderr)"
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True

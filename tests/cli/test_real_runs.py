@@ -89,7 +89,8 @@ def test_a_table_that_is_no_toml_is_named(capsys, folder):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a POSIX matter")
-def test_ctrl_c_ends_with_130_and_leaves_nothing(folder):
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_ends_with_130_and_leaves_nothing(folder, sent):
     arguments = ["-m", "rmfs", "run", "--set", "scenario.duration_s=4000000", "--out", "deep/run"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     process = subprocess.Popen(
@@ -99,7 +100,7 @@ def test_ctrl_c_ends_with_130_and_leaves_nothing(folder):
         assert process.stderr is not None
         assert "simulating" in process.stderr.readline()
         time.sleep(0.5)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(sent)
         _, errors = process.communicate(timeout=20)
     finally:
         process.kill()

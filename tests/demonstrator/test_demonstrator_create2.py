@@ -21,6 +21,8 @@ from rmfs.demonstrator.robot.create2 import (
 
 serial = pytest.importorskip("serial")
 
+PATIENCE_S = 20.0
+
 
 class Port:
     """Keeps what is written; answers what it was told."""
@@ -95,7 +97,7 @@ def emulated():
 
 
 def wait_for(condition):
-    end = time.monotonic() + 2
+    end = time.monotonic() + PATIENCE_S
     while not condition() and time.monotonic() < end:
         time.sleep(0.005)
     assert condition()

@@ -51,8 +51,6 @@ def until(condition, what: str):
 
 def interrupted(path: Path, out: Path, more: list[str], total: int) -> tuple[int, str]:
     """Start the experiment, kill a worker, interrupt the driver; return its session and words."""
-    # a shell ignores SIGINT in what it puts into the background, and children inherit that
-    signal.signal(signal.SIGINT, signal.default_int_handler)
     words = path.with_suffix(".stderr")
     with (
         words.open("w") as stream,
