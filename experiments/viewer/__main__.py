@@ -33,15 +33,13 @@ def speed(
 @app.command()
 def cost(
     pairs: Annotated[int, typer.Option(min=1, help="Runs without and with a page.")] = 5,
-    duration_s: Annotated[float, typer.Option(min=60, help="Simulated seconds.")] = 14_400.0,
 ) -> None:
-    """Measure how much slower a run is when a page watches it."""
-    from experiments.viewer.live_cost import table
+    """Measure how much slower runs of some ten seconds are when a page watches them."""
+    from experiments.viewer.live_cost import ratios, table
 
-    length = [(["scenario", "warmup_s"], 0.0), (["scenario", "duration_s"], duration_s)]
-    frame = table(pairs, length)
+    frame = table(pairs)
     print(frame.round(3).to_string(index=False))
-    print(f"median ratio of processor time: {frame['ratio'].median():.3f}")
+    print(ratios(frame).round(3).to_string())
 
 
 @app.command()

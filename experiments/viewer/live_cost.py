@@ -17,9 +17,7 @@ from rmfs.view.answers import live_server
 from rmfs.view.live import LiveRun
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-NAMES = {"layout": "default", "scenario": "default", "controllers": "default"}
+    from collections.abc import Iterable, Iterator
 
 WATCHER = """
 import sys, time, urllib.request
@@ -39,64 +37,94 @@ except OSError:
 """
 """Asks as the page does, in a process of its own as the page is."""
 
+Overrides = list[tuple[list[str], Any]]
+
 
 @dataclass(frozen=True, slots=True)
-class Pair:
-    """One run without and one with a page.
+class Case:
+    """A run whose cost is measured: names of layout, scenario and controllers, and its length."""
+
+    layout: str
+    scenario: str
+    controllers: str
+    simulated_s: float
+
+    @property
+    def overrides(self) -> Overrides:
+        """The length, as changes of the scenario."""
+        return [
+            (["scenario", "warmup_s"], 0.0),
+            (["scenario", "duration_s"], self.simulated_s),
+        ]
+
+
+CASES = (
+    Case("default", "default", "default", 120_000.0),
+    Case("study-128", "pp-minimal", "random", 12_000.0),
+)
+"""Some ten seconds of wall time each: 32 robots with little to plan, 128 with much."""
+
+
+@dataclass(frozen=True, slots=True)
+class Timed:
+    """One run.
 
     Attributes
     ----------
-    alone_s, watched_s
+    watched
+        Whether a page looked on; without one, nothing is kept that only a page would need.
+    processor_s
         Processor time of the simulating process, which no other process's load changes.
-    alone_wall_s, watched_wall_s
+    wall_s
         Wall time.
     load
         Mean number of busy processes of the machine within the last minute.
     """
 
-    alone_s: float
-    watched_s: float
-    alone_wall_s: float
-    watched_wall_s: float
+    layout: str
+    watched: bool
+    processor_s: float
+    wall_s: float
     load: float
 
 
-def pairs(number: int, overrides: list[tuple[list[str], Any]]) -> Iterator[Pair]:
+def runs(case: Case, pairs: int) -> Iterator[Timed]:
     """Time so many pairs of runs; which of the two comes first alternates."""
-    for index in range(number):
-        times = {}
+    for index in range(pairs):
         for watched in (False, True) if index % 2 == 0 else (True, False):
-            times[watched] = _watched(overrides) if watched else _alone(overrides)
-        (alone_s, alone_wall_s), (watched_s, watched_wall_s) = times[False], times[True]
-        yield Pair(alone_s, watched_s, alone_wall_s, watched_wall_s, os.getloadavg()[0])
+            processor_s, wall_s = _watched(case) if watched else _timed(case)
+            yield Timed(case.layout, watched, processor_s, wall_s, os.getloadavg()[0])
 
 
-def table(number: int, overrides: list[tuple[list[str], Any]]) -> pd.DataFrame:
-    """Return the pairs with the ratios of their times, one row each."""
-    frame = pd.DataFrame([asdict(pair) for pair in pairs(number, overrides)])
-    frame["ratio"] = frame["watched_s"] / frame["alone_s"]
-    frame["wall_ratio"] = frame["watched_wall_s"] / frame["alone_wall_s"]
-    return frame
+def table(pairs: int, cases: Iterable[Case] = CASES) -> pd.DataFrame:
+    """Return all runs, one row each."""
+    return pd.DataFrame([asdict(run) for case in cases for run in runs(case, pairs)])
 
 
-def _alone(overrides: list[tuple[list[str], Any]]) -> tuple[float, float]:
-    return _timed(overrides)
+def ratios(frame: pd.DataFrame) -> pd.DataFrame:
+    """Return what a page costs per layout: medians with one, divided by medians without."""
+    medians = frame.groupby(["layout", "watched"])[["processor_s", "wall_s"]].median()
+    alone, watched = (medians.xs(key, level="watched") for key in (False, True))
+    return (watched / alone).add_suffix("_ratio").join(alone)
 
 
-def _watched(overrides: list[tuple[list[str], Any]]) -> tuple[float, float]:
-    live = LiveRun(NAMES, title="cost")
+def _watched(case: Case) -> tuple[float, float]:
+    names = {name: getattr(case, name) for name in ("layout", "scenario", "controllers")}
+    live = LiveRun(names, title="cost")
     with live_server(live) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         with subprocess.Popen([sys.executable, "-c", WATCHER, server.url]) as page:
             try:
-                return _timed(overrides, events=live.events, observers=[live])
+                return _timed(case, events=live.events, observers=[live])
             finally:
                 live.close("over")
                 page.wait(60)
                 server.shutdown()
 
 
-def _timed(overrides: list[tuple[list[str], Any]], **options: Any) -> tuple[float, float]:
+def _timed(case: Case, **options: Any) -> tuple[float, float]:
     wall_s, own_s = time.perf_counter(), time.process_time()
-    rmfs.simulate(*NAMES.values(), seed=1, overrides=overrides, **options)
+    rmfs.simulate(
+        case.layout, case.scenario, case.controllers, seed=1, overrides=case.overrides, **options
+    )
     return time.process_time() - own_s, time.perf_counter() - wall_s

@@ -75,6 +75,7 @@ class Simulation:
     brakes
         Functions of the present time that say up to which time may be simulated now, and wait as
         long as they like: for who watches a run. How often a run stops on its way changes nothing.
+        Replaced as a whole, also by other threads while the run goes on.
     interventions
         Controllers exchanged by hand, and when (s).
     """
@@ -100,7 +101,7 @@ class Simulation:
         self.now_us = 0
         self.agenda = Agenda()
         self.observers = Observers(observers)
-        self.brakes: list[Callable[[int], int]] = []
+        self.brakes: tuple[Callable[[int], int], ...] = ()
         self.interventions: list[tuple[float, Choice]] = []
         self.traffic = traffic if traffic is not None else Traffic(layout)
         self.world = _stocked_world(layout, scenario, seed)

@@ -1,8 +1,8 @@
 """A run that is watched while it happens: where its thread meets those of the pages.
 
 Only the run's own thread touches the simulation. Pages leave their questions and wishes here; the
-run looks here between two instants, and that costs it one comparison while nobody asks. What a page
-wants to know is copied in the run's thread and packed in the page's.
+run looks here between two instants, and only if somebody has asked for something. What a page wants
+to know is copied in the run's thread and packed in the page's.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from rmfs.control.problems import Problem
 from rmfs.errors import InputError
 from rmfs.measure.events import EventLog
 from rmfs.measure.observer import Observer
-from rmfs.simulation.agenda import NEVER_US
 from rmfs.view import scene
 from rmfs.view.container import pack
 from rmfs.view.forms import refuse_foreign
@@ -95,8 +94,6 @@ class LiveRun(Observer):
         self._simulation: Simulation | None = None
         self._ended = ""
         self._answered_s = time.process_time()
-        # read without the lock, in each round of the run's loop
-        self._undisturbed = self._pace.is_free
 
     # --- the run's thread -----------------------------------------------------------------------
 
@@ -104,7 +101,7 @@ class LiveRun(Observer):
         """Ask to be asked how far the run may go."""
         with self._meeting:
             self._simulation = simulation
-            simulation.brakes.append(self.limit_us)
+            self._brake(on=True)
             self._meeting.notify_all()
 
     def run_ended(self, time_s: float) -> None:
@@ -113,8 +110,6 @@ class LiveRun(Observer):
 
     def limit_us(self, now_us: int) -> int:
         """Latest time that may be simulated now; waits as long as a page wants."""
-        if self._undisturbed:
-            return NEVER_US
         with self._meeting:
             while True:
                 self._attend(now_us)
@@ -122,7 +117,7 @@ class LiveRun(Observer):
                     return self._exchange(now_us)
                 limit_us = self._pace.limit_us(now_us, time.monotonic())
                 if limit_us is not None:
-                    self._undisturbed = self._pace.is_free
+                    self._brake(on=not self._pace.is_free)
                     return limit_us
                 wait_s = self._pace.wait_s(now_us, time.monotonic())
                 self._meeting.wait(1.0 if wait_s is None else min(wait_s, 1.0))
@@ -314,8 +309,15 @@ class LiveRun(Observer):
 
     def _disturb(self) -> None:
         """Make the run look here before it goes on."""
-        self._undisturbed = False
+        self._brake(on=True)
         self._meeting.notify_all()
+
+    def _brake(self, *, on: bool) -> None:
+        """Be asked how far the run may go, or not any more: a free run has nothing to ask."""
+        if self._simulation is None:
+            return
+        others = tuple(brake for brake in self._simulation.brakes if brake != self.limit_us)
+        self._simulation.brakes = (*others, self.limit_us) if on else others
 
     def _leave(self, page: str) -> None:
         if self._pages.pop(page, None) is not None and not self._pages:
