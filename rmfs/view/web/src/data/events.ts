@@ -1,7 +1,7 @@
 /** What happened besides motion, by time and by whom it concerns. */
 
 import type { Container } from "./container";
-import { countUpTo } from "./search";
+import { firstWhere } from "./search";
 
 export const Kind = {
   STOCK: 0,
@@ -98,8 +98,7 @@ export class Events {
   }
 
   private countUpTo(numbers: number[], time_us: number): number {
-    const times = numbers.map((number) => this.all[number].time_us);
-    return countUpTo(times, time_us);
+    return firstWhere(numbers.length, (place) => this.all[numbers[place]].time_us > time_us);
   }
 }
 
@@ -122,17 +121,19 @@ const WORDS = [
   "controller exchanged",
 ];
 
-/** Says in a few words what happened. */
-export function tell(happening: Happening): string {
-  const { kind, robot, pod, station, order, sku, units, detail } = happening;
+/** Says in a few words what happened to a subject, which is not named again. */
+export function tell(happening: Happening, subject: Subject): string {
+  const { kind, order, sku, units, detail } = happening;
+  const others = (["station", "pod", "robot"] as const).filter(
+    (name) => name !== subject && happening[name] >= 0,
+  );
   const named = [
     detail,
-    station >= 0 ? `station ${station}` : "",
-    pod >= 0 ? `pod ${pod}` : "",
-    robot >= 0 ? `robot ${robot}` : "",
+    ...others.map((name) => `${name} ${happening[name]}`),
     order >= 0 ? `${kind >= Kind.BUNDLE_CREATED ? "bundle" : "order"} ${order}` : "",
     sku >= 0 ? `SKU ${sku}` : "",
     units > 1 ? `${units} units` : "",
   ];
-  return `${WORDS[kind]}: ${named.filter((word) => word !== "").join(", ")}`;
+  const told = named.filter((word) => word !== "").join(", ");
+  return told === "" ? WORDS[kind] : `${WORDS[kind]}: ${told}`;
 }

@@ -21,19 +21,22 @@ export function course(events: Events, robots: Robots, end_us: number): Course {
   const count = Math.max(Math.ceil(end_us / bin_us), 1);
   const picked = new Array<number>(count).fill(0);
   const joined = new Array<number>(count).fill(0);
+  let late = 0;
   for (const { time_us, kind, units } of events.all) {
     const bin = Math.min(Math.floor(time_us / bin_us), count - 1);
-    if (kind === Kind.UNIT_PICKED) picked[bin] += units;
-    else if (kind === Kind.ORDER_CREATED) joined[bin]++;
+    if (kind === Kind.UNIT_PICKED) {
+      picked[bin] += units;
+      if (time_us > end_us - bin_us) late += units;
+    }
+    if (kind === Kind.ORDER_CREATED) joined[bin]++;
     else if (kind === Kind.ORDER_ASSIGNED) joined[bin]--;
   }
+  // the last bin is not over: its rate looks back as far as those of the others do
+  picked[count - 1] = late;
   let waiting = 0;
   return {
     bin_us,
-    unitsPerHour: picked.map((units, bin) => {
-      const length = Math.min((bin + 1) * bin_us, end_us) - bin * bin_us;
-      return length > 0 ? (units * 3600e6) / length : 0;
-    }),
+    unitsPerHour: picked.map((units) => (units * 3600e6) / Math.max(Math.min(bin_us, end_us), 1)),
     backlog: joined.map((change) => {
       waiting += change;
       return waiting;

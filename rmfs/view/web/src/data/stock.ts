@@ -32,6 +32,11 @@ export class Stock {
     return this.used[pod].at(time_us) / this.layout.podCapacity[pod];
   }
 
+  /** Returns whether a pod has been at a station. */
+  wasVisited(pod: number, time_us: number): boolean {
+    return this.visited[pod].since(time_us) !== undefined;
+  }
+
   /** Returns the time since the pod's last visit to a station, or since the start (s). */
   age_s(pod: number, time_us: number): number {
     return (time_us - this.visited[pod].at(time_us)) / 1e6;

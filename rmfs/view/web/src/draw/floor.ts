@@ -4,7 +4,6 @@ import {
   BoxGeometry,
   BufferAttribute,
   BufferGeometry,
-  Color,
   CylinderGeometry,
   Group,
   LineBasicMaterial,
@@ -12,11 +11,12 @@ import {
   Mesh,
   MeshBasicMaterial,
   PlaneGeometry,
+  type Sprite,
 } from "three";
 import type { Layout } from "../data/layout";
 import { type Bodies, bodies } from "./bodies";
-import { label } from "./labels";
-import { GROUND, type Theme } from "./palette";
+import { label, resize } from "./labels";
+import { faint, GROUND, type Theme } from "./palette";
 import type { Placement } from "./placement";
 import { shaded, shadedMaterial } from "./shapes";
 
@@ -28,6 +28,8 @@ export class Floor {
   /** The stations' bodies, in the order of the stations. */
   readonly stations: Mesh[] = [];
   private readonly tiers: Group[];
+  private readonly labels: Sprite[] = [];
+  private pixel_m = 0;
   private readonly zones: Bodies[] = [];
 
   constructor(
@@ -38,13 +40,21 @@ export class Floor {
     this.group.add(...this.tiers);
     this.tiers.forEach((tier, number) => {
       tier.add(this.ground(number), this.roads(number));
-      const storage = this.cells(number, layout.isStorage, this.colour("storage"), 0.8, 0.25);
-      const zone = this.cells(number, layout.isQueue, this.colour("queue_zone"), 1, 0.25);
+      const storage = this.cells(number, layout.isStorage, this.colour("storage"), 0.8);
+      const zone = this.cells(number, layout.isQueue, this.colour("queue_zone"), 1);
       this.zones.push(zone);
       tier.add(storage.mesh, zone.mesh);
     });
     this.addStations();
     this.addElevators();
+    if (this.tiers.length > 1) this.nameTiers();
+  }
+
+  /** Keeps the texts readable where a pixel shows so many metres. */
+  scaleLabels(pixel_m: number): void {
+    if (pixel_m === this.pixel_m) return;
+    this.pixel_m = pixel_m;
+    for (const text of this.labels) resize(text, pixel_m);
   }
 
   /** Puts the tiers where they are to be drawn. */
@@ -66,7 +76,7 @@ export class Floor {
   private ground(tier: number): Mesh {
     const { length_m, width_m } = this.layout.header.tiers[tier];
     const material = new MeshBasicMaterial({ color: GROUND[this.theme].floor });
-    if (tier > 0) Object.assign(material, { transparent: true, opacity: 0.6, depthWrite: false });
+    if (tier > 0) Object.assign(material, { transparent: true, opacity: 0.35, depthWrite: false });
     const ground = new Mesh(new PlaneGeometry(length_m + 1, width_m + 1), material);
     ground.position.set(length_m / 2, width_m / 2, -0.03);
     return ground;
@@ -87,13 +97,7 @@ export class Floor {
     return new LineSegments(geometry, new LineBasicMaterial({ color: GROUND[this.theme].line }));
   }
 
-  private cells(
-    tier: number,
-    wanted: Uint8Array,
-    colour: string,
-    side: number,
-    strength: number,
-  ): Bodies {
+  private cells(tier: number, wanted: Uint8Array, colour: string, side: number): Bodies {
     const { x, y, pitch_m } = this.layout;
     const here: number[] = [];
     for (let v = 0; v < x.length; v++) {
@@ -104,7 +108,7 @@ export class Floor {
       new MeshBasicMaterial(),
       here.length,
     );
-    const shade = new Color(GROUND[this.theme].floor).lerp(new Color(colour), strength);
+    const shade = faint(colour, this.theme);
     here.forEach((v, i) => {
       cells.place(i, { x: x[v], y: y[v], z: -0.01 }, FLAT);
       cells.paint(i, shade);
@@ -117,19 +121,34 @@ export class Floor {
     header.stations.forEach((station, number) => {
       const { kind, waypoint, radius_m } = station;
       const colour = this.colour(kind === "pick" ? "pick_station" : "replenishment_station");
+      const size_m = 1.6 * radius_m;
       const body = new Mesh(
-        shaded(new CylinderGeometry(radius_m * 1.6, radius_m * 1.6, 0.06, 24).rotateX(Math.PI / 2)),
+        shaded(new CylinderGeometry(size_m, size_m, 0.06, 24).rotateX(Math.PI / 2)),
         shadedMaterial(colour),
       );
       body.position.set(x[waypoint], y[waypoint], 0.02);
       this.stations.push(body);
-      const text = label(`${kind === "pick" ? "P" : "R"}${number}`, GROUND[this.theme].text, 1.1);
+      this.tiers[tier[waypoint]].add(body);
       const { length_m, width_m } = header.tiers[tier[waypoint]];
       // beside the station, on the side that is nearer to the wall
       const [dx, dy] = outward(x[waypoint], y[waypoint], length_m, width_m);
-      text.position.set(x[waypoint] + 1.3 * dx, y[waypoint] + 1.3 * dy, 0.6);
-      this.tiers[tier[waypoint]].add(body, text);
+      const name = `${kind === "pick" ? "P" : "R"}${number}`;
+      const away = size_m + 0.2;
+      this.write(name, tier[waypoint], x[waypoint] + away * dx, y[waypoint] + away * dy, [dx, dy]);
     });
+  }
+
+  private nameTiers(): void {
+    for (const number of this.tiers.keys()) this.write(`tier ${number}`, number, 0, 0, [1, -1]);
+  }
+
+  /** Writes a text that reaches from a point of a tier into a direction. */
+  private write(name: string, tier: number, x: number, y: number, [dx, dy]: [number, number]) {
+    const text = label(name, GROUND[this.theme].text);
+    text.center.set(0.5 - dx / 2, 0.5 - dy / 2);
+    text.position.set(x, y, 0.6);
+    this.labels.push(text);
+    this.tiers[tier].add(text);
   }
 
   private addElevators(): void {

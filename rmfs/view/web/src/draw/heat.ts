@@ -6,6 +6,8 @@ import { type Bodies, bodies } from "./bodies";
 import { amount, logShare, type Theme } from "./palette";
 import type { Placement } from "./placement";
 
+const DECADES = 4;
+
 export interface Range {
   least: number;
   most: number;
@@ -39,7 +41,7 @@ export class HeatSquares {
   }
 }
 
-/** Returns the least and the greatest of all counts above zero. */
+/** Returns the least and the greatest of all counts above zero, not more than `DECADES` apart. */
 export function rangeOf(tables: Float64Array[]): Range {
   let least = Number.POSITIVE_INFINITY;
   let most = 0;
@@ -49,5 +51,5 @@ export function rangeOf(tables: Float64Array[]): Range {
       if (count > most) most = count;
     }
   }
-  return { least: Math.min(least, most), most };
+  return { least: Math.max(Math.min(least, most), most / 10 ** DECADES), most };
 }

@@ -28,6 +28,11 @@ export const GROUND: Record<Theme, { back: string; floor: string; line: string; 
   dark: { back: "#101418", floor: "#1B2128", line: "#3A434D", text: "#E6EAEE" },
 };
 
+/** Returns the colour of places on the floor: faint, so that what stands on them stands out. */
+export function faint(colour: string, theme: Theme): Color {
+  return new Color(GROUND[theme].floor).lerp(new Color(colour), 0.25);
+}
+
 const MAGMA = [
   "#000004",
   "#180F3D",

@@ -7,7 +7,8 @@ export type Mode = "2d" | "3d";
 export const ALL_TIERS = -1;
 
 const GAP_M = 3;
-const LEAST_HEIGHT_M = 4;
+/** Floors above each other are drawn so far apart, as a share of their depth, that one sees between. */
+const APART = 0.35;
 
 export class Placement {
   readonly x: number[];
@@ -31,8 +32,9 @@ export class Placement {
       along += length_m + GAP_M;
       return mode === "2d" && !alone ? here : 0;
     });
+    const apart_m = APART * Math.max(...tiers.map(({ width_m }) => width_m));
     this.z = tiers.map(({ height_m }, number) =>
-      mode === "3d" && !alone ? Math.max(height_m, number * LEAST_HEIGHT_M) : 0,
+      mode === "3d" && !alone ? Math.max(height_m, number * apart_m) : 0,
     );
     this.shown = tiers.map((_, number) => !alone || number === tier);
     this.hasUpperFloors = mode === "3d" && !alone && tiers.length > 1;

@@ -17,10 +17,12 @@ export const AGE_S = { least: 60, most: 24 * 3600 };
 const HEIGHT_M = 1.5;
 const LEGS_M = 0.38;
 const LIFTED_M = 0.08;
+const SMALL = 0.4;
 
 export class PodBodies {
   readonly bodies: Bodies;
   private readonly side: number;
+  private shrink = 1;
   private readonly plain: Color;
   private readonly colour = new Color();
   private readonly shapes = {
@@ -37,9 +39,13 @@ export class PodBodies {
     this.plain = new Color(layout.header.colours.storage);
   }
 
-  /** Gives the pods the shape of the plan or of space; they are drawn anew at the next occasion. */
-  shape(mode: Mode): void {
+  /**
+   * Gives the pods the shape of the plan or of space, small in a plan whose floor shows something;
+   * they are drawn anew at the next occasion.
+   */
+  shape(mode: Mode, small: boolean): void {
     this.bodies.reshape(this.shapes[mode]);
+    this.shrink = small && mode === "2d" ? SMALL : 1;
     this.drawn_us = Number.NaN;
   }
 
@@ -88,7 +94,8 @@ export class PodBodies {
     const flat = placement.mode === "2d";
     const z = floor + (flat ? 0.05 : LEGS_M + HEIGHT_M / 2);
     const height = flat ? 1 : HEIGHT_M;
-    this.bodies.place(pod, { x, y, z }, { x: this.side, y: this.side, z: height });
+    const side = this.side * this.shrink;
+    this.bodies.place(pod, { x, y, z }, { x: side, y: side, z: height });
   }
 
   private colourOf(pod: number, time_us: number, mode: PodMode, theme: Theme): Color {

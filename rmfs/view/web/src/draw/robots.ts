@@ -1,4 +1,4 @@
-/** Robots: a disc with a nose, coloured by what is asked. */
+/** Robots: a disc with a nose, in space also a mast above the pods, coloured by what is asked. */
 
 import {
   BoxGeometry,
@@ -9,6 +9,7 @@ import {
   MeshBasicMaterial,
   PlaneGeometry,
 } from "three";
+import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 import { Piece, type Pose } from "../data/motion";
 import type { Run } from "../data/run";
 import { type Bodies, bodies } from "./bodies";
@@ -23,6 +24,8 @@ export const LONGEST_DELAY_S = 120;
 
 const HEIGHT_M = 0.3;
 const ABOVE_PODS_M = 0.4;
+/** Where the top of the mast is, in heights of a robot above its middle: higher than any pod. */
+const MAST = 6.8;
 const STANDING = new Set<number>([Piece.HOLD, Piece.LIFT, Piece.SET_DOWN]);
 
 export class RobotBodies {
@@ -36,7 +39,7 @@ export class RobotBodies {
       nose: new PlaneGeometry(1, 0.3).translate(0.5, 0, 0.5),
     },
     "3d": {
-      body: shaded(new CylinderGeometry(1, 1, 1, 20).rotateX(Math.PI / 2)),
+      body: shaded(masted()),
       nose: new BoxGeometry(1, 0.3, 1).translate(0.5, 0, 0),
     },
   };
@@ -105,4 +108,12 @@ export class RobotBodies {
     if (mode === "load") return this.kinds.load[pose.pod >= 0 ? 1 : 0];
     return amount(robots.delay_s(robot, time_us) / LONGEST_DELAY_S, theme, this.colour);
   }
+}
+
+/** Returns a disc with a mast on which one sees the robot's colour when it is under a pod. */
+function masted() {
+  const disc = new CylinderGeometry(1, 1, 1, 20);
+  const mast = new CylinderGeometry(0.07, 0.07, MAST, 5, 1, true).translate(0, MAST / 2, 0);
+  const top = new CylinderGeometry(0.5, 0.5, 0.4, 12).translate(0, MAST, 0);
+  return mergeGeometries([disc, mast, top]).rotateX(Math.PI / 2);
 }

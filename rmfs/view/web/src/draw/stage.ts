@@ -24,6 +24,10 @@ import type { Placement } from "./placement";
 
 const FAR_M = 2000;
 const SHARPEST = 2;
+/** How far back, and how far up, the camera in space stands at first. */
+const SLOPE = [1, 0.85];
+/** Room around what is overlooked. */
+const MARGIN = 1.12;
 
 /** Position, target and zoom of a camera, as numbers for a link. */
 export type CameraState = number[];
@@ -98,12 +102,44 @@ export class Stage {
       this.plan.position.set(x, y, FAR_M / 2);
       this.planControls.target.set(x, y, 0);
     } else {
-      const away = 1.1 * Math.max(width / Math.max(this.width / this.height, 1), depth) + 2 * z;
-      this.space.position.set(x, y - away, z + 0.85 * away);
-      this.spaceControls.target.set(x, y, z);
+      this.space.position.set(x, y - SLOPE[0], SLOPE[1]);
+      this.space.lookAt(x, y, 0);
+      this.space.updateMatrixWorld();
     }
     this.resize(this.width, this.height);
+    if (!this.flat) this.retreat({ x, y, z, width, depth });
     this.controls.update();
+  }
+
+  /** Moves the camera in space back, without turning it, until it just sees a whole box. */
+  private retreat({ x, y, z, width, depth }: Placement["box"]): void {
+    const { space } = this;
+    const [right, up, back] = [new Vector3(), new Vector3(), new Vector3()];
+    space.matrixWorld.extractBasis(right, up, back);
+    const corners = [-1, 1].flatMap((i) =>
+      [-1, 1].flatMap((j) =>
+        [0, 2].map((k) => new Vector3(x + (i * width) / 2, y + (j * depth) / 2, k * z)),
+      ),
+    );
+    const steepness = Math.tan((space.fov * Math.PI) / 360) / MARGIN;
+    const across = bounds(corners, right, back, steepness * space.aspect);
+    const along = bounds(corners, up, back, steepness);
+    space.position
+      .set(0, 0, 0)
+      .addScaledVector(right, across.middle)
+      .addScaledVector(up, along.middle)
+      .addScaledVector(back, Math.max(across.away, along.away));
+    // what it turns about is on the floor
+    this.spaceControls.target.copy(space.position);
+    this.spaceControls.target.addScaledVector(back, -space.position.z / back.z);
+  }
+
+  /** Returns how much the plan shows per pixel, in metres; in space, in the middle of the picture. */
+  get pixel_m(): number {
+    const { plan, space, height } = this;
+    if (this.flat) return (plan.top - plan.bottom) / plan.zoom / height;
+    const away = space.position.distanceTo(this.spaceControls.target);
+    return (2 * away * Math.tan((space.fov * Math.PI) / 360)) / height;
   }
 
   resize(width: number, height: number): void {
@@ -185,4 +221,14 @@ export class Stage {
     if (beneath) this.background.draw(this.camera);
     this.renderer.render(this.scene, this.camera);
   }
+}
+
+/**
+ * Returns how far back a camera must be to see some points between two planes through it, and where
+ * across its view its middle then is; the planes rise by `steepness` from the line of sight.
+ */
+function bounds(points: Vector3[], across: Vector3, back: Vector3, steepness: number) {
+  const least = Math.min(...points.map((p) => p.dot(across) - steepness * p.dot(back)));
+  const most = Math.max(...points.map((p) => p.dot(across) + steepness * p.dot(back)));
+  return { away: (most - least) / (2 * steepness), middle: (most + least) / 2 };
 }

@@ -20,6 +20,8 @@ import { toolbar } from "./toolbar";
 const FIGURES_MS = 250;
 /** How long it takes (s) to come closer to the present by two thirds. */
 const CATCHING_UP_S = 0.15;
+/** A frame that took longer counts as so long: a page that was hidden does not jump ahead. */
+const LONGEST_FRAME_S = 0.25;
 const HEAT_PARTS: (keyof ViewState)[] = ["heat", "from_s", "to_s", "theme", "mode", "tier"];
 
 export class App {
@@ -160,7 +162,8 @@ export class App {
   }
 
   private frame(now_ms: number): void {
-    const passed_s = Math.min((now_ms - this.last_ms) / 1000, 0.25);
+    // the time of a frame may lie before the moment at which it was asked for
+    const passed_s = Math.min(Math.max((now_ms - this.last_ms) / 1000, 0), LONGEST_FRAME_S);
     this.last_ms = now_ms;
     const { state } = this.store;
     if (this.live?.following) this.follow(passed_s);

@@ -8,15 +8,22 @@ import { clock, h } from "./dom";
 import type { Store } from "./state";
 
 const LINES = ["#0072B2", "#D55E00"];
-const HEIGHT = 84;
+const HEIGHT = 68;
 const LEFT = 40;
 const TOP = 6;
 const BOTTOM = 14;
 
+/** Distances of the marks of time, in seconds. */
+const STEPS_S = [10, 30, 60, 300, 600, 1800, 3600, 7200, 14_400, 21_600, 43_200, 86_400];
+const MOST_MARKS = 5;
+const DAY_S = 86_400;
+
 interface Chart {
-  title: string;
+  title: HTMLElement;
   canvas: HTMLCanvasElement;
-  draw(pen: CanvasRenderingContext2D, frame: Frame, runs: Run[], theme: Theme): void;
+  draw(pen: CanvasRenderingContext2D, frame: Frame, theme: Theme): void;
+  /** Says what is the case at a time. */
+  tell(time_s: number): HTMLElement[];
 }
 
 interface Frame {
@@ -31,26 +38,17 @@ export function charts(
   end_s: () => number,
 ): { root: HTMLElement; update: () => void } {
   const made: Chart[] = [
-    chart("Throughput (units/h)", (pen, frame, all, theme) =>
-      lines(pen, frame, all, theme, (course) => course.unitsPerHour),
-    ),
-    chart("Orders waiting for a station", (pen, frame, all, theme) =>
-      lines(pen, frame, all, theme, (course) => course.backlog),
-    ),
-    ...runs.map((run, n) =>
-      chart(`Robots by task${runs.length > 1 ? ` in ${"AB"[n]}` : ""}`, (pen, frame, _, theme) =>
-        stacked(pen, frame, run, theme),
-      ),
-    ),
+    course(runs, "Throughput", "units/h", ({ unitsPerHour }) => unitsPerHour),
+    course(runs, "Orders waiting", "for a station", ({ backlog }) => backlog),
+    ...runs.map((run, n) => tasks(run, runs.length > 1 ? ` of ${"AB"[n]}` : "")),
   ];
-  const root = h("section", { className: "charts" }, h("h2", {}, "Course"));
-  if (runs.length > 1) root.append(h("p", {}, "A blue, B red"));
+  const root = h("section", { className: "charts" });
   for (const { title, canvas } of made) {
     canvas.addEventListener("pointerdown", (event) => seek(event, canvas));
     canvas.addEventListener("pointermove", (event) => {
       if (event.buttons === 1) seek(event, canvas);
     });
-    root.append(h("h3", {}, title), canvas);
+    root.append(title, canvas);
   }
   const seek = (event: PointerEvent, canvas: HTMLCanvasElement) => {
     const frame = canvas.getBoundingClientRect();
@@ -59,21 +57,64 @@ export function charts(
   };
   const update = () => {
     const { theme, time_s } = store.state;
-    for (const { canvas, draw } of made) {
+    for (const { title, canvas, draw, tell } of made) {
       const pen = prepared(canvas);
       if (pen === null) continue;
       const frame = { width: canvas.clientWidth, end_s: end_s() };
-      draw(pen, frame, runs, theme);
+      draw(pen, frame, theme);
       pen.strokeStyle = "#E6007E";
+      pen.lineWidth = 1.5;
       const x = across(frame, time_s);
       pen.strokeRect(x, TOP, 0.01, HEIGHT - TOP - BOTTOM);
+      title.lastElementChild?.replaceChildren(...tell(time_s));
     }
   };
   return { root, update };
 }
 
-function chart(title: string, draw: Chart["draw"]): Chart {
-  return { title, canvas: h("canvas", { ariaLabel: title }), draw };
+function chart(title: string, draw: Chart["draw"], tell: Chart["tell"]): Chart {
+  const heading = h("h3", {}, h("span", {}, title), h("span", {}));
+  return { title: heading, canvas: h("canvas", { ariaLabel: title }), draw, tell };
+}
+
+/** Makes a chart of one figure with a line per run. */
+function course(
+  runs: Run[],
+  title: string,
+  unit: string,
+  values: (course: Course) => number[],
+): Chart {
+  const tell = (time_s: number) => {
+    const told = runs.map((run, n) => {
+      const known = run.course();
+      const bin = Math.min(Math.floor((time_s * 1e6) / known.bin_us), values(known).length - 1);
+      const now = values(known)[bin].toFixed(0);
+      if (runs.length === 1) return h("span", {}, now);
+      const line = h("b", {}, `${"AB"[n]} ${now}`);
+      line.style.color = LINES[n];
+      return line;
+    });
+    return [...told, h("span", {}, unit)];
+  };
+  const draw: Chart["draw"] = (pen, frame, theme) => lines(pen, frame, runs, theme, values);
+  return chart(title, draw, tell);
+}
+
+/** Makes a chart of how many robots of a run have which task. */
+function tasks(run: Run, name: string): Chart {
+  const tell = (time_s: number) => {
+    const count = TASKS.map(() => 0);
+    for (const steps of run.robots.tasks) count[steps.at(time_s * 1e6).kind]++;
+    return [...count.keys()]
+      .filter((kind) => count[kind] > 0)
+      .map((kind) => {
+        const patch = h("i", {});
+        patch.style.background = TASK_COLOURS[kind];
+        return h("span", {}, patch, `${count[kind]} ${TASKS[kind]}`);
+      });
+  };
+  const draw: Chart["draw"] = (pen, frame, theme) => stacked(pen, frame, run, theme);
+  return chart(`Robots${name}`, draw, tell);
 }
 
 function prepared(canvas: HTMLCanvasElement): CanvasRenderingContext2D | null {
@@ -99,7 +140,7 @@ function lines(
   values: (course: Course) => number[],
 ): void {
   const courses = runs.map((run) => run.course());
-  const most = Math.max(1, ...courses.flatMap(values));
+  const most = roundUp(Math.max(1, ...courses.flatMap(values)));
   axes(pen, frame, most, theme);
   courses.forEach((course, n) => {
     pen.strokeStyle = LINES[n % LINES.length];
@@ -141,8 +182,29 @@ function axes(pen: CanvasRenderingContext2D, frame: Frame, most: number, theme: 
   pen.lineWidth = 1;
   pen.font = "10px system-ui, sans-serif";
   pen.textAlign = "right";
-  pen.fillText(most.toFixed(0), LEFT - 4, TOP + 8);
+  pen.fillText(String(most), LEFT - 4, TOP + 8);
   pen.fillText("0", LEFT - 4, HEIGHT - BOTTOM);
-  pen.fillText(`${clock(frame.end_s)} h`, frame.width, HEIGHT - 3);
+  const steps = STEPS_S.filter((step) => frame.end_s / step <= MOST_MARKS);
+  const step_s = steps[0] ?? Math.ceil(frame.end_s / MOST_MARKS / DAY_S) * DAY_S;
+  for (let time_s = 0; time_s <= frame.end_s; time_s += step_s) {
+    const x = across(frame, time_s);
+    pen.strokeRect(x, TOP, 0.01, HEIGHT - TOP - BOTTOM);
+    const text = `${hours(time_s)} h`;
+    const width = pen.measureText(text).width;
+    pen.fillText(text, Math.min(x + width / 2, frame.width), HEIGHT - 2);
+  }
   pen.strokeRect(LEFT, TOP, frame.width - LEFT - 1, HEIGHT - TOP - BOTTOM);
+}
+
+/** Writes a time as short as can be. */
+function hours(time_s: number): string {
+  return clock(time_s).replace(/:00$/, "");
+}
+
+/** Returns the next greater number of one digit, or of two whose second is a 5, that leaves room. */
+function roundUp(value: number): number {
+  const power = 10 ** Math.floor(Math.log10(value));
+  const digits = [1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10];
+  const nice = digits.find((digit) => digit * power >= 1.04 * value) ?? 12;
+  return Math.ceil(nice * power);
 }

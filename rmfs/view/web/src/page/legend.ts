@@ -2,7 +2,7 @@
 
 import { Color } from "three";
 import type { Range } from "../draw/heat";
-import { amount, type Entry, robotEntries, type Theme } from "../draw/palette";
+import { amount, type Entry, faint, robotEntries, type Theme } from "../draw/palette";
 import { AGE_S, POPULARITY } from "../draw/pods";
 import { LONGEST_DELAY_S } from "../draw/robots";
 import { clock, h } from "./dom";
@@ -21,8 +21,7 @@ export function legend(
     parts.push(h("h3", {}, `Robots by ${robots}`));
     if (named.length > 0) parts.push(swatches(named));
     else parts.push(scale(theme, "0 s", `${LONGEST_DELAY_S} s or more waited in this task`));
-    parts.push(h("h3", {}, pods === "plain" ? "Pods" : `Pods by ${POD_WORDS[pods]}`));
-    if (pods === "plain") parts.push(swatches([{ colour: colours.storage, label: "pod" }]));
+    if (pods !== "plain") parts.push(h("h3", {}, `Pods by ${POD_WORDS[pods]}`));
     if (pods === "fill") parts.push(scale(theme, "0 %", "100 % of the space used"));
     if (pods === "popularity") {
       const { least, most } = POPULARITY;
@@ -38,14 +37,16 @@ export function legend(
       parts.push(h("h3", {}, `Heat map: ${heat}`));
       parts.push(scale(theme, short(least), `${short(most)} ${unit} (log.)`));
     }
-    parts.push(h("h3", {}, "Places"));
+    const pod = { colour: colours.storage, label: "pod" };
+    parts.push(h("h3", {}, pods === "plain" ? "Pods and places" : "Places"));
     parts.push(
       swatches([
+        ...(pods === "plain" ? [pod] : []),
         { colour: colours.pick_station, label: "pick station (P)" },
         { colour: colours.replenishment_station, label: "replenishment station (R)" },
         { colour: colours.elevator, label: "elevator" },
-        { colour: colours.free_storage, label: "storage place" },
-        { colour: colours.queue_zone, label: "queue zone" },
+        { colour: faint(colours.storage, theme).getStyle(), label: "storage place" },
+        { colour: faint(colours.queue_zone, theme).getStyle(), label: "queue zone" },
       ]),
     );
     root.replaceChildren(...parts);
@@ -60,7 +61,7 @@ export function legend(
 const POD_WORDS = { plain: "", fill: "fill", popularity: "popularity", age: "age of visit" };
 
 function short(value: number): string {
-  return value >= 100 ? value.toFixed(0) : value.toPrecision(2);
+  return value >= 100 || Number.isInteger(value) ? value.toFixed(0) : value.toPrecision(2);
 }
 
 function swatches(entries: Entry[]): HTMLElement {

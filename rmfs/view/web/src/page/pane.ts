@@ -107,6 +107,7 @@ export class Pane {
       this.painted_ms = now_ms;
     }
     this.drawPaths(state, time_us);
+    this.floor.scaleLabels(this.stage.pixel_m);
     this.mark(state.selection, time_us);
     this.stage.render();
   }
@@ -114,6 +115,7 @@ export class Pane {
   private react(names: ReadonlySet<keyof ViewState>): void {
     if (names.has("theme")) this.dress();
     if (names.has("mode") || names.has("tier")) this.arrange();
+    if (names.has("heat")) this.shapePods();
     if (names.has("zones")) {
       this.floor.showZones(this.store.state.zones);
       this.stage.relay();
@@ -137,8 +139,13 @@ export class Pane {
     this.placement = new Placement(this.run.layout, mode, tier);
     this.floor.arrange(this.placement);
     this.stage.relay();
-    this.pods.shape(mode);
+    this.shapePods();
     this.stage.overlook(this.placement);
+  }
+
+  private shapePods(): void {
+    const { mode, heat } = this.store.state;
+    this.pods.shape(mode, heat !== "off");
   }
 
   private drawPaths(state: ViewState, time_us: number): void {

@@ -89,7 +89,7 @@ function details(store: Store, pane: Pane, selection: Selection): HTMLElement[] 
         const at = button(clock(one.time_us / 1e6), "Go there", () =>
           store.set({ time_s: one.time_us / 1e6 }),
         );
-        return h("li", {}, at, ` ${tell(one)}`);
+        return h("li", {}, at, ` ${tell(one, what)}`);
       }),
     ),
   ].map((element) => {
@@ -128,7 +128,12 @@ function podRows({ run }: Pane, pod: number, time_us: number): Rows {
       `${used.toFixed(1)} of ${run.layout.podCapacity[pod]} units (${(100 * run.stock.fill(pod, time_us)).toFixed(0)} %)`,
     ],
     ["units picked so far", String(run.stock.picked[pod].at(time_us))],
-    ["since its last visit", `${clock(run.stock.age_s(pod, time_us))} h`],
+    [
+      "last visit",
+      run.stock.wasVisited(pod, time_us)
+        ? `${clock(run.stock.age_s(pod, time_us))} h ago`
+        : "none so far",
+    ],
     ["holds", shown.join(", ") || "nothing"],
   ];
 }

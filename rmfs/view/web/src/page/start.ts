@@ -38,7 +38,11 @@ export async function startForm(root: HTMLElement, chosen: Record<string, string
   const seed = h("input", { type: "number", min: "0", step: "1", value: "0", id: "start-seed" });
   const speed = h("input", { type: "number", min: "0", step: "any", id: "start-speed" });
   speed.placeholder = "as fast as it goes";
-  const out = h("input", { type: "text", id: "start-out", placeholder: "live" });
+  const out = h("input", {
+    type: "text",
+    id: "start-out",
+    placeholder: "named after what is chosen",
+  });
   const trace = h("input", { type: "checkbox", checked: true, id: "start-trace" });
   const message = h("p", { className: "wrong", role: "alert" });
   const reads: Read[] = [];

@@ -91,7 +91,7 @@ export function toolbar(store: Store, tiers: number, actions: Actions): HTMLElem
   root.append(
     h("span", { className: "gap" }),
     button("fit", "Overlook everything (0)", actions.fit),
-    button("dark / light", "Change the theme (d)", () => store.set({ theme: other(store.state) })),
+    button("theme", "Dark or light (d)", () => store.set({ theme: other(store.state) })),
     button("picture", "Save a screenshot (s)", actions.screenshot),
     button("link", "Copy a link to this very view (l)", actions.copyLink),
     button("?", "Keys (?)", actions.help),
