@@ -1,4 +1,4 @@
-"""The colours of warehouse things, the same in every picture.
+"""The colours of warehouse things, the same in every picture and in the viewer.
 
 The names people use (pick stations red, replenishment stations yellow, robots green, storage blue)
 in the shades of Okabe and Ito, which stay apart for all common kinds of colour blindness.
@@ -15,3 +15,27 @@ HALLWAY = "#888888"
 ROAD = "#D0D0D0"
 ARROW = "#777777"
 OUTLINE = "#222222"
+
+TASKS = {
+    "pick": PICK_STATION,
+    "replenish": REPLENISHMENT_STATION,
+    "park": "#56B4E9",
+    "reposition": "#CC79A7",
+    "rest": "#999999",
+}
+"""Of robots by what they have to do."""
+
+STATES = {
+    "driving": ROBOT,
+    "turning": "#56B4E9",
+    "lifting, setting down": "#CC79A7",
+    "in an elevator": "#7B3294",
+    "queueing": "#E69F00",
+    "waiting": "#D55E00",
+    "served": "#F0E442",
+    "idle": "#999999",
+}
+"""Of robots by what they are doing."""
+
+LOADS = {"without pod": ROBOT, "with pod": STORAGE}
+"""Of robots by what they carry."""

@@ -110,6 +110,11 @@ def head(
             for name, value in vars(colours).items()
             if isinstance(value, str) and value.startswith("#")
         },
+        "robot_colours": {
+            "task": colours.TASKS,
+            "state": colours.STATES,
+            "load": colours.LOADS,
+        },
     }
 
 

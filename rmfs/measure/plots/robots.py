@@ -12,15 +12,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 STATES = {
-    "moving": ("driving", colours.ROBOT, ""),
-    "turning": ("turning", colours.FREE_STORAGE, "//"),
-    "riding": ("in an elevator", colours.ELEVATOR, ""),
-    "transfer": ("lifting, setting down", colours.REPLENISHMENT_STATION, ""),
-    "served": ("at a station", colours.PICK_STATION, ".."),
-    "waiting": ("waiting, queueing", colours.STORAGE, ""),
-    "idle": ("idle", "#FFFFFF", ""),
+    "moving": ("driving", "driving", ""),
+    "turning": ("turning", "turning", "//"),
+    "riding": ("in an elevator", "in an elevator", ""),
+    "transfer": ("lifting, setting down", "lifting, setting down", "xx"),
+    "served": ("at a station", "served", ".."),
+    "waiting": ("waiting, queueing", "waiting", ""),
+    "idle": ("idle", "idle", "oo"),
 }
-"""Label, colour and hatch of each state, from below to above."""
+"""Label, name of the colour, and hatch of each state, from below to above."""
 
 
 def robots(series: pd.DataFrame, ax: Axes) -> None:
@@ -29,7 +29,7 @@ def robots(series: pd.DataFrame, ax: Axes) -> None:
     areas = ax.stackplot(
         series["time_s"] / 3600.0,
         [series[f"robots_{state}"].to_numpy() for state in shown],
-        colors=[STATES[state][1] for state in shown],
+        colors=[colours.STATES[STATES[state][1]] for state in shown],
         labels=[STATES[state][0] for state in shown],
         edgecolor=colours.OUTLINE,
         linewidth=0.3,

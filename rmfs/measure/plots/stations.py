@@ -24,4 +24,4 @@ def stations(frame: pd.DataFrame, ax: Axes) -> None:
     ax.set_ylim(0, 100)
     ax.set_xlabel("station")
     ax.set_ylabel("busy (% of the time)")
-    ax.legend(loc="lower right")
+    ax.legend(loc="center left", bbox_to_anchor=(1, 0.5))

@@ -55,6 +55,8 @@ export interface Header {
   pod_radius_m: number;
   details: string[];
   colours: Record<string, string>;
+  /** Of robots, by the words for their tasks, states and loads. */
+  robot_colours: Record<"task" | "state" | "load", Record<string, string>>;
   live?: Live;
 }
 

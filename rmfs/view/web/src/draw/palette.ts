@@ -1,6 +1,7 @@
-/** Colours: those of the layout pictures, Okabe and Ito's for kinds, magma for amounts. */
+/** Colours: those that come with the run for kinds, magma for amounts. */
 
 import { Color, ColorManagement } from "three";
+import type { Header } from "../data/layout";
 import { STATES, TASKS } from "../data/robots";
 
 // colours reach the screen as they are written here: nothing is lit, so nothing is converted
@@ -8,20 +9,14 @@ ColorManagement.enabled = false;
 
 export type Theme = "light" | "dark";
 
-/** Kinds told apart by hue: the shades of Okabe and Ito, for all common kinds of colour vision. */
-export const TASK_COLOURS = ["#D55E00", "#F0E442", "#56B4E9", "#CC79A7", "#999999"];
-export const STATE_COLOURS = [
-  "#009E73",
-  "#56B4E9",
-  "#CC79A7",
-  "#7B3294",
-  "#E69F00",
-  "#D55E00",
-  "#F0E442",
-  "#999999",
-];
-export const LOAD_COLOURS = ["#009E73", "#0072B2"];
-export const LOADS = ["without pod", "with pod"];
+/** Robots are told apart by these words; their colours come with the run. */
+const KINDS = { task: TASKS, state: STATES, load: ["without pod", "with pod"] } as const;
+export type Kinds = keyof typeof KINDS;
+
+/** Returns the colours of robots, in the order in which tasks, states and loads are numbered. */
+export function robotColours({ robot_colours }: Header, kinds: Kinds): string[] {
+  return KINDS[kinds].map((word) => robot_colours[kinds][word]);
+}
 
 export const GROUND: Record<Theme, { back: string; floor: string; line: string; text: string }> = {
   light: { back: "#F4F5F7", floor: "#FFFFFF", line: "#D0D0D0", text: "#1B1F24" },
@@ -70,13 +65,7 @@ export interface Entry {
 }
 
 /** Returns what the colours of robots mean. */
-export function robotEntries(mode: string): Entry[] {
-  if (mode === "task") return entries(TASKS, TASK_COLOURS);
-  if (mode === "state") return entries(STATES, STATE_COLOURS);
-  if (mode === "load") return entries(LOADS, LOAD_COLOURS);
-  return [];
-}
-
-function entries(labels: readonly string[], colours: string[]): Entry[] {
-  return labels.map((label, i) => ({ label, colour: colours[i] }));
+export function robotEntries(header: Header, kinds: Kinds): Entry[] {
+  const colours = robotColours(header, kinds);
+  return KINDS[kinds].map((label, i) => ({ label, colour: colours[i] }));
 }

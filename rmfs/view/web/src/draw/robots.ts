@@ -13,11 +13,11 @@ import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 import { Piece, type Pose } from "../data/motion";
 import type { Run } from "../data/run";
 import { type Bodies, bodies } from "./bodies";
-import { amount, LOAD_COLOURS, STATE_COLOURS, TASK_COLOURS, type Theme } from "./palette";
+import { amount, type Kinds, robotColours, type Theme } from "./palette";
 import type { Placement } from "./placement";
 import { shaded, shadedMaterial } from "./shapes";
 
-export type RobotMode = "task" | "state" | "load" | "delay";
+export type RobotMode = Kinds | "delay";
 
 /** A delay of so many seconds, or more, has the strongest colour. */
 export const LONGEST_DELAY_S = 120;
@@ -47,7 +47,7 @@ export class RobotBodies {
   private readonly stood: Int32Array;
   private placement: Placement | undefined;
   private readonly colour = new Color();
-  private readonly kinds: Record<"task" | "state" | "load", Color[]>;
+  private readonly kinds: Record<Kinds, Color[]>;
 
   constructor(private readonly run: Run) {
     const { robotKind, header } = run.layout;
@@ -57,12 +57,8 @@ export class RobotBodies {
     this.noses = bodies(nose, new MeshBasicMaterial({ color: "#111111" }), robotKind.length);
     this.stood = new Int32Array(robotKind.length).fill(-1);
     this.group.add(this.bodies.mesh, this.noses.mesh);
-    const colours = (all: string[]) => all.map((hex) => new Color(hex));
-    this.kinds = {
-      task: colours(TASK_COLOURS),
-      state: colours(STATE_COLOURS),
-      load: colours(LOAD_COLOURS),
-    };
+    const colours = (kinds: Kinds) => robotColours(header, kinds).map((hex) => new Color(hex));
+    this.kinds = { task: colours("task"), state: colours("state"), load: colours("load") };
   }
 
   /** Puts all robots where they are; those that stand where they stood are not touched. */

@@ -136,7 +136,7 @@ export class App {
     listen(store, commands, tiers, end_s);
     const details = panel(store, panes);
     const course = charts(store, runs, end_s);
-    const colours = legend(store, runs[0].header.colours, () => this.range);
+    const colours = legend(store, runs[0].header, () => this.range);
     document.body.replaceChildren(
       toolbar(store, tiers, session.form ? { ...commands, start: () => this.start() } : commands),
       h("main", {}, ...panes.map(({ root }) => root)),

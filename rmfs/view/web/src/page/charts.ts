@@ -3,7 +3,7 @@
 import type { Course } from "../data/figures";
 import { TASKS } from "../data/robots";
 import type { Run } from "../data/run";
-import { GROUND, TASK_COLOURS, type Theme } from "../draw/palette";
+import { GROUND, robotColours, type Theme } from "../draw/palette";
 import { clock, h } from "./dom";
 import type { Store } from "./state";
 
@@ -102,6 +102,7 @@ function course(
 
 /** Makes a chart of how many robots of a run have which task. */
 function tasks(run: Run, name: string): Chart {
+  const colours = robotColours(run.header, "task");
   const tell = (time_s: number) => {
     const count = TASKS.map(() => 0);
     for (const steps of run.robots.tasks) count[steps.at(time_s * 1e6).kind]++;
@@ -109,11 +110,11 @@ function tasks(run: Run, name: string): Chart {
       .filter((kind) => count[kind] > 0)
       .map((kind) => {
         const patch = h("i", {});
-        patch.style.background = TASK_COLOURS[kind];
+        patch.style.background = colours[kind];
         return h("span", {}, patch, `${count[kind]} ${TASKS[kind]}`);
       });
   };
-  const draw: Chart["draw"] = (pen, frame, theme) => stacked(pen, frame, run, theme);
+  const draw: Chart["draw"] = (pen, frame, theme) => stacked(pen, frame, run, theme, colours);
   return chart(`Robots${name}`, draw, tell);
 }
 
@@ -154,7 +155,13 @@ function lines(
   });
 }
 
-function stacked(pen: CanvasRenderingContext2D, frame: Frame, run: Run, theme: Theme): void {
+function stacked(
+  pen: CanvasRenderingContext2D,
+  frame: Frame,
+  run: Run,
+  theme: Theme,
+  colours: string[],
+): void {
   const { robots, bin_us } = run.course();
   const most = run.motion.robots;
   axes(pen, frame, most, theme);
@@ -164,7 +171,7 @@ function stacked(pen: CanvasRenderingContext2D, frame: Frame, run: Run, theme: T
     let below = 0;
     TASKS.forEach((_, task) => {
       const count = robots[task][bin];
-      pen.fillStyle = TASK_COLOURS[task];
+      pen.fillStyle = colours[task];
       pen.fillRect(from, up((below + count) / most), to - from + 0.5, up(0) - up(count / most));
       below += count;
     });

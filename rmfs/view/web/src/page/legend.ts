@@ -1,6 +1,7 @@
 /** What the colours mean. */
 
 import { Color } from "three";
+import type { Header } from "../data/layout";
 import type { Range } from "../draw/heat";
 import { amount, type Entry, faint, robotEntries, type Theme } from "../draw/palette";
 import { AGE_S, POPULARITY } from "../draw/pods";
@@ -10,16 +11,16 @@ import type { Store } from "./state";
 
 export function legend(
   store: Store,
-  colours: Record<string, string>,
+  header: Header,
   heatRange: () => Range,
 ): { root: HTMLElement; update: () => void } {
   const root = h("section", { className: "legend" });
   const update = () => {
     const { robots, pods, heat, theme } = store.state;
+    const { colours } = header;
     const parts: HTMLElement[] = [h("h2", {}, "Legend")];
-    const named = robotEntries(robots);
     parts.push(h("h3", {}, `Robots by ${robots}`));
-    if (named.length > 0) parts.push(swatches(named));
+    if (robots !== "delay") parts.push(swatches(robotEntries(header, robots)));
     else parts.push(scale(theme, "0 s", `${LONGEST_DELAY_S} s or more waited in this task`));
     if (pods !== "plain") parts.push(h("h3", {}, `Pods by ${POD_WORDS[pods]}`));
     if (pods === "fill") parts.push(scale(theme, "0 %", "100 % of the space used"));
