@@ -92,7 +92,7 @@ def test_a_run_is_watched_paused_stepped_and_changed(
 
 
 def test_closing_the_page_lets_the_run_go_on(page: Any, started: Any, tmp_path: Path) -> None:
-    process, url = started(*RUN, "--out", "run", "--speed", "20", "--await-page")
+    process, url = started(*RUN, "--out", "run", "--speed", "50", "--await-page")
     show(page, url)
     page.click("#live-pause")
     page.goto("about:blank")

@@ -103,8 +103,7 @@ def test_every_choice_looks_different_and_has_a_legend(
         pictures.add(drawn(shown))
         legends.add(shown.text_content(".legend") + shown.inner_html(".legend"))
     assert len(pictures) == len(values)
-    # the theme changes the scales only
-    assert len(legends) == (1 if key == "theme" else len(values))
+    assert len(legends) == len(values)
 
 
 @pytest.mark.parametrize("key", ["paths", "zones"])
