@@ -5,125 +5,24 @@ from __future__ import annotations
 from math import isnan
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from rmfs.world.backlog import BundleBacklog, OrderBacklog
-from rmfs.world.inventory import Inventory, read_only
 from rmfs.world.orders import Order
-from rmfs.world.robots import Robot
-from rmfs.world.stations import PickStation, ReplenishmentStation
-from rmfs.world.storage import Storage
+from rmfs.world.state import WorldState
 from rmfs.world.tasks import Pick, Task, TaskKind
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from numpy.typing import NDArray
-
-    from rmfs.layout.model import Layout
-    from rmfs.scenario import SkuSet
     from rmfs.world.orders import Bundle, OrderLine
+    from rmfs.world.robots import Robot
+    from rmfs.world.stations import PickStation
 
 
-class World:
-    """A warehouse with its stock, its work and its robots.
+class World(WorldState):
+    """A warehouse and the operations that change it.
 
     Operations raise ValueError where they would break a rule (a pod claimed twice, a unit bound
     twice, a station overfilled); decisions have to respect these.
-
-    Parameters
-    ----------
-    layout
-        The warehouse at time zero.
-    skus
-        The K SKUs.
-
-    Attributes
-    ----------
-    now_s
-        Present simulated time.
-    inventory, storage
-        Stock on pods, and where the pods are.
-    orders, bundles
-        The two backlogs.
-    pick_stations, replenishment_stations
-        In the order of the layout; `stations` has both, in the common numbering.
-    need
-        Open units per pick station and SKU, shape (S, K).
-    queued_need
-        The same for queued orders, shape (S, K).
-    lines
-        Order lines per pick station and SKU, picked or not, shape (S, K): of the open orders there.
-    bundles_waiting
-        Assigned bundles not yet in a task, per replenishment station and pod, shape (S, P).
-    robots
-        By index.
-    asking, resting
-        Robots without task, in the order in which they became free, and robots at rest or on their
-        way there.
-    orders_created, orders_completed, bundles_created, bundles_stored, units_picked, units_stored
-        Counts since time zero.
-    units_initial
-        Units on the pods at time zero.
-    unstored_space
-        Space units of all bundles created and not yet stored.
-    order_redraws
-        How often an order was drawn anew because stock could not serve the first draw.
-    tasks_dropped
-        How many prepared tasks were impossible when their turn came.
     """
-
-    def __init__(self, layout: Layout, skus: SkuSet) -> None:
-        self.layout = layout
-        self.skus = skus
-        self.now_s = 0.0
-        tier: list[int] = layout.tier.tolist()
-        self.robots = [Robot(i, tier[w], w) for i, w in enumerate(layout.robot_waypoint.tolist())]
-        self.inventory = Inventory(
-            skus.space_per_unit, layout.pod_capacity, len(layout.pick_stations)
-        )
-        self.asking: dict[int, Robot] = dict(enumerate(self.robots))
-        self.resting: dict[int, Robot] = {}
-        self.storage = Storage(layout, self.robots)
-        for robot in self.robots:
-            self.storage.keep(robot, robot.waypoint)
-        self.orders = OrderBacklog()
-        self.bundles = BundleBacklog()
-        need = np.zeros((len(layout.pick_stations), len(skus)), np.int32)
-        queued_need = np.zeros_like(need)
-        self._lines = np.zeros_like(need)
-        waiting = np.zeros((len(layout.replenishment_stations), layout.pods), np.int32)
-        self.need: NDArray[np.int32] = read_only(need)
-        self.lines: NDArray[np.int32] = read_only(self._lines)
-        self.queued_need: NDArray[np.int32] = read_only(queued_need)
-        self.bundles_waiting: NDArray[np.int32] = read_only(waiting)
-        self.pick_stations = [
-            PickStation(i, station, tier[station.waypoint], need[i], queued_need[i])
-            for i, station in enumerate(layout.pick_stations)
-        ]
-        self.replenishment_stations = [
-            ReplenishmentStation(
-                len(self.pick_stations) + i, station, tier[station.waypoint], waiting[i]
-            )
-            for i, station in enumerate(layout.replenishment_stations)
-        ]
-        self.stations: list[PickStation | ReplenishmentStation] = [
-            *self.pick_stations,
-            *self.replenishment_stations,
-        ]
-        self.tasks_dropped = 0
-        self.orders_created = 0
-        self.order_redraws = 0
-        self.orders_completed = 0
-        self.bundles_created = 0
-        self.bundles_stored = 0
-        self.units_picked = 0
-        self.units_stored = 0
-        self.unstored_space = 0.0
-        self.orders_short = 0
-        self._incoming = np.zeros(len(skus), np.int64)
-        self.incoming: NDArray[np.int64] = read_only(self._incoming)
-        self.units_initial = 0
 
     # --- stock and work that appear ---------------------------------------------------------
 
@@ -500,18 +399,3 @@ class World:
         self._incoming[bundle.sku] -= bundle.units
         self.units_stored += bundle.units
         return bundle
-
-    # --- questions ------------------------------------------------------------------------------
-
-    def replenishment_station(self, station: int) -> ReplenishmentStation:
-        """Look up a replenishment station by its number among all stations."""
-        return self.replenishment_stations[station - len(self.pick_stations)]
-
-    @property
-    def load(self) -> float:
-        """Space units stored, on their way into pods, and waiting; each bundle counts once."""
-        return self.inventory.stored_space + self.unstored_space
-
-    def is_pick_station(self, station: int) -> bool:
-        """Whether a station in the common numbering is a pick station."""
-        return station < len(self.pick_stations)
