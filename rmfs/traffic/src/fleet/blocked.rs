@@ -1,6 +1,7 @@
 //! Robots that want to drive and have found no way: they stay parked and try again.
 
 use std::cmp::Reverse;
+use std::time::Instant;
 
 use crate::network::NONE;
 use crate::robot::{Phase, Step};
@@ -63,9 +64,11 @@ impl Fleet {
         let Fleet { network, kinds, robots, table, pathfinder, costs, .. } = self;
         let state = &robots[robot as usize];
         let rests_well = network.storage[state.anchor as usize] || state.place.is_some();
-        if !state.moves.is_empty() || rests_well {
+        // a grid map has no storage places: there is nowhere to look
+        if !state.moves.is_empty() || rests_well || !network.storage.contains(&true) {
             return;
         }
+        let begun = Instant::now();
         for held in &state.held {
             table.remove(held.resource, robot);
         }
@@ -81,7 +84,9 @@ impl Fleet {
             end: End::ForGood,
             times: None,
         };
-        match pathfinder.search(network, table, &query) {
+        let found = pathfinder.search(network, table, &query);
+        self.counters.planning += begun.elapsed();
+        match found {
             Outcome::Found(moves) => {
                 self.counters.replans += 1;
                 self.adopt(robot, 0, moves);

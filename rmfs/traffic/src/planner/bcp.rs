@@ -34,25 +34,30 @@ impl Planner for Bcp {
     fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
         let times = draft::times(scene, agents);
         let mut dearer = vec![BTreeMap::new(); agents.len()];
-        let mut answers = Vec::new();
-        for _ in 0..self.rounds {
-            let mut is_free = true;
-            draft::block(scene, agents, &mut self.table);
-            agents.iter().for_each(|agent| self.hold_start(scene, agent));
-            answers.clear();
-            for (index, agent) in agents.iter().enumerate() {
-                let (answer, clash) = self.plan_one(scene, agent, &times[index], &dearer[index]);
-                answers.push(answer);
-                if let Some(clash) = clash {
-                    is_free = false;
-                    let pace = scene.costs.models[agent.kind as usize].pace;
-                    *dearer[index].entry(clash.node).or_insert(0) += (self.bias * pace) as Us;
-                }
-            }
-            if is_free {
+        let mut ways: Vec<Option<Vec<Move>>> = Vec::new();
+        for (agent, times) in agents.iter().zip(&times) {
+            ways.push(quickest(scene, agent, times, &BTreeMap::new()));
+        }
+        let mut clashes = self.clashes(scene, agents, &ways);
+        for _ in 1..self.rounds {
+            if clashes.is_empty() {
                 break;
             }
+            // the ways of all others are as they were
+            for (index, clash) in clashes {
+                let agent = &agents[index];
+                self.make_dearer(scene, agent, &clash, &mut dearer[index]);
+                ways[index] = quickest(scene, agent, &times[index], &dearer[index]);
+            }
+            clashes = self.clashes(scene, agents, &ways);
         }
+        for (index, clash) in clashes {
+            let Some(way) = &ways[index] else { continue };
+            if let Some(stopping) = stop_before(scene, &agents[index], way, &clash, &times[index]) {
+                ways[index] = Some(stopping);
+            }
+        }
+        let mut answers: Vec<Answer> = ways.into_iter().map(Answer::of).collect();
         self.deadlocks.resolve(scene, agents, &mut answers);
         answers
     }
@@ -70,28 +75,53 @@ impl Bcp {
         }
     }
 
-    /// The way of one agent, reserved if it is free; else where it clashes, with a stop before.
-    fn plan_one(
+    /// Reserves one way after the other, as far as they are free; the agents whose ways are not, and
+    /// where those clash.
+    fn clashes(
         &mut self,
-        scene: &Scene,
-        agent: &Agent,
-        times: &[u32],
-        dearer: &BTreeMap<u32, Us>,
-    ) -> (Answer, Option<Clash>) {
-        let penalty = |node: u32| Some(dearer.get(&node).copied().unwrap_or(0));
-        let Some(moves) = draft::way(scene, agent, &[], agent.ready, times, penalty) else {
-            return (Answer::NoWay, None);
-        };
-        let Some(clash) = draft::clash(scene, &self.table, agent, &moves) else {
-            for held in draft::occupied(scene, agent, &moves, FOREVER) {
+        scene: &mut Scene,
+        agents: &[Agent],
+        ways: &[Option<Vec<Move>>],
+    ) -> Vec<(usize, Clash)> {
+        draft::block(scene, agents, &mut self.table);
+        agents.iter().for_each(|agent| self.hold_start(scene, agent));
+        let mut found = Vec::new();
+        for (index, (agent, way)) in agents.iter().zip(ways).enumerate() {
+            let Some(moves) = way else { continue };
+            if let Some(clash) = draft::clash(scene, &self.table, agent, moves) {
+                found.push((index, clash));
+                continue;
+            }
+            for held in draft::occupied(scene, agent, moves, FOREVER) {
                 let interval = Interval { start: held.start, end: held.end, robot: agent.robot };
                 self.table.cover(held.resource, interval);
             }
-            return (Answer::Way(moves), None);
-        };
-        let stopping = stop_before(scene, agent, &moves, &clash, times);
-        (Answer::Way(stopping.unwrap_or(moves)), Some(clash))
+        }
+        found
     }
+
+    /// Makes the waypoint where an agent clashes dearer for it.
+    fn make_dearer(
+        &self,
+        scene: &Scene,
+        agent: &Agent,
+        clash: &Clash,
+        dearer: &mut BTreeMap<u32, Us>,
+    ) {
+        let pace = scene.costs.models[agent.kind as usize].pace;
+        *dearer.entry(clash.node).or_insert(0) += (self.bias * pace) as Us;
+    }
+}
+
+/// The quickest way of an agent that pays for what clashes.
+fn quickest(
+    scene: &Scene,
+    agent: &Agent,
+    times: &[u32],
+    dearer: &BTreeMap<u32, Us>,
+) -> Option<Vec<Move>> {
+    let penalty = |node: u32| Some(dearer.get(&node).copied().unwrap_or(0));
+    draft::way(scene, agent, &[], agent.ready, times, penalty)
 }
 
 /// The way with a stop before the waypoint where it clashes, or `None` if that is its next one.
