@@ -24,7 +24,7 @@ def test_the_two_commands_are_named() -> None:
 
 
 def test_the_python_experiment_is_the_one_on_the_command_line() -> None:
-    (command,) = [line for block in blocks("sh") for line in block.splitlines() if " run " in line]
+    command, *_ = [line for block in blocks("sh") for line in block.splitlines() if " run " in line]
     (code,) = blocks("python")
     settings = re.findall(r"--set (\S+)=(\S+)", command)
     assert settings == [
