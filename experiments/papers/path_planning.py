@@ -51,7 +51,7 @@ class Instance:
     seeds
         Of all methods that are not slow.
     slow
-        Methods that take minutes for an hour, and how many seeds they get.
+        Methods that take minutes for an hour, and how many seeds they get; 0 leaves one out.
     riding
         Whether pods may be stored on other tiers, so that robots ride elevators; RAWSim-O's rule
         keeps them where they are if it can, and so do ours.
@@ -182,7 +182,7 @@ def finished(given: argparse.Namespace, instance: Instance) -> Study:
     """Run all methods on an instance, each with its number of seeds."""
     given.reference_layout = instance.reference
     studies = []
-    for seeds in sorted({instance.seeds, *instance.slow.values()}):
+    for seeds in sorted({instance.seeds, *instance.slow.values()} - {0}):
         studies.append(
             done(
                 given,
