@@ -33,4 +33,6 @@ class PlannerSettings(NamedTuple):
     code: PathPlanner | None = None
 
 
-TIME_WINDOWS = PlannerSettings("time-windows", {"labels": EXPANSION_BUDGET, "improve_labels": 0})
+TIME_WINDOWS = PlannerSettings(
+    "time-windows", {"labels": EXPANSION_BUDGET, "improve_labels": 0, "swift": 0}
+)

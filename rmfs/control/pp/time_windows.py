@@ -15,6 +15,8 @@ class TimeWindowsParameters(Parameters):
     """Labels a search may look at before the robot waits until all planned motion is over."""
     improve_labels: int = pydantic.Field(0, ge=0)
     """Labels for each robot when a late plan and those in front of it are made anew; 0: never."""
+    swift: bool = False
+    """For big fleets: ways that may be a little later than the earliest, found much sooner."""
 
 
 class TimeWindows(PathPlanning[TimeWindowsParameters]):

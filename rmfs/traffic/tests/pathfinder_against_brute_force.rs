@@ -226,6 +226,7 @@ fn compare(seed: u64, cases: usize, floors: usize) -> (u32, u32) {
             model: &model,
             budget: u64::MAX,
             end: End::ForGood,
+            detour: FOREVER,
             times: None,
         };
         let world = World { network: &network, table: &table };
@@ -265,6 +266,7 @@ fn bounds_never_exceed_the_time_on_an_empty_network() {
                 model: &model,
                 budget: u64::MAX,
                 end: End::ForGood,
+                detour: FOREVER,
                 times: None,
             };
             let bound = times[network.index(start, 0)];

@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::network::NONE;
 use crate::robot::{Phase, Step};
 use crate::search::{End, Outcome, Query};
-use crate::units::Us;
+use crate::units::{FOREVER, Us};
 
 use super::{Due, Fleet};
 
@@ -82,6 +82,7 @@ impl Fleet {
             model: &costs.models[state.kind as usize],
             budget: self.budget,
             end: End::ForGood,
+            detour: FOREVER,
             times: None,
         };
         let found = pathfinder.search(network, table, &query);

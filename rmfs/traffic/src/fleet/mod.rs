@@ -151,7 +151,9 @@ impl Fleet {
         with_trace: bool,
     ) -> Result<Self, String> {
         let (per_leg, rolling): (Box<dyn Planner>, _) = match Rolling::of(planner, robots.len()) {
-            Ok(rolling) => (Box::new(TimeWindows { budget, improvement: 0 }), Some(rolling)),
+            Ok(rolling) => {
+                (Box::new(TimeWindows { budget, improvement: 0, swift: false }), Some(rolling))
+            }
             Err(per_leg) => (per_leg, None),
         };
         let mut fleet = Self {

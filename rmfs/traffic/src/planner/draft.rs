@@ -66,6 +66,7 @@ pub fn search(
         model: &scene.costs.models[agent.kind as usize],
         budget: labels,
         end,
+        detour: FOREVER,
         times: Some(times),
     };
     match scene.pathfinder.search(scene.network, table, &query) {

@@ -4,7 +4,7 @@
 use crate::reservations::Table;
 use crate::robot::Held;
 use crate::search::{End, Move, Query, Stop};
-use crate::units::Us;
+use crate::units::{FOREVER, Us};
 
 use super::{Agent, Scene, draft};
 
@@ -70,6 +70,7 @@ impl Partial {
             model: &scene.costs.models[agent.kind as usize],
             budget: 1,
             end: End::Arrival,
+            detour: FOREVER,
             times: Some(times),
         };
         let mut stops = scene.pathfinder.next_stops(scene.network, table, &query, slack);

@@ -70,6 +70,7 @@ pub fn build(settings: &Settings, network: &Network) -> Result<Box<dyn Planner>,
         "time-windows" => Box::new(TimeWindows {
             budget: settings.count("labels")?,
             improvement: settings.count("improve_labels").unwrap_or(0),
+            swift: settings.switch("swift")?,
         }),
         "whca-v" => Box::new(WhcaVolatile {
             rhythm: settings.rhythm()?,

@@ -22,7 +22,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use crate::backward::Backward;
-use crate::costs::{Model, UNREACHABLE};
+use crate::costs::{Model, time};
 use crate::kinematics::Kind;
 use crate::network::{NONE, Network};
 use crate::reservations::{Table, Windows};
@@ -75,6 +75,8 @@ pub struct Query<'a> {
     /// Labels that may be looked at.
     pub budget: u64,
     pub end: End,
+    /// How much later than unhindered, or than the goal is free, an arrival is still of use.
+    pub detour: Us,
     /// Exact unhindered times to the goal, as [`crate::costs::Table`]; searched for if not given.
     pub times: Option<&'a [u32]>,
 }
@@ -161,12 +163,47 @@ impl Pathfinder {
     pub fn search(&mut self, network: &Network, table: &Table, query: &Query) -> Outcome {
         for (weight, labels) in STAGES {
             let budget = query.budget.min(labels);
-            let outcome = Search::new(self, network, table, query, weight).run(budget);
+            if self.aim(network, query).is_none() {
+                return Outcome::NoWay;
+            }
+            let outcome = self.seek(network, table, query, weight, budget);
             if outcome != Outcome::OutOfBudget || budget == query.budget {
                 return outcome;
             }
         }
         Outcome::OutOfBudget
+    }
+
+    /// Prepares for searches from the query's start to its goal. Returns the time of the way if
+    /// nobody else were there, or `None` if there is no way.
+    pub fn aim(&mut self, network: &Network, query: &Query) -> Option<Us> {
+        let Query { start, heading, goal, loaded, model, .. } = *query;
+        if goal == NONE {
+            return Some(0);
+        }
+        if let Some(times) = query.times {
+            return time(times[network.index(start, heading)]);
+        }
+        let guide = &mut self.guide;
+        guide.begin(network, model, goal, loaded, Some(start));
+        while !guide.knows(network, start, heading) {
+            let reach = guide.reach().saturating_add(GUIDE_STEP);
+            guide.advance(network, model, reach);
+        }
+        time(guide.to_go(network, start, heading))
+    }
+
+    /// Searches with one weight (in quarters: 4 finds the earliest arrival) and so many labels, after
+    /// [`Pathfinder::aim`] with the same start, goal and load.
+    pub fn seek(
+        &mut self,
+        network: &Network,
+        table: &Table,
+        query: &Query,
+        weight: Us,
+        labels: u64,
+    ) -> Outcome {
+        Search::new(self, network, table, query, weight).run(labels)
     }
 
     /// Time of the way just searched for, without given times, if nobody else were there.
@@ -185,6 +222,8 @@ struct Search<'a> {
     weight: Us,
     /// Nobody reaches the goal for good before this.
     goal_free: Us,
+    /// Arrivals after this are of no use.
+    latest: Us,
     /// Nobody who is still where only elevators lead to the goal reaches it before this.
     lift_free: Us,
 }
@@ -205,7 +244,7 @@ impl<'a> Search<'a> {
         } else {
             table.row(network.resource[query.goal as usize]).last().map_or(0, |last| last.end)
         };
-        Self { memory, network, table, query, weight, goal_free, lift_free: 0 }
+        Self { memory, network, table, query, weight, goal_free, latest: FOREVER, lift_free: 0 }
     }
 
     fn run(&mut self, budget: u64) -> Outcome {
@@ -214,8 +253,12 @@ impl<'a> Search<'a> {
         let Some((from, until)) = self.table.gap_at(start, query.ready) else {
             return Outcome::NoWay;
         };
-        if query.goal != NONE && (self.goal_free == FOREVER || !self.guide_from_start()) {
+        if self.goal_free == FOREVER {
             return Outcome::NoWay;
+        }
+        if query.detour < FOREVER {
+            let unhindered = self.to_go(query.start, query.heading).unwrap_or(0);
+            self.latest = (query.ready + unhindered).max(self.goal_free) + query.detour;
         }
         if query.goal != NONE {
             // with an eye on speed, what leads to the ride at once comes first
@@ -321,31 +364,16 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Starts the unhindered search back from the goal. Returns whether there is a way at all.
-    fn guide_from_start(&mut self) -> bool {
-        let Query { start, heading, goal, loaded, model, .. } = *self.query;
-        if self.query.times.is_some() {
-            return self.to_go(start, heading).is_some();
-        }
-        let guide = &mut self.memory.guide;
-        guide.begin(self.network, model, goal, loaded, Some(start));
-        while !guide.knows(self.network, start, heading) {
-            let reach = guide.reach().saturating_add(GUIDE_STEP);
-            guide.advance(self.network, model, reach);
-        }
-        self.to_go(start, heading).is_some()
-    }
-
     /// Lower bound of the time from rest to the goal, or `None` if there is no way.
     fn to_go(&self, node: u32, heading: u8) -> Option<Us> {
         if self.query.goal == NONE {
             return Some(0);
         }
-        let time = match self.query.times {
+        let entry = match self.query.times {
             Some(times) => times[self.network.index(node, heading)],
             None => self.memory.guide.to_go(self.network, node, heading),
         };
-        (time != UNREACHABLE).then_some(Us::from(time))
+        time(entry)
     }
 
     /// Total time over a label: when it is reached, and a (weighted) bound of the rest.
@@ -378,6 +406,9 @@ impl<'a> Search<'a> {
     /// Adds a label unless a known one is at least as good.
     fn offer(&mut self, mut label: Label) {
         let Some(to_go) = self.to_go(label.node, label.heading) else { return };
+        if label.arrival + to_go > self.latest {
+            return;
+        }
         let estimate = self.estimate(label.node, label.arrival, to_go);
         let stays = self.waits_until(&label).map(|end| self.estimate(label.node, end, to_go));
         let memory = &mut *self.memory;

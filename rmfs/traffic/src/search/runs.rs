@@ -28,9 +28,11 @@ impl Search<'_> {
             here = (next, here.1 + length);
             self.memory.line.push(here);
             if let Some(to_go) = self.to_go(next, heading) {
-                let estimate =
-                    self.estimate(next, ready + Us::from(self.query.model.run(here.1)), to_go);
-                if estimate > upto {
+                let arrival = ready + Us::from(self.query.model.run(here.1));
+                let estimate = self.estimate(next, arrival, to_go);
+                if arrival + to_go > self.latest {
+                    // of no use, now or later
+                } else if estimate > upto {
                     beyond = beyond.min(estimate);
                 } else if estimate > label.scanned
                     && (label.until < FOREVER || self.is_useful_stop(next, heading))
