@@ -33,6 +33,9 @@ pub struct Backward {
     loaded: bool,
     columns: Vec<Bound>,
     rows: Vec<Bound>,
+    /// Lower bounds of the time to the goal by column and by row; empty: not used.
+    columns_to_go: Vec<Bound>,
+    rows_to_go: Vec<Bound>,
     /// Times with their stamps of states that nobody comes to, so that they are only values.
     straight: Vec<(u32, u32)>,
     walk: Vec<(u32, f64)>,
@@ -51,6 +54,8 @@ impl Backward {
             loaded: false,
             columns: Vec::new(),
             rows: Vec::new(),
+            columns_to_go: Vec::new(),
+            rows_to_go: Vec::new(),
             straight,
             walk: Vec::new(),
         }
@@ -66,7 +71,9 @@ impl Backward {
         start: Option<u32>,
     ) {
         (self.goal, self.loaded) = (goal, loaded);
-        self.prepare_bounds(network, model, start);
+        let led = start.filter(|_| network.axis_parallel);
+        bounds(network, model, led, &mut self.columns, &mut self.rows);
+        self.columns_to_go.clear();
         self.queue.clear();
         for heading in 0..self.headings as u8 {
             self.queue.improve(network.index(goal, heading) * 2, 0, 0);
@@ -98,19 +105,22 @@ impl Backward {
         }
     }
 
-    /// Prepares the bounds: a way covers its extent in x and in y, in a run each at least.
-    fn prepare_bounds(&mut self, network: &Network, model: &Model, start: Option<u32>) {
-        let led = start.filter(|_| network.axis_parallel);
-        let bounds = |places: &[f64], at: Option<f64>, into: &mut Vec<Bound>| {
-            into.clear();
-            into.extend(places.iter().map(|place| match at {
-                Some(at) => Bound::of(model, (place - at).abs()),
-                None => Bound::default(),
-            }));
-        };
-        let position = led.map(|node| network.position(node));
-        bounds(&network.columns, position.map(|p| p.0), &mut self.columns);
-        bounds(&network.rows, position.map(|p| p.1), &mut self.rows);
+    /// Bounds times not known by straight lines to the goal, too. Returns whether that can be done.
+    pub fn bound_to_goal(&mut self, network: &Network, model: &Model) -> bool {
+        if network.axis_parallel {
+            let (columns, rows) = (&mut self.columns_to_go, &mut self.rows_to_go);
+            bounds(network, model, Some(self.goal), columns, rows);
+        }
+        network.axis_parallel
+    }
+
+    /// The least time in which straight lines lead from a waypoint to the goal, if that is used.
+    fn straight_to_goal(&self, network: &Network, node: u32) -> u32 {
+        if self.columns_to_go.is_empty() {
+            return 0;
+        }
+        let (column, row) = (network.column[node as usize], network.row[node as usize]);
+        self.columns_to_go[column as usize].at_rest + self.rows_to_go[row as usize].at_rest
     }
 
     /// Lower bound of the time from rest at (waypoint, heading) to the goal; exact where the search
@@ -125,7 +135,7 @@ impl Backward {
         if self.queue.exhausted() {
             return known;
         }
-        known.min(settled.saturating_sub(bound))
+        known.min(settled.saturating_sub(bound).max(self.straight_to_goal(network, node)))
     }
 
     /// Whether [`Backward::to_go`] cannot get any better for this state.
@@ -237,4 +247,25 @@ impl Backward {
             self.queue.improve(state, cost, total);
         }
     }
+}
+
+/// Prepares bounds of the times from a waypoint: a way covers its extent in x and in y, in a run each
+/// at least. Without a waypoint they are 0.
+fn bounds(
+    network: &Network,
+    model: &Model,
+    from: Option<u32>,
+    columns: &mut Vec<Bound>,
+    rows: &mut Vec<Bound>,
+) {
+    let position = from.map(|node| network.position(node));
+    let along = |places: &[f64], at: Option<f64>, into: &mut Vec<Bound>| {
+        into.clear();
+        into.extend(places.iter().map(|place| match at {
+            Some(at) => Bound::of(model, (place - at).abs()),
+            None => Bound::default(),
+        }));
+    };
+    along(&network.columns, position.map(|p| p.0), columns);
+    along(&network.rows, position.map(|p| p.1), rows);
 }

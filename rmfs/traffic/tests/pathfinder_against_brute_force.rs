@@ -6,7 +6,7 @@ use _core::costs::Model;
 use _core::kinematics::Kind;
 use _core::network::{Lift, Network, Plan};
 use _core::reservations::{Interval, Table};
-use _core::search::{End, Outcome, Pathfinder, Query};
+use _core::search::{End, Guide, Outcome, Pathfinder, Query};
 use _core::units::{FOREVER, Us, ceil_us, floor_us};
 
 struct Random(u64);
@@ -227,6 +227,7 @@ fn compare(seed: u64, cases: usize, floors: usize) -> (u32, u32) {
             budget: u64::MAX,
             end: End::ForGood,
             detour: FOREVER,
+            guide: Guide::Exact,
             times: None,
         };
         let world = World { network: &network, table: &table };
@@ -267,6 +268,7 @@ fn bounds_never_exceed_the_time_on_an_empty_network() {
                 budget: u64::MAX,
                 end: End::ForGood,
                 detour: FOREVER,
+                guide: Guide::Exact,
                 times: None,
             };
             let bound = times[network.index(start, 0)];

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::network::NONE;
 use crate::robot::{Phase, Step};
-use crate::search::{End, Outcome, Query};
+use crate::search::{End, Guide, Outcome, Query};
 use crate::units::{FOREVER, Us};
 
 use super::{Due, Fleet};
@@ -83,6 +83,7 @@ impl Fleet {
             budget: self.budget,
             end: End::ForGood,
             detour: FOREVER,
+            guide: Guide::Exact,
             times: None,
         };
         let found = pathfinder.search(network, table, &query);

@@ -9,7 +9,7 @@ use crate::network::NONE;
 use crate::reservations::{Interval, Table};
 use crate::robot::{Held, occupation};
 use crate::route::{Leg, route};
-use crate::search::{End, Move, Outcome, Query};
+use crate::search::{End, Guide, Move, Outcome, Query};
 use crate::units::{FOREVER, Us};
 
 use super::{Agent, Scene};
@@ -67,6 +67,7 @@ pub fn search(
         budget: labels,
         end,
         detour: FOREVER,
+        guide: Guide::Exact,
         times: Some(times),
     };
     match scene.pathfinder.search(scene.network, table, &query) {

@@ -3,7 +3,7 @@
 
 use crate::reservations::Table;
 use crate::robot::Held;
-use crate::search::{End, Move, Query, Stop};
+use crate::search::{End, Guide, Move, Query, Stop};
 use crate::units::{FOREVER, Us};
 
 use super::{Agent, Scene, draft};
@@ -71,6 +71,7 @@ impl Partial {
             budget: 1,
             end: End::Arrival,
             detour: FOREVER,
+            guide: Guide::Exact,
             times: Some(times),
         };
         let mut stops = scene.pathfinder.next_stops(scene.network, table, &query, slack);

@@ -1,6 +1,6 @@
 //! Prioritised planning over continuous time windows: first come, first served, and complete.
 
-use crate::search::{End, Move, Outcome, Query};
+use crate::search::{End, Guide, Move, Outcome, Query};
 use crate::units::{FOREVER, Us};
 
 use super::{Agent, Answer, Planner, Rhythm, Scene};
@@ -25,6 +25,9 @@ const LATER: (Us, u64) = (6, 200);
 /// Swift: by how much the first of them is later; each further one by twice as much.
 const FIRST_WAIT: Us = 5_000_000;
 
+/// Swift: of ways so much longer than the best the unhindered times are not searched for.
+const NEAR: Us = 3_000_000;
+
 /// Swift: how late a plan may be that need not be, and labels for it.
 const TRY: (Us, u64) = (20_000_000, 100);
 
@@ -41,6 +44,11 @@ impl TimeWindows {
             budget: self.budget.min(agent.effort),
             end: End::ForGood,
             detour: FOREVER,
+            guide: if self.swift {
+                Guide::Near(NEAR)
+            } else {
+                Guide::Exact
+            },
             times: None,
         };
         let Scene { network, table, pathfinder, .. } = scene;

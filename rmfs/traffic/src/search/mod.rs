@@ -22,7 +22,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use crate::backward::Backward;
-use crate::costs::{Model, time};
+use crate::costs::{Model, UNREACHABLE, time};
 use crate::kinematics::Kind;
 use crate::network::{NONE, Network};
 use crate::reservations::{Table, Windows};
@@ -60,6 +60,16 @@ pub enum End {
     WindowForGood(Us),
 }
 
+/// Of which labels the unhindered times are searched for, before they are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Guide {
+    /// Of all.
+    Exact,
+    /// Of those over which a way is at most so much longer than the best; of others straight lines
+    /// to the goal tell how far it is at least.
+    Near(Us),
+}
+
 /// What a robot wants.
 #[derive(Clone, Debug)]
 pub struct Query<'a> {
@@ -77,6 +87,7 @@ pub struct Query<'a> {
     pub end: End,
     /// How much later than unhindered, or than the goal is free, an arrival is still of use.
     pub detour: Us,
+    pub guide: Guide,
     /// Exact unhindered times to the goal, as [`crate::costs::Table`]; searched for if not given.
     pub times: Option<&'a [u32]>,
 }
@@ -133,6 +144,8 @@ pub struct Pathfinder {
     newest: Vec<(u32, u32)>,
     stamp: u32,
     guide: Backward,
+    /// How far the guide may go: up to which total time ways are known.
+    guided_to: u32,
     stable: Windows,
     windows: Windows,
     line: Vec<(u32, f64)>,
@@ -149,6 +162,7 @@ impl Pathfinder {
             newest: vec![(0, NONE); network.nodes * network.heading_count()],
             stamp: 0,
             guide: Backward::new(network),
+            guided_to: UNREACHABLE,
             stable: Vec::new(),
             windows: Vec::new(),
             line: Vec::new(),
@@ -190,7 +204,14 @@ impl Pathfinder {
             let reach = guide.reach().saturating_add(GUIDE_STEP);
             guide.advance(network, model, reach);
         }
-        time(guide.to_go(network, start, heading))
+        let unhindered = guide.to_go(network, start, heading);
+        self.guided_to = match query.guide {
+            Guide::Near(slack) if guide.bound_to_goal(network, model) => {
+                unhindered.saturating_add(slack as u32)
+            }
+            _ => UNREACHABLE,
+        };
+        time(unhindered)
     }
 
     /// Searches with one weight (in quarters: 4 finds the earliest arrival) and so many labels, after
@@ -390,7 +411,9 @@ impl<'a> Search<'a> {
         if self.query.goal == NONE || self.query.times.is_some() {
             return None;
         }
-        while !self.memory.guide.knows(self.network, label.node, label.heading) {
+        while self.memory.guide.reach() < self.memory.guided_to
+            && !self.memory.guide.knows(self.network, label.node, label.heading)
+        {
             let reach = self.memory.guide.reach().saturating_add(GUIDE_STEP);
             self.memory.guide.advance(self.network, self.query.model, reach);
             let to_go = self.to_go(label.node, label.heading);
