@@ -24,6 +24,18 @@ impl Bound {
     }
 }
 
+/// How robots can come to rest at a waypoint with a heading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Arrival {
+    /// Not by driving.
+    Never,
+    /// From storage places only: loaded robots on the first run of their way.
+    FromStorage,
+    FromAisle,
+    /// Perhaps by elevator.
+    OverLift,
+}
+
 /// Resumable backward search from a goal, led towards a start if there is one.
 #[derive(Debug)]
 pub struct Backward {
@@ -31,6 +43,9 @@ pub struct Backward {
     headings: usize,
     goal: u32,
     loaded: bool,
+    start: Option<u32>,
+    /// How robots come to rest at an index of (waypoint, heading).
+    arrivals: Vec<Arrival>,
     columns: Vec<Bound>,
     rows: Vec<Bound>,
     /// Lower bounds of the time to the goal by column and by row; empty: not used.
@@ -47,11 +62,18 @@ impl Backward {
         let headings = network.heading_count();
         let queue = Buckets::new(network.nodes * headings * 2);
         let straight = vec![(0, UNREACHABLE); network.nodes * headings];
+        let arrivals = (0..network.nodes as u32)
+            .flat_map(|node| {
+                (0..headings as u8).map(move |heading| arrival(network, node, heading))
+            })
+            .collect();
         Self {
             queue,
             headings,
             goal: 0,
             loaded: false,
+            start: None,
+            arrivals,
             columns: Vec::new(),
             rows: Vec::new(),
             columns_to_go: Vec::new(),
@@ -70,7 +92,7 @@ impl Backward {
         loaded: bool,
         start: Option<u32>,
     ) {
-        (self.goal, self.loaded) = (goal, loaded);
+        (self.goal, self.loaded, self.start) = (goal, loaded, start);
         let led = start.filter(|_| network.axis_parallel);
         bounds(network, model, led, &mut self.columns, &mut self.rows);
         self.columns_to_go.clear();
@@ -217,20 +239,35 @@ impl Backward {
 
     /// The robot is at rest with any heading, turns and starts a run of known cost.
     fn start_here(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
-        let is_lift = network.is_lift(node);
         for before in 0..self.headings as u8 {
             let cost = cost + model.turning(before, heading);
             let index = network.index(node, before);
-            // nobody stops to go straight on, or arrives in a direction that no edge has, but for
-            // those who come by elevator
-            let comes = before != heading && !network.behind(node, before).is_empty();
-            if comes || is_lift {
+            if self.comes(network, node, before, heading) {
                 self.offer(network, node, before, 0, cost);
             } else {
                 let known = &mut self.straight[index];
                 if known.0 != self.queue.stamp || cost < known.1 {
                     *known = (self.queue.stamp, cost);
                 }
+            }
+        }
+    }
+
+    /// Whether somebody on a quickest way may come to rest at a waypoint with the heading `before` to
+    /// drive on with another: nobody stops to go straight on or back where he came from, or arrives
+    /// in a direction that no edge has, but for those who come by elevator.
+    fn comes(&self, network: &Network, node: u32, before: u8, heading: u8) -> bool {
+        match self.arrivals[network.index(node, before)] {
+            Arrival::Never => false,
+            Arrival::OverLift => true,
+            _ if before == heading || network.opposite(before) == Some(heading) => false,
+            Arrival::FromAisle => true,
+            Arrival::FromStorage => {
+                // a loaded robot leaves no storage place but the one where it starts
+                let start = self.start.filter(|_| self.loaded);
+                start.is_none_or(|start| {
+                    network.ahead(start, before).is_some_and(|(next, _)| next == node)
+                })
             }
         }
     }
@@ -268,4 +305,17 @@ fn bounds(
     };
     along(&network.columns, position.map(|p| p.0), columns);
     along(&network.rows, position.map(|p| p.1), rows);
+}
+
+fn arrival(network: &Network, node: u32, heading: u8) -> Arrival {
+    let before = network.behind(node, heading);
+    if network.is_lift(node) {
+        Arrival::OverLift
+    } else if before.is_empty() {
+        Arrival::Never
+    } else if before.iter().all(|&(from, _)| network.storage[from as usize]) {
+        Arrival::FromStorage
+    } else {
+        Arrival::FromAisle
+    }
 }

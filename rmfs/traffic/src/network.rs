@@ -1,6 +1,6 @@
 //! The waypoint graph as the planner sees it: straight lines by heading, zones and shared resources.
 
-use crate::units::{MicroTurn, Us, heading_of};
+use crate::units::{MicroTurn, TURN, Us, heading_of};
 
 /// "No waypoint", "no zone".
 pub const NONE: u32 = u32::MAX;
@@ -41,6 +41,8 @@ pub struct Network {
     pub nodes: usize,
     /// Distinct headings, ascending.
     pub headings: Vec<MicroTurn>,
+    /// The heading back, by heading.
+    opposite: Vec<Option<u8>>,
     /// Waypoint reached from `v` in direction `h`: `next[v * H + h]`.
     next: Vec<u32>,
     /// Length of that edge in metres.
@@ -121,6 +123,7 @@ impl Network {
         }
         Ok(Self {
             nodes,
+            opposite: opposites(&headings),
             headings,
             next,
             length,
@@ -153,6 +156,11 @@ impl Network {
     /// Whether a heading points along x (or against it); only if `axis_parallel`.
     pub fn along_x(&self, heading: u8) -> bool {
         self.headings[heading as usize] % 500_000 == 0
+    }
+
+    /// The heading back where a robot came from, if there is one.
+    pub fn opposite(&self, heading: u8) -> Option<u8> {
+        self.opposite[heading as usize]
     }
 
     /// Number of distinct headings.
@@ -239,6 +247,11 @@ impl Network {
             Some((node, distance))
         })
     }
+}
+
+fn opposites(headings: &[MicroTurn]) -> Vec<Option<u8>> {
+    let back = |&heading: &MicroTurn| headings.binary_search(&((heading + TURN / 2) % TURN)).ok();
+    headings.iter().map(|heading| back(heading).map(|index| index as u8)).collect()
 }
 
 /// Distinct values, ascending, and the index of each value among them.

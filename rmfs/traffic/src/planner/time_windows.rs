@@ -1,6 +1,8 @@
 //! Prioritised planning over continuous time windows: first come, first served, and complete.
 
-use crate::search::{End, Guide, Move, Outcome, Query};
+use crate::network::Network;
+use crate::reservations::Table;
+use crate::search::{End, Guide, Move, Outcome, Pathfinder, Query};
 use crate::units::{FOREVER, Us};
 
 use super::{Agent, Answer, Planner, Rhythm, Scene};
@@ -44,40 +46,16 @@ impl TimeWindows {
             budget: self.budget.min(agent.effort),
             end: End::ForGood,
             detour: FOREVER,
-            guide: if self.swift {
-                Guide::Near(NEAR)
-            } else {
-                Guide::Exact
-            },
+            guide: if self.swift { Guide::Near(NEAR) } else { Guide::Exact },
             times: None,
         };
         let Scene { network, table, pathfinder, .. } = scene;
         let needed = agent.effort == u64::MAX;
+        // until when the robot can stay where it is
+        let (_, until) = table.gap_at(network.resource[agent.start as usize], agent.ready)?;
         let mut outcome = Outcome::OutOfBudget;
-        // until when the robot could stay where it is
-        let stays = table.gap_at(network.resource[agent.start as usize], agent.ready);
         if self.swift {
-            let unhindered = pathfinder.aim(network, &query)?;
-            if !needed {
-                query.detour = TRY.0;
-                outcome = pathfinder.seek(network, table, &query, FIRST.0, TRY.1.min(agent.effort));
-            } else {
-                let until = stays?.1.min(table.horizon());
-                let row = table.row(network.resource[agent.goal as usize]);
-                let in_time = row.last().map_or(0, |last| last.end) - unhindered;
-                if in_time < until {
-                    query.ready = query.ready.max(in_time - FIRST_WAIT);
-                }
-                let first = query.ready;
-                outcome = pathfinder.seek(network, table, &query, FIRST.0, FIRST.1);
-                let mut wait = FIRST_WAIT;
-                while outcome == Outcome::OutOfBudget && first + wait < until {
-                    query.ready = first + wait;
-                    outcome = pathfinder.seek(network, table, &query, LATER.0, LATER.1);
-                    wait *= 2;
-                }
-                query.ready = agent.ready;
-            }
+            outcome = swiftly(pathfinder, network, table, &mut query, needed, until);
         }
         if outcome == Outcome::OutOfBudget && (needed || !self.swift) {
             outcome = pathfinder.search(network, table, &query);
@@ -86,18 +64,54 @@ impl TimeWindows {
             // with every planned motion over, the search is an ordinary shortest path
             query.ready = query.ready.max(table.horizon());
             query.budget = u64::MAX;
-            outcome = match stays {
-                Some((_, until)) if until > query.ready => {
-                    pathfinder.search(network, table, &query)
-                }
-                _ => Outcome::NoWay,
-            };
+            if until > query.ready {
+                outcome = pathfinder.search(network, table, &query);
+            }
         }
         match outcome {
             Outcome::Found(moves) => Some(moves),
             Outcome::NoWay | Outcome::OutOfBudget => None,
         }
     }
+}
+
+/// Looks for a way with few labels: at once; then, if the robot needs one, from later and later
+/// departures, since waiting at the start is always free and traffic ahead passes.
+fn swiftly(
+    pathfinder: &mut Pathfinder,
+    network: &Network,
+    table: &Table,
+    query: &mut Query,
+    needed: bool,
+    until: Us,
+) -> Outcome {
+    let Some(unhindered) = pathfinder.aim(network, query) else { return Outcome::NoWay };
+    if !needed {
+        query.detour = TRY.0;
+        return pathfinder.seek(network, table, query, FIRST.0, TRY.1.min(query.budget));
+    }
+    let earliest = query.ready;
+    // who would have to wait for the goal to be free starts in time for that
+    let row = table.row(network.resource[query.goal as usize]);
+    let goal_free = row.last().map_or(0, |last| last.end);
+    let in_time = earliest.max(goal_free - unhindered - FIRST_WAIT);
+    query.ready = if in_time < until { in_time } else { earliest };
+    let mut outcome = pathfinder.seek(network, table, query, FIRST.0, FIRST.1);
+    if outcome == Outcome::OutOfBudget {
+        let last = until.min(table.horizon());
+        let mut departure = query.ready + FIRST_WAIT;
+        let mut step = FIRST_WAIT;
+        while outcome == Outcome::OutOfBudget && departure < last {
+            query.ready = departure;
+            outcome = pathfinder.seek(network, table, query, LATER.0, LATER.1);
+            departure += step;
+            step *= 2;
+        }
+    }
+    // that no way leaves later does not say that none leaves now
+    let starved = outcome == Outcome::NoWay && query.ready > earliest;
+    query.ready = earliest;
+    if starved { Outcome::OutOfBudget } else { outcome }
 }
 
 impl Planner for TimeWindows {
