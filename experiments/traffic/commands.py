@@ -125,7 +125,7 @@ def duel(
 @app.command("scale")
 def scale_command(
     most: Annotated[int, typer.Option(min=32, help="The biggest fleet.")] = 2000,
-    planner: Annotated[str, typer.Option(help=f"{PLANNER_HELP}.")] = "time-windows",
+    planner: Annotated[str, typer.Option(help=f"{PLANNER_HELP}.")] = "time-windows:swift=true",
     duration: Duration = 600.0,
     seed: Seed = 1,
     out: Annotated[Path, typer.Option(help="Folder of table and picture.")] = Path("results/scale"),
@@ -134,13 +134,13 @@ def scale_command(
     from experiments.traffic import scale
 
     duels.check_planners([planner])
-    frame = scale.table(most, planner, duration, seed, _tell)
+    frame = scale.table(planner, most, duration, seed, _tell)
     typer.echo(duels.markdown(frame, scale.DECIMALS))
-    typer.echo(f"CPU time grows like trips to the power of {scale.exponent(frame):.2f}")
-    for ending in (".csv", ".md"):
-        duels.save(frame, out / f"scale{ending}", scale.DECIMALS)
-    scale.picture(frame, out / "scale.png")
-    typer.echo(out)
+    for column, what in (("trips/h", "trips"), ("km/h", "metres driven")):
+        grows = scale.exponent(frame, column)
+        typer.echo(f"CPU time grows like {what} to the power of {grows:.2f}")
+    for path in scale.save(frame, out, planner=planner, duration_s=duration, seed=seed):
+        typer.echo(path)
 
 
 @app.command()

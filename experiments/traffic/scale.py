@@ -8,6 +8,8 @@ wall time.
 
 from __future__ import annotations
 
+import ctypes
+import json
 import multiprocessing
 import resource
 import time
@@ -19,9 +21,14 @@ import numpy as np
 import pandas as pd
 
 from experiments.figures.style import saving
+from experiments.provenance import FORMAT, SUFFIX, command
+from experiments.running.code import code
+from experiments.traffic.duel import save as save_table
 from experiments.traffic.duel import settings
+from rmfs.files import write_text
 from rmfs.layout import load
 from rmfs.measure.memory import peak_rss_mb
+from rmfs.measure.provenance import commit
 from rmfs.traffic import Traffic
 from rmfs.trips import drive, random_trips
 
@@ -80,7 +87,7 @@ SIZES = [
 ]
 
 DECIMALS = {
-    **dict.fromkeys(("robots", "waypoints", "stations", "trips/h", "times faster"), 0),
+    **dict.fromkeys(("robots", "waypoints", "stations", "trips/h", "km/h", "times faster"), 0),
     **dict.fromkeys(("simulated s", "expansions per trip", "peak MB", "bytes per waypoint"), 0),
     **dict.fromkeys(("delay s", "CPU s per h", "kB per robot"), 1),
     "CPU ms per trip": 2,
@@ -88,8 +95,8 @@ DECIMALS = {
 
 
 def table(
+    planner: str,
     most: int = 2000,
-    planner: str = "time-windows",
     duration_s: float = 600.0,
     seed: int = 1,
     tell: Callable[[str], None] = print,
@@ -98,6 +105,8 @@ def table(
 
     Parameters
     ----------
+    planner
+        As `experiments.traffic.duel.settings` takes it.
     tell
         Told of each row as soon as it is there.
     """
@@ -107,7 +116,9 @@ def table(
             with multiprocessing.get_context("spawn").Pool(1) as pool:
                 rows.append(pool.apply(measure, (asdict(size), planner, duration_s, seed)))
             tell(", ".join(f"{name} {value:.6g}" for name, value in rows[-1].items()))
-    return pd.DataFrame(rows).set_index("robots")
+    frame = pd.DataFrame(rows).set_index("robots")
+    frame.insert(0, "planner", planner)
+    return frame
 
 
 def measure(size: dict[str, int], planner: str, duration_s: float, seed: int) -> dict[str, float]:
@@ -136,6 +147,7 @@ def measure(size: dict[str, int], planner: str, duration_s: float, seed: int) ->
         "simulated s": duration_s,
         "trips/h": run.trips_per_h,
         "delay s": float(np.mean(run.delays_s)),
+        "km/h": run.distance_m / 1e3 / hours,
         "CPU s per h": cpu_s / hours,
         "times faster": duration_s / cpu_s,
         "CPU ms per trip": 1e3 * cpu_s / trips,
@@ -149,16 +161,44 @@ def measure(size: dict[str, int], planner: str, duration_s: float, seed: int) ->
 def resident_mb() -> float:
     """Return the resident memory of this process, in MB (10^6 bytes), or nan where nobody tells."""
     try:
+        # what was freed and kept is not in use
+        ctypes.CDLL(None).malloc_trim(0)
         pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    except (OSError, ValueError, IndexError):
+    except (OSError, ValueError, IndexError, AttributeError):
         return float("nan")
     return pages * resource.getpagesize() / 1e6
 
 
-def exponent(frame: pd.DataFrame) -> float:
-    """Return b of `CPU = a trips^b`, by least squares on logarithms: 1 is linear growth."""
-    trips, cpu = np.log(frame["trips/h"].to_numpy()), np.log(frame["CPU s per h"].to_numpy())
-    return float(np.polyfit(trips, cpu, 1)[0])
+def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
+    """Write table and picture to a folder, each with a file that says where it comes from.
+
+    Parameters
+    ----------
+    settings
+        What else decides about the figures.
+    """
+    paths = [out / f"scale.{ending}" for ending in ("csv", "md", "png")]
+    save_table(frame, paths[0], DECIMALS)
+    save_table(frame, paths[1], DECIMALS)
+    picture(frame, paths[2])
+    for path in paths:
+        told = {
+            "format": FORMAT,
+            "file": path.name,
+            "sizes": [asdict(size) for size in SIZES if size.robots in frame.index],
+            "warmup_s": WARMUP_S,
+            **settings,
+            "written_by": {**code(), **commit()},
+            "command": command(),
+        }
+        write_text(path.with_name(path.name + SUFFIX), json.dumps(told, indent=1) + "\n")
+    return paths
+
+
+def exponent(frame: pd.DataFrame, column: str = "trips/h") -> float:
+    """Return b of `CPU = a column^b`, by least squares on logarithms: 1 is linear growth."""
+    work, cpu = np.log(frame[column].to_numpy()), np.log(frame["CPU s per h"].to_numpy())
+    return float(np.polyfit(work, cpu, 1)[0])
 
 
 def picture(frame: pd.DataFrame, path: Path) -> None:
@@ -167,8 +207,9 @@ def picture(frame: pd.DataFrame, path: Path) -> None:
     with saving(path, 8.0, 3.6) as figure:
         left, right = figure.subplots(1, 2)
         left.loglog(robots, frame["CPU s per h"], marker="o", label="measured")
-        straight = frame["trips/h"] * (frame["CPU s per h"] / frame["trips/h"]).iloc[0]
-        left.loglog(robots, straight, linestyle=":", color="0.5", label="linear in trips")
+        for column, dashes, label in (("trips/h", ":", "trips"), ("km/h", "--", "metres driven")):
+            linear = frame[column] * (frame["CPU s per h"] / frame[column]).iloc[0]
+            left.loglog(robots, linear, linestyle=dashes, color="0.5", label=f"linear in {label}")
         left.axhline(3600.0 / FASTER, linewidth=0.8, color="black")
         left.set_ylabel("CPU seconds per simulated hour")
         left.legend(fontsize=8)
