@@ -16,6 +16,7 @@ from rmfs.traffic import PlannerSettings, Traffic
 
 PLANNERS = [
     *({"name": name} for name in registry.built_in(Problem.PP)),
+    {"name": "time-windows", "swift": True},
     {"name": "far", "reroute": False},
     {"name": "whca-v", "runs_granted": 1, "restart_at_once": False},
 ]

@@ -194,19 +194,49 @@ fn drive(world: &World, kind: &Kind, line: &[(u32, f64)], since: Us, departure: 
 
 #[test]
 fn earliest_arrivals_agree_with_exhaustive_search() {
-    let (found, impossible) = compare(42, 2_000, 1);
+    let (found, impossible) = compare(42, 2_000, 1, Guide::Exact, FOREVER);
     assert!(found > 500 && impossible > 300, "{found} found, {impossible} impossible");
 }
 
 /// The search knows when elevators can be used at the earliest, and may not think it is later.
 #[test]
 fn earliest_arrivals_over_elevators_agree_with_exhaustive_search() {
-    let (found, impossible) = compare(43, 1_000, 2);
+    let (found, impossible) = compare(43, 1_000, 2, Guide::Exact, FOREVER);
     assert!(found > 250 && impossible > 150, "{found} found, {impossible} impossible");
 }
 
-/// Compares random cases; returns how many have a way and how many have none.
-fn compare(seed: u64, cases: usize, floors: usize) -> (u32, u32) {
+/// Where unhindered times are not searched for, straight lines to the goal are a bound as well.
+#[test]
+fn earliest_arrivals_are_found_with_unhindered_times_near_the_best_way_only() {
+    for (seed, floors, near) in [(44, 1, 0), (45, 1, 2_000_000), (46, 2, 0)] {
+        let (found, impossible) = compare(seed, 300, floors, Guide::Near(near), FOREVER);
+        assert!(found > 70 && impossible > 40, "{found} found, {impossible} impossible");
+    }
+}
+
+/// Arrivals that are too late are not found, all others are.
+#[test]
+fn arrivals_within_a_detour_agree_with_exhaustive_search() {
+    for (seed, guide) in [(47, Guide::Exact), (48, Guide::Near(0))] {
+        let (found, none) = compare(seed, 300, 1, guide, 3_000_000);
+        assert!(found > 40 && none > 70, "{found} found, {none} not");
+    }
+}
+
+/// The last arrival that is of use: by the unhindered time (a full table), or after the goal is free.
+fn latest(world: &World, query: &Query) -> Us {
+    if query.detour == FOREVER {
+        return FOREVER;
+    }
+    let times = query.model.towards(world.network, query.goal, query.loaded);
+    let unhindered = Us::from(times[world.network.index(query.start, query.heading)]);
+    let row = world.table.row(world.network.resource[query.goal as usize]);
+    let goal_free = row.last().map_or(0, |last| last.end);
+    (query.ready + unhindered).max(goal_free) + query.detour
+}
+
+/// Compares random cases; returns how many have a way that is not too late, and how many have none.
+fn compare(seed: u64, cases: usize, floors: usize, guide: Guide, detour: Us) -> (u32, u32) {
     let kind = kind();
     let mut random = Random(seed);
     let (mut found, mut impossible) = (0, 0);
@@ -226,16 +256,22 @@ fn compare(seed: u64, cases: usize, floors: usize) -> (u32, u32) {
             model: &model,
             budget: u64::MAX,
             end: End::ForGood,
-            detour: FOREVER,
-            guide: Guide::Exact,
+            detour,
+            guide,
             times: None,
         };
         let world = World { network: &network, table: &table };
         if !free(&world, start, query.ready, query.ready + 1) {
             continue;
         }
-        let expected = brute_force(&world, &query);
-        let got = match Pathfinder::new(&network).search(&network, &table, &query) {
+        let expected = brute_force(&world, &query).filter(|&end| end <= latest(&world, &query));
+        let mut pathfinder = Pathfinder::new(&network);
+        let outcome = match guide {
+            Guide::Exact => pathfinder.search(&network, &table, &query),
+            Guide::Near(_) if pathfinder.aim(&network, &query).is_none() => Outcome::NoWay,
+            Guide::Near(_) => pathfinder.seek(&network, &table, &query, 4, u64::MAX),
+        };
+        let got = match outcome {
             Outcome::Found(moves) => Some(moves.last().map_or(query.ready, |last| last.end)),
             _ => None,
         };

@@ -152,7 +152,7 @@ impl Fleet {
     ) -> Result<Self, String> {
         let (per_leg, rolling): (Box<dyn Planner>, _) = match Rolling::of(planner, robots.len()) {
             Ok(rolling) => {
-                (Box::new(TimeWindows { budget, improvement: 0, swift: false }), Some(rolling))
+                (Box::new(TimeWindows { budget, improvement: 0, swift: None }), Some(rolling))
             }
             Err(per_leg) => (per_leg, None),
         };
