@@ -22,14 +22,16 @@ pub struct TimeWindows {
 type Effort = (Us, u64);
 
 /// Searches with few labels: at once; then from later and later departures, since waiting at the
-/// start is always free and the traffic ahead passes. Only without success the usual search follows.
+/// start is always free and the traffic ahead passes; without success with more labels.
 #[derive(Clone, Debug)]
 pub struct Swift {
     pub first: Effort,
     /// Each search from a later departure.
     pub later: Effort,
-    /// By how much the first of them is later; the next are by twice, three times as much apart.
+    /// By how much the first of them is later; each further one by twice as much as the one before.
     pub wait: Us,
+    /// From the earliest departure again, if none of them found a way.
+    pub last: [Effort; 2],
     /// Unhindered times are searched for only near the best way.
     pub guide: Guide,
     /// Plans that need not be: labels, and how much later than unhindered they may arrive.
@@ -43,6 +45,7 @@ impl Swift {
         first: (5, 400),
         later: (6, 200),
         wait: 5_000_000,
+        last: [(6, 2_000), (16, u64::MAX)],
         guide: Guide::Near(3_000_000),
         labels_to_try: 100,
         detour_to_try: 20_000_000,
@@ -85,8 +88,14 @@ impl Swift {
             }
         }
         // that no way leaves later does not say that none leaves now
-        let starved = outcome == Outcome::NoWay && query.ready > earliest;
-        if starved { Outcome::OutOfBudget } else { outcome }
+        let mut starved = outcome == Outcome::NoWay && query.ready > earliest;
+        query.ready = earliest;
+        for (weight, labels) in self.last {
+            if outcome == Outcome::OutOfBudget || std::mem::take(&mut starved) {
+                outcome = pathfinder.seek(network, table, &query, weight, labels.min(query.budget));
+            }
+        }
+        outcome
     }
 }
 
@@ -109,13 +118,10 @@ impl TimeWindows {
         let Scene { network, table, pathfinder, .. } = scene;
         let needed = agent.effort == u64::MAX;
         let (_, until) = table.gap_at(network.resource[agent.start as usize], agent.ready)?;
-        let mut outcome = Outcome::OutOfBudget;
-        if let Some(swift) = &self.swift {
-            outcome = swift.search(pathfinder, network, table, &query, until, needed);
-        }
-        if outcome == Outcome::OutOfBudget && (needed || self.swift.is_none()) {
-            outcome = pathfinder.search(network, table, &query);
-        }
+        let mut outcome = match &self.swift {
+            Some(swift) => swift.search(pathfinder, network, table, &query, until, needed),
+            None => pathfinder.search(network, table, &query),
+        };
         if outcome == Outcome::OutOfBudget && needed {
             // with every planned motion over, the search is an ordinary shortest path
             query.ready = query.ready.max(table.horizon());
