@@ -22,18 +22,20 @@ if TYPE_CHECKING:
 HEAD = """\
 # Controllers
 
-Every rule there is, by decision problem; `name` in a controllers file chooses it, the parameters
-stand beside the name. Written from the code by `python -m rmfs.control.catalogue`; a test keeps
-this page up to date. [How to write a controller](write-a-controller.md).
+Every controller there is, by decision problem: rules first, then those that ask an
+[optimiser](optimisers-in-the-loop.md). `name` in a controllers file chooses one, the parameters stand
+beside the name. Written from the code by `python -m rmfs.control.catalogue`; a test keeps this
+page up to date. [How to write a controller](write-a-controller.md).
 """
 
 
 def markdown() -> str:
-    """Write the page: a section for each problem, each rule with its description and parameters."""
+    """Write the page: a section for each problem, each controller with its description and parameters."""
     parts = [HEAD]
     for problem in Problem:
         parts.append(f"## {problem.upper()}: {problem.meaning}\n")
-        parts += [_entry(problem, name) for name in registry.built_in(problem)]
+        shipped = [*registry.built_in(problem), *registry.solver_backed(problem)]
+        parts += [_entry(problem, name) for name in shipped]
     return "\n".join(parts)
 
 
@@ -43,7 +45,11 @@ def _entry(problem: Problem, name: str) -> str:
     rows = list(_parameters(controller))
     if rows:
         lines += ["| parameter | default | |", "|---|---|---|", *rows, ""]
-    lines += [f"Source: `{controller.__module__}`.", ""]
+    if controller.decides:
+        others = ", ".join(f"`{problem}`" for problem in sorted(controller.decides))
+        lines += [f"Decides for {others} as well, where `dummy` stands.", ""]
+    asks = " It asks an optimiser." if controller.optimisers else ""
+    lines += [f"Source: `{controller.__module__}`.{asks}", ""]
     return "\n".join(lines)
 
 
