@@ -53,6 +53,8 @@ CASES: list[tuple[str, str, str, Overrides]] = [
     ("small", "small", "ta-balance", []),
     ("small", "small", "ta-routes", []),
     ("default", "default", "psa-prices", []),
+    ("large", "large", "psa-placement", [(["scenario", "duration_s"], 120.0)]),
+    ("large", "large", "ta-matching", [(["scenario", "duration_s"], 120.0)]),
     ("small", "small", "stocking", []),
     ("small", "small", "stocking", [(["controllers", "rps", "method"], "highs")]),
     ("small", "small", "stocking", [(["controllers", "rps", "method"], "rounding")]),
@@ -138,9 +140,16 @@ def main(arguments: list[str] | None = None) -> None:
     """Measure, and write the table."""
     options = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     options.add_argument("--out", type=Path, default=PLACE, help=f"default: {PLACE}")
+    options.add_argument(
+        "--controllers", nargs="*", help="only these; rows of back ends they do not ask are kept"
+    )
     given = options.parse_args(arguments)
-    measured = pd.concat([answered(questions(*case), case[2]) for case in CASES])
+    cases = [case for case in CASES if given.controllers is None or case[2] in given.controllers]
+    measured = pd.concat([answered(questions(*case), case[2]) for case in cases])
     found = rates(measured)
+    if given.controllers is not None:
+        before = pd.read_csv(given.out.with_suffix(".csv"), index_col="backend")
+        found = pd.concat([before.drop(index=found.index, errors="ignore"), found]).sort_index()
     told = (
         f"Measured by `python -m experiments.calibrate` on {datetime.date.today()}: "
         f"{processor()}, Python {platform.python_version()}. "

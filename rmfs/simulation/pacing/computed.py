@@ -23,20 +23,19 @@ SECONDS_PER_UNIT = {
     "highs": 2.10e-4,
     "clarabel": 2.79e-4,
     "rule": 1.98e-7,
-    "scipy": 0.0,
+    "scipy": 5.28e-8,
     "min_cost_flow": 1.74e-6,
     "rounding": 2.89e-5,
 }
 """Seconds of a unit of work of each back end, as measured by `python -m experiments.calibrate` on
-an AMD EPYC on 2026-11-21 (results/published/seconds-per-unit.md). An assignment by scipy takes so
-little in a warehouse that nothing is left beside the call."""
+an AMD EPYC on 2026-11-21 (results/published/seconds-per-unit.md)."""
 
 SECONDS_PER_CALL = {
     "cp_sat": 0.0115,
     "highs": 0.00358,
     "clarabel": 0.0,
     "rule": 4.18e-4,
-    "scipy": 8.61e-5,
+    "scipy": 4.24e-6,
     "min_cost_flow": 2.52e-4,
     "rounding": 1.92e-3,
 }
