@@ -12,6 +12,8 @@ with :math:`u_i = \min_j c_{ij} - v_j`; an optimal matching gives the best one.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from time import perf_counter
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -19,6 +21,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from solvers.models.backends.flow import Network, min_cost_flow
+from solvers.models.solution import Solution, Status
 
 Solver = Literal["scipy", "min_cost_flow"]
 """Shortest augmenting paths on real costs (SciPy), or cost scaling on whole ones (OR-Tools)."""
@@ -68,6 +71,43 @@ def assign(cost: NDArray[np.float64], solver: Solver = "scipy") -> Assigned | No
     if column is None:
         return None
     return Assigned(column, assignment_bound(cost, column), float(cost.size))
+
+
+def solve_by_assignment(
+    table: Callable[[], NDArray[np.float64]],
+    read: Callable[[NDArray[np.int64]], NDArray[np.int64]],
+    objective: Callable[[NDArray[np.int64]], float],
+    solver: Solver,
+) -> Solution[NDArray[np.int64]]:
+    """Solve a model that is a linear assignment.
+
+    Parameters
+    ----------
+    table
+        Makes the table of costs; its time counts as building.
+    read
+        Makes values of the model of the column of each row.
+    objective
+        The model's own.
+    solver
+        Who solves it.
+
+    Returns
+    -------
+    The best values, or that there are none; work in entries of the table.
+    """
+    begin = perf_counter()
+    cost = table()
+    build_s = perf_counter() - begin
+    assigned = assign(cost, solver)
+    wall_s = perf_counter() - begin
+    if assigned is None:
+        work, status = float(cost.size), Status.INFEASIBLE
+        return Solution(None, math.inf, math.inf, status, solver, wall_s, build_s, work)
+    values = read(assigned.column)
+    value = objective(values)
+    bound = min(assigned.bound, value)
+    return Solution(values, value, bound, Status.OPTIMAL, solver, wall_s, build_s, assigned.work)
 
 
 def greedy_assign(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:

@@ -1,12 +1,12 @@
 """Multi-station rack allocation: orders and pods to pick stations with the fewest pods."""
 
-from solvers.models.rack_allocation.cp_sat import solve as solve_by_cp_sat
 from solvers.models.rack_allocation.data import Allocation as Allocation
 from solvers.models.rack_allocation.data import RackAllocation as RackAllocation
 from solvers.models.rack_allocation.data import objective as objective
 from solvers.models.rack_allocation.data import violations as violations
+from solvers.models.rack_allocation.exact import solve_by_cp_sat as solve_by_cp_sat
+from solvers.models.rack_allocation.exact import solve_by_highs as solve_by_highs
 from solvers.models.rack_allocation.greedy import solve as solve_greedily
-from solvers.models.rack_allocation.highs import solve as solve_by_highs
 
 __all__ = [
     "Allocation",

@@ -1,10 +1,15 @@
-"""What both back ends share: the bound of the relaxation over all stations together, in pods."""
+"""Rack allocation as an integer programme, by CP-SAT or by HiGHS.
+
+Their bound is at least that of the relaxation over all stations together, rounded up to whole pods.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 
+from solvers.models.backends import cp_sat, highs
 from solvers.models.backends.backend import Backend, relax, solve_by
 from solvers.models.rack_allocation.data import (
     Allocation,
@@ -14,25 +19,31 @@ from solvers.models.rack_allocation.data import (
     violations,
 )
 from solvers.models.rack_allocation.program import formulate, together
-from solvers.models.solution import Limits, Solution, Status
+from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 _TOLERANCE = 1e-4
 """What a bound may be above a whole number by rounding."""
 
 
-def solve_with(
-    backend: Backend, data: RackAllocation, limits: Limits, *, seed: int, start: Allocation | None
+def solve_by_cp_sat(
+    data: RackAllocation,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: Allocation | None = None,
 ) -> Solution[Allocation]:
-    """Solve the problem by a solver of integer programmes.
+    """Find the fewest pods by constraint programming.
 
     Parameters
     ----------
-    backend
-        The solver.
     data
         The problem.
-    limits, seed, start
-        As the back ends say.
+    limits
+        `deterministic_s` and `gap`. Default: to optimality.
+    seed
+        Seed of the solver. Default 0.
+    start
+        A feasible allocation to start from. Default: none.
 
     Returns
     -------
@@ -43,6 +54,24 @@ def solve_with(
     ModelError
         If the start is not feasible.
     """
+    # presolving takes longer than it saves, and is hardly counted as work
+    return _solve(partial(cp_sat.solve, presolve=False), data, limits, seed, start)
+
+
+def solve_by_highs(
+    data: RackAllocation,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: Allocation | None = None,
+) -> Solution[Allocation]:
+    """Do the same as `solve_by_cp_sat` by branch and bound, limited by `nodes` and `gap`."""
+    return _solve(highs.solve, data, limits, seed, start)
+
+
+def _solve(
+    backend: Backend, data: RackAllocation, limits: Limits, seed: int, start: Allocation | None
+) -> Solution[Allocation]:
     found = solve_by(
         backend,
         lambda: formulate(data),

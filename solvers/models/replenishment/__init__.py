@@ -5,13 +5,13 @@ must pay for its trip.
 """
 
 from solvers.models.replenishment.candidates import best_pods as best_pods
-from solvers.models.replenishment.cp_sat import solve as solve_by_cp_sat
 from solvers.models.replenishment.data import Replenishment as Replenishment
 from solvers.models.replenishment.data import Stocking as Stocking
 from solvers.models.replenishment.data import objective as objective
 from solvers.models.replenishment.data import violations as violations
+from solvers.models.replenishment.exact import solve_by_cp_sat as solve_by_cp_sat
+from solvers.models.replenishment.exact import solve_by_highs as solve_by_highs
 from solvers.models.replenishment.greedy import solve as solve_greedily
-from solvers.models.replenishment.highs import solve as solve_by_highs
 from solvers.models.replenishment.rounding import solve as solve_by_rounding
 from solvers.models.replenishment.worth import bundle_worth_s as bundle_worth_s
 

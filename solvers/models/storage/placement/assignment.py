@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
-from time import perf_counter
-
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends.assignment import Solver, assign
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from solvers.models.backends.assignment import Solver, solve_by_assignment
+from solvers.models.solution import NO_LIMITS, Limits, Solution
 from solvers.models.storage.placement.data import Placement, objective
 
 
@@ -36,23 +33,6 @@ def solve(
     -------
     The place of each pod, shape (P,); work in entries of the cost table.
     """
-    begin = perf_counter()
-    cost_s = data.cost_s
-    built = perf_counter()
-    assigned = assign(cost_s, solver)
-    wall_s, build_s = perf_counter() - begin, built - begin
-    if assigned is None:
-        return Solution(
-            None, math.inf, math.inf, Status.INFEASIBLE, solver, wall_s, build_s, cost_s.size
-        )
-    value = objective(data, assigned.column)
-    return Solution(
-        assigned.column,
-        value,
-        min(assigned.bound, value),
-        Status.OPTIMAL,
-        solver,
-        wall_s,
-        build_s,
-        assigned.work,
+    return solve_by_assignment(
+        lambda: data.cost_s, lambda column: column, lambda place: objective(data, place), solver
     )

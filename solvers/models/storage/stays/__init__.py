@@ -1,11 +1,11 @@
 """Pods whose next visits are known: which zone of places each stays in, and when."""
 
-from solvers.models.storage.stays.cp_sat import solve as solve_by_cp_sat
 from solvers.models.storage.stays.data import Stays as Stays
 from solvers.models.storage.stays.data import objective as objective
 from solvers.models.storage.stays.data import violations as violations
+from solvers.models.storage.stays.exact import solve_by_cp_sat as solve_by_cp_sat
+from solvers.models.storage.stays.exact import solve_by_highs as solve_by_highs
 from solvers.models.storage.stays.greedy import solve as solve_greedily
-from solvers.models.storage.stays.highs import solve as solve_by_highs
 from solvers.models.storage.stays.places import places as places
 from solvers.models.storage.stays.two_zones import solve as solve_by_flow
 

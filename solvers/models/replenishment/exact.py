@@ -1,15 +1,15 @@
-"""Replenishment by CP-SAT, limited by deterministic time."""
+"""Replenishment as an integer programme, by CP-SAT or by HiGHS."""
 
 from __future__ import annotations
 
-from solvers.models.backends import cp_sat
-from solvers.models.backends.backend import solve_by, with_relaxed_bound
+from solvers.models.backends import cp_sat, highs
+from solvers.models.backends.backend import Backend, solve_by, with_relaxed_bound
 from solvers.models.replenishment.data import Replenishment, Stocking, objective, violations
 from solvers.models.replenishment.program import formulate
 from solvers.models.solution import NO_LIMITS, Limits, Solution
 
 
-def solve(
+def solve_by_cp_sat(
     data: Replenishment,
     limits: Limits = NO_LIMITS,
     *,
@@ -38,9 +38,32 @@ def solve(
     ModelError
         If the start is not feasible.
     """
+    return _solve(cp_sat.solve, data, limits, seed, start, whole=True)
+
+
+def solve_by_highs(
+    data: Replenishment,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: Stocking | None = None,
+) -> Solution[Stocking]:
+    """Do the same as `solve_by_cp_sat` by branch and bound, limited by `nodes` and `gap`."""
+    return _solve(highs.solve, data, limits, seed, start, whole=False)
+
+
+def _solve(
+    backend: Backend,
+    data: Replenishment,
+    limits: Limits,
+    seed: int,
+    start: Stocking | None,
+    *,
+    whole: bool,
+) -> Solution[Stocking]:
     return solve_by(
-        with_relaxed_bound(cp_sat.solve),
-        lambda: formulate(data, whole=True),
+        with_relaxed_bound(backend),
+        lambda: formulate(data, whole=whole),
         limits,
         seed=seed,
         start=start,

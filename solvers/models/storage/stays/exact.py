@@ -1,18 +1,18 @@
-"""The interval model by CP-SAT, limited by deterministic time."""
+"""The interval model as an integer programme, by CP-SAT or by HiGHS."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends import cp_sat
-from solvers.models.backends.backend import solve_by
+from solvers.models.backends import cp_sat, highs
+from solvers.models.backends.backend import Backend, solve_by
 from solvers.models.solution import NO_LIMITS, Limits, Solution
 from solvers.models.storage.stays.data import Stays, objective, violations
 from solvers.models.storage.stays.program import formulate
 
 
-def solve(
+def solve_by_cp_sat(
     data: Stays,
     limits: Limits = NO_LIMITS,
     *,
@@ -41,9 +41,32 @@ def solve(
     ModelError
         If the start is not feasible.
     """
+    return _solve(cp_sat.solve, data, limits, seed, start, whole=True)
+
+
+def solve_by_highs(
+    data: Stays,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: NDArray[np.int64] | None = None,
+) -> Solution[NDArray[np.int64]]:
+    """Do the same as `solve_by_cp_sat` by branch and bound, limited by `nodes` and `gap`."""
+    return _solve(highs.solve, data, limits, seed, start, whole=False)
+
+
+def _solve(
+    backend: Backend,
+    data: Stays,
+    limits: Limits,
+    seed: int,
+    start: NDArray[np.int64] | None,
+    *,
+    whole: bool,
+) -> Solution[NDArray[np.int64]]:
     return solve_by(
-        cp_sat.solve,
-        lambda: formulate(data, whole=True),
+        backend,
+        lambda: formulate(data, whole=whole),
         limits,
         seed=seed,
         start=start,
