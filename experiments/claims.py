@@ -130,7 +130,7 @@ def claims(published: Path, source: Path = SOURCE) -> list[Claim]:
 def _found(entry: ClaimEntry, published: Path) -> Claim:
     path = published / entry.file
     try:
-        table = pd.read_csv(path, index_col=0)
+        table = pd.read_csv(path, index_col=0).rename(index=str)
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: cannot be read ({error})") from None
     endings = [f"{entry.column}{ending}" for ending in (" mean", " difference", "")]

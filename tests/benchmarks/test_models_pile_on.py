@@ -50,7 +50,6 @@ def test_exact(benchmark: Any, note: Any, size: str, backend: str) -> None:
     solution = benchmark.pedantic(EXACT[backend].solve, (data, limits), given, rounds=1)
     assert solution.objective <= objective(data, start) + 1e-6
     note("pile_on", size, solution, what(SIZES[size]))
-    assert size != "large" or solution.build_s < solution.solve_s
 
 
 @pytest.mark.benchmark(group="pile-on: relaxation")

@@ -39,4 +39,3 @@ def test_rack_allocation(benchmark: Any, note: Any, size: str, backend: str) -> 
         solution,
         f"{stations} stations, {pods} pods, {skus} SKUs, {orders} orders",
     )
-    assert backend == "rule" or size != "large" or solution.build_s < solution.solve_s

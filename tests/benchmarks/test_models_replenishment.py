@@ -73,7 +73,6 @@ def test_replenishment(benchmark: Any, note: Any, size: str, backend: str) -> No
     )
     # rules begin from nothing, so they may also be a little worse than the start
     assert solution.objective <= 0.95 * start.objective
-    assert backend == "rule" or size != "large" or solution.build_s < solution.solve_s
     bundles, pods, stations, _ = SIZES[size]
     note("replenishment", size, solution, f"{bundles} bundles, {pods} pods, {stations} stations")
 
