@@ -23,14 +23,14 @@ HEAD = """\
 # Controllers
 
 Every controller there is, by decision problem: rules first, then those that ask an
-[optimiser](optimisers-in-the-loop.md). `name` in a controllers file chooses one, the parameters stand
-beside the name. Written from the code by `python -m rmfs.control.catalogue`; a test keeps this
-page up to date. [How to write a controller](write-a-controller.md).
+[optimiser](optimisers-in-the-loop.md). `name` in a controllers file chooses one, the parameters
+stand beside the name. Written from the code by `python -m rmfs.control.catalogue`; a test keeps
+this page up to date. [How to write a controller](write-a-controller.md).
 """
 
 
 def markdown() -> str:
-    """Write the page: a section for each problem, each controller with its description and parameters."""
+    """Write the page: a section per problem, controllers with descriptions and parameters."""
     parts = [HEAD]
     for problem in Problem:
         parts.append(f"## {problem.upper()}: {problem.meaning}\n")
