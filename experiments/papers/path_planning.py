@@ -108,7 +108,7 @@ INSTANCES = [
         seeds=3,
         slow={"bcp": 1},
     ),
-    Instance("study-tiers", "pp/3-12-12-96-1650.xinst", {}, seeds=3, slow={"bcp": 1}, riding=True),
+    Instance("study-tiers", "pp/3-12-12-96-1650.xinst", {}, seeds=3, slow={"bcp": 0}, riding=True),
 ]
 """The less time they were simulated, the more the start counts, when all robots are free."""
 
