@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import tempfile
 from pathlib import Path
 from typing import Annotated
 
@@ -21,13 +20,16 @@ def speed(
         Path | None,
         typer.Option(help="Run folder with a trace. [default: 128 robots, 2,000 pods]"),
     ] = None,
+    large: Annotated[bool, typer.Option("--large", help="2,000 robots, 20,000 pods.")] = False,
 ) -> None:
     """Measure the frames a second of every view, drawn in software."""
-    from experiments.viewer.speed import recorded, table
+    from experiments.viewer.speed import SIZES, recorded, table
+    from rmfs.measure import load_run
+    from rmfs.view import scene
 
-    with tempfile.TemporaryDirectory() as parent:
-        frame = table(run or recorded(Path(parent) / "run"), seconds)
-    print(frame.round(1).to_string(index=False))
+    size = SIZES["large" if large else "usual"]
+    packed = recorded(size) if run is None else scene.of_run(load_run(run))
+    print(table(packed, seconds).round(1).to_string(index=False))
 
 
 @app.command()

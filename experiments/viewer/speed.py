@@ -5,19 +5,22 @@ from __future__ import annotations
 import contextlib
 import os
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 import psutil  # type: ignore[import-untyped]
 
 import rmfs
 from experiments.viewer.chromium import chromium, served, show
+from experiments.viewer.copies import copies
 from rmfs.measure import load_run, write_run
-from rmfs.view.answers import replay_server
+from rmfs.view import scene
+from rmfs.view.container import unpack
+from rmfs.view.server import Answer, Server
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from playwright.sync_api import Browser, CDPSession, Page
 
 WIDTH, HEIGHT = 1280, 720
@@ -71,33 +74,53 @@ class Speed:
     load: float
 
 
-def recorded(path: Path) -> Path:
-    """Write a run of 128 robots and 2,000 pods with its trace into a folder; returns it."""
+@dataclass(frozen=True, slots=True)
+class Size:
+    """A fleet in a warehouse, and how many such stand side by side, squared."""
+
+    robots: int
+    pod_share: float
+    side: int = 1
+
+
+SIZES = {"usual": Size(128, 0.866), "large": Size(125, 0.5407, 4)}
+"""128 robots and 2,002 pods; 2,000 robots and 20,000 pods."""
+
+
+def recorded(size: Size) -> bytes:
+    """Return the scene of a run of a size."""
+    overrides: list[tuple[list[str], Any]] = [
+        (["layout", "robots"], size.robots),
+        (["layout", "pod_share"], size.pod_share),
+        (["scenario", "duration_s"], 600.0),
+    ]
     run = rmfs.simulate(
-        "study-128",
-        "pp-minimal",
-        "random",
-        seed=1,
-        overrides=[(["layout", "pod_share"], 0.866), (["scenario", "duration_s"], 600.0)],
-        trace=True,
+        "study-128", "pp-minimal", "random", seed=1, overrides=overrides, trace=True
     )
-    write_run(run, path, trace=True)
-    return path
+    with TemporaryDirectory() as parent:
+        folder = Path(parent) / "run"
+        write_run(run, folder, trace=True)
+        packed = scene.of_run(load_run(folder))
+    return packed if size.side == 1 else copies(packed, size.side)
 
 
-def table(run: Path, seconds: float = SECONDS) -> pd.DataFrame:
+def table(packed: bytes, seconds: float = SECONDS) -> pd.DataFrame:
     """Measure all views of a run, one row each.
 
     Parameters
     ----------
-    run
-        Run folder with a trace.
+    packed
+        Scene of the run.
     seconds
         Wall time per view.
     """
-    folder = load_run(run)
-    robots, pods = folder.layout.robots, folder.layout.pods
-    with served(replay_server([folder])) as url, chromium() as browser:
+    _, arrays = unpack(packed)
+    robots, pods = len(arrays["robot_waypoint"]), len(arrays["pod_waypoint"])
+    session = {"runs": 1, "live": False, "form": False}
+    server = Server(
+        {"/session": lambda _: Answer.json(session), "/runs/0": lambda _: Answer.scene(packed)}
+    )
+    with served(server) as url, chromium() as browser:
         measured = [
             Speed(view, robots, pods, *_measure(browser, url, change, seconds), os.getloadavg()[0])
             for view, change in VIEWS.items()
