@@ -2,6 +2,7 @@
 
 import { type Events, Kind } from "./events";
 import type { Layout } from "./layout";
+import type { Track } from "./motion";
 import { Steps } from "./steps";
 
 export interface StationFigures {
@@ -18,6 +19,8 @@ export class Stations {
   private readonly open: Steps<number>[];
   private readonly handled: Steps<number>[];
   private readonly active: Steps<boolean>[];
+  /** By waypoint, the stations in whose queue it is. */
+  private readonly queuesAt: number[][] = [];
 
   constructor(
     private readonly layout: Layout,
@@ -27,6 +30,12 @@ export class Stations {
     this.open = stations.map(() => new Steps(0));
     this.handled = stations.map(() => new Steps(0));
     this.active = stations.map(() => new Steps(true));
+    stations.forEach(({ queue }, station) => {
+      for (const place of queue) {
+        this.queuesAt[place] ??= [];
+        this.queuesAt[place].push(station);
+      }
+    });
     events.onEach(({ kind, station, units, time_us }) => {
       if (kind === Kind.ORDER_ASSIGNED) this.change(this.open[station], time_us, 1);
       else if (kind === Kind.ORDER_COMPLETED) this.change(this.open[station], time_us, -1);
@@ -48,6 +57,22 @@ export class Stations {
       idleShare: Math.max(1 - busy_us / window_us, 0),
       active: this.active[station].at(time_us),
     };
+  }
+
+  /**
+   * Returns the robots that stand or drive within the places of each station's queue.
+   *
+   * @param rows - Which row of its track holds for each robot.
+   */
+  queues(tracks: Track[], rows: number[]): number[][] {
+    const robots: number[][] = this.layout.header.stations.map(() => []);
+    tracks.forEach((track, robot) => {
+      if (track.count === 0) return;
+      for (const station of this.queuesAt[track.from[rows[robot]]] ?? []) {
+        robots[station].push(robot);
+      }
+    });
+    return robots;
   }
 
   private change(steps: Steps<number>, time_us: number, by: number): void {

@@ -18,11 +18,15 @@ const HEIGHT_M = 1.5;
 const LEGS_M = 0.38;
 const LIFTED_M = 0.08;
 const SMALL = 0.4;
+/** Every pod has its colour looked up once in so many frames. */
+const FRAMES_PER_ROUND = 12;
 
 export class PodBodies {
   readonly bodies: Bodies;
   private readonly side: number;
   private shrink = 1;
+  /** The pod that was coloured last. */
+  private next = 0;
   private readonly plain: Color;
   private readonly colour = new Color();
   private readonly shapes = {
@@ -59,10 +63,14 @@ export class PodBodies {
     this.drawn_us = time_us;
   }
 
-  paint(time_us: number, mode: PodMode, theme: Theme): void {
-    const { podWaypoint } = this.run.layout;
-    for (let pod = 0; pod < podWaypoint.length; pod++) {
-      this.bodies.paint(pod, this.colourOf(pod, time_us, mode, theme));
+  /** Colours all pods, or only the next few: in turn, so that no frame takes long. */
+  paint(time_us: number, mode: PodMode, theme: Theme, all: boolean): void {
+    const count = this.run.layout.podWaypoint.length;
+    if (mode === "plain" && !all) return;
+    const few = Math.ceil(count / FRAMES_PER_ROUND);
+    for (let n = all ? count : few; n > 0; n--) {
+      this.next = (this.next + 1) % count;
+      this.bodies.paint(this.next, this.colourOf(this.next, time_us, mode, theme));
     }
   }
 

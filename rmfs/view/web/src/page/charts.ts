@@ -21,6 +21,9 @@ const DAY_S = 86_400;
 interface Chart {
   title: HTMLElement;
   canvas: HTMLCanvasElement;
+  /** All but the cursor, drawn anew only when `drawn`, which says what it shows, is another. */
+  ground: HTMLCanvasElement;
+  drawn: string;
   draw(pen: CanvasRenderingContext2D, frame: Frame, theme: Theme): void;
   /** Says what is the case at a time. */
   tell(time_s: number): HTMLElement[];
@@ -57,16 +60,15 @@ export function charts(
   };
   const update = () => {
     const { theme, time_s } = store.state;
-    for (const { title, canvas, draw, tell } of made) {
-      const pen = prepared(canvas);
+    for (const one of made) {
+      const frame = { width: one.canvas.clientWidth, end_s: end_s() };
+      const pen = frame.width > 0 ? prepared(one, frame, theme) : null;
       if (pen === null) continue;
-      const frame = { width: canvas.clientWidth, end_s: end_s() };
-      draw(pen, frame, theme);
       pen.strokeStyle = "#E6007E";
       pen.lineWidth = 1.5;
       const x = across(frame, time_s);
       pen.strokeRect(x, TOP, 0.01, HEIGHT - TOP - BOTTOM);
-      title.lastElementChild?.replaceChildren(...tell(time_s));
+      one.title.lastElementChild?.replaceChildren(...one.tell(time_s));
     }
   };
   return { root, update };
@@ -74,7 +76,8 @@ export function charts(
 
 function chart(title: string, draw: Chart["draw"], tell: Chart["tell"]): Chart {
   const heading = h("h3", {}, h("span", {}, title), h("span", {}));
-  return { title: heading, canvas: h("canvas", { ariaLabel: title }), draw, tell };
+  const canvas = h("canvas", { ariaLabel: title });
+  return { title: heading, canvas, ground: h("canvas"), drawn: "", draw, tell };
 }
 
 /** Makes a chart of one figure with a line per run. */
@@ -118,14 +121,24 @@ function tasks(run: Run, name: string): Chart {
   return chart(`Robots${name}`, draw, tell);
 }
 
-function prepared(canvas: HTMLCanvasElement): CanvasRenderingContext2D | null {
+/** Returns a pen for a chart that shows everything but the cursor. */
+function prepared(one: Chart, frame: Frame, theme: Theme): CanvasRenderingContext2D | null {
   const sharp = window.devicePixelRatio;
-  const width = canvas.clientWidth;
-  if (width === 0) return null;
-  canvas.width = width * sharp;
-  canvas.height = HEIGHT * sharp;
+  const shown = [frame.width, frame.end_s, sharp, theme].join();
+  const { canvas, ground } = one;
+  if (one.drawn !== shown) {
+    one.drawn = shown;
+    for (const sheet of [canvas, ground]) {
+      sheet.width = frame.width * sharp;
+      sheet.height = HEIGHT * sharp;
+      sheet.getContext("2d")?.scale(sharp, sharp);
+    }
+    const pen = ground.getContext("2d");
+    if (pen !== null) one.draw(pen, frame, theme);
+  }
   const pen = canvas.getContext("2d");
-  pen?.scale(sharp, sharp);
+  pen?.clearRect(0, 0, frame.width, HEIGHT);
+  pen?.drawImage(ground, 0, 0, frame.width, HEIGHT);
   return pen;
 }
 

@@ -13,7 +13,7 @@ import { Stage } from "../draw/stage";
 import { h } from "./dom";
 import type { Chosen, Selection, Store, ViewState } from "./state";
 
-/** Colours change seldom: they are looked up anew after so much wall time, or a jump. */
+/** Robots change colour seldom: it is looked up anew after so much wall time, or a jump. */
 const REPAINT_MS = 200;
 const HIT_M = 1.5;
 /** A click that moved further was a drag of the camera. */
@@ -99,11 +99,12 @@ export class Pane {
     });
     this.robots.place(this.poses, this.placement);
     this.pods.place(time_us, this.poses, this.placement);
+    const all = this.painted_ms === Number.NEGATIVE_INFINITY;
+    this.pods.paint(time_us, state.pods, state.theme, all);
     if (paint) {
       this.poses.forEach((pose, robot) => {
         this.robots.paint(robot, pose, time_us, state.robots, state.theme);
       });
-      this.pods.paint(time_us, state.pods, state.theme);
       this.painted_ms = now_ms;
     }
     this.drawPaths(state, time_us);
@@ -120,7 +121,7 @@ export class Pane {
       this.floor.showZones(this.store.state.zones);
       this.stage.relay();
     }
-    if (["theme", "pods", "robots"].some((name) => names.has(name as keyof ViewState)))
+    if (["theme", "pods", "robots", "playing"].some((name) => names.has(name as keyof ViewState)))
       this.repaint();
     this.changed();
   }

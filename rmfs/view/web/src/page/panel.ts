@@ -3,21 +3,27 @@
 import { tell } from "../data/events";
 import { STATES, TASKS } from "../data/robots";
 import { button, clock, h } from "./dom";
+import { overview, queues } from "./overview";
 import type { Pane } from "./pane";
-import type { Chosen, Selection, Store } from "./state";
+import type { Selection, Store } from "./state";
 
 const HISTORY = 12;
 const CONTENTS = 8;
 
 type Rows = [string, string][];
 
-/** Makes the panel; `update` fills it anew. */
+/** Makes the panel; `update` brings it to the present. */
 export function panel(store: Store, panes: Pane[]): { root: HTMLElement; update: () => void } {
   const root = h("section", { className: "details" });
+  const all = overview(store, panes);
   const update = () => {
     const { selection } = store.state;
-    if (selection === null) root.replaceChildren(...overview(store, panes));
-    else root.replaceChildren(...details(store, panes[selection.run], selection));
+    if (selection !== null) {
+      root.replaceChildren(...details(store, panes[selection.run], selection));
+      return;
+    }
+    if (all.root.parentElement !== root) root.replaceChildren(all.root);
+    all.update();
   };
   return { root, update };
 }
@@ -29,36 +35,6 @@ export function nextEvent(store: Store, panes: Pane[]): void {
   const { events } = panes[selection.run].run;
   const next = events.after(selection.what, selection.index, time_s * 1e6 + 1);
   if (next !== undefined) store.set({ time_s: next.time_us / 1e6 });
-}
-
-function overview(store: Store, panes: Pane[]): HTMLElement[] {
-  return panes.flatMap(({ run }, number) => {
-    const time_us = store.state.time_s * 1e6;
-    const rows = run.header.stations.map((station, index) => {
-      const figures = run.stations.figures(index, time_us);
-      const name = `${station.kind === "pick" ? "P" : "R"}${index}`;
-      const row = h(
-        "tr",
-        { title: "Choose this station" },
-        h(
-          "td",
-          {},
-          button(name, "Choose", () => choose(store, number, "station", index)),
-        ),
-        h("td", {}, station.order_slots > 0 ? `${figures.openOrders}/${station.order_slots}` : ""),
-        h("td", {}, figures.perHour.toFixed(0)),
-        h("td", {}, `${(100 * figures.idleShare).toFixed(0)} %`),
-        h("td", {}, String(queue(panes[number], index).length)),
-      );
-      if (!figures.active) row.className = "off";
-      return row;
-    });
-    const heads = ["", "open orders", "units, bundles/h", "idle", "queue"];
-    return [
-      h("h2", {}, `Stations${panes.length > 1 ? ` of ${"AB"[number]}` : ""}`),
-      h("table", {}, h("tr", {}, ...heads.map((text) => h("th", {}, text))), ...rows),
-    ];
-  });
 }
 
 function details(store: Store, pane: Pane, selection: Selection): HTMLElement[] {
@@ -96,10 +72,6 @@ function details(store: Store, pane: Pane, selection: Selection): HTMLElement[] 
     element.dataset.run = String(run);
     return element;
   });
-}
-
-function choose(store: Store, run: number, what: Chosen, index: number): void {
-  store.set({ selection: { run, what, index } });
 }
 
 function robotRows({ run, poses }: Pane, robot: number, time_us: number): Rows {
@@ -150,21 +122,12 @@ function stationRows(pane: Pane, station: number, time_us: number): Rows {
     ["idle share", `${(100 * figures.idleShare).toFixed(1)} % (last hour)`],
     [
       "in its queue",
-      queue(pane, station)
-        .map((robot) => `robot ${robot}`)
+      queues(pane)
+        [station].map((robot) => `robot ${robot}`)
         .join(", ") || "nobody",
     ],
   ];
   if (kind === "pick")
     rows.splice(1, 0, ["open orders", `${figures.openOrders} of ${order_slots}`]);
   return rows;
-}
-
-/** Returns the robots that stand or drive within the places of a station's queue. */
-function queue({ run, poses }: Pane, station: number): number[] {
-  const places = new Set(run.header.stations[station].queue);
-  const { tracks } = run.motion;
-  return poses.flatMap((pose, robot) =>
-    tracks[robot].count > 0 && places.has(tracks[robot].from[pose.row]) ? [robot] : [],
-  );
 }
