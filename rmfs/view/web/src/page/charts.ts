@@ -8,7 +8,7 @@ import { clock, h } from "./dom";
 import type { Store } from "./state";
 
 const LINES = ["#0072B2", "#D55E00"];
-const HEIGHT = 68;
+const HEIGHT = 62;
 const LEFT = 40;
 const TOP = 6;
 const BOTTOM = 14;
