@@ -20,38 +20,48 @@ if TYPE_CHECKING:
 
     from rmfs.measure import RunFolder
 
-WIDTH, HEIGHT = 1100, 620
-COLOURS = 256
-"""Of a picture: enough for flat surfaces, and half the bytes."""
+WIDTH, HEIGHT = 1280, 720
+RUNS = {
+    "psa-nearest": ("default", "default", "nearest"),
+    "psa-random": ("default", "default", "random"),
+    "three-tiers": ("study-tiers", "pp-minimal", "nearest"),
+}
+"""Layout, scenario, and where pods go after a visit."""
 
-RULES = ("nearest", "random")
-"""Where pods go after a visit, in the two runs."""
-
-PICTURES: dict[str, tuple[int, str]] = {
+PICTURES: dict[str, tuple[tuple[str, ...], str]] = {
     "viewer-plan": (
-        1,
+        ("psa-nearest",),
         "mode: '2d', theme: 'light', paths: true, selection: { run: 0, what: 'robot', index: 3 }",
     ),
-    "viewer-space": (1, "mode: '3d', theme: 'dark', robots: 'state', pods: 'fill'"),
-    "viewer-heat": (1, "mode: '2d', theme: 'light', heat: 'visits', from_s: 600, to_s: 3600"),
-    "viewer-compare": (2, "mode: '2d', theme: 'light', pods: 'age'"),
+    "viewer-space": (
+        ("three-tiers",),
+        "mode: '3d', theme: 'dark', robots: 'state', pods: 'fill'",
+    ),
+    "viewer-heat": (
+        ("psa-nearest",),
+        "mode: '2d', theme: 'light', heat: 'visits', from_s: 600, to_s: 2400",
+    ),
+    "viewer-compare": (
+        ("psa-nearest", "psa-random"),
+        "mode: '2d', theme: 'light', pods: 'age'",
+    ),
 }
 """Runs side by side, and what is shown, as changes of the page's state."""
 
-TIME_S = 2400.0
+TIME_S = 1500.0
 
 
 def take(folder: Path, tell: Callable[[str], None]) -> list[Path]:
     """Write all pictures into a folder; returns their files."""
     with tempfile.TemporaryDirectory() as parent:
-        runs = [_recorded(Path(parent) / f"psa-{rule}", rule) for rule in RULES]
+        runs = {name: _recorded(Path(parent) / name, *inputs) for name, inputs in RUNS.items()}
         paths = []
         with chromium() as browser:
-            for name, (number, change) in PICTURES.items():
+            for name, (shown, change) in PICTURES.items():
                 page = browser.new_page(
                     viewport={"width": WIDTH, "height": HEIGHT}, bypass_csp=True
                 )
-                with served(replay_server(runs[:number])) as url:
+                with served(replay_server([runs[one] for one in shown])) as url:
                     show(page, url)
                     page.evaluate(f"rmfs.store.set({{ time_s: {TIME_S}, {change} }})")
                     # one frame for the picture, some time for the charts
@@ -62,20 +72,19 @@ def take(folder: Path, tell: Callable[[str], None]) -> list[Path]:
     return paths
 
 
-def _recorded(path: Path, rule: str) -> RunFolder:
+def _recorded(path: Path, layout: str, scenario: str, rule: str) -> RunFolder:
     overrides: list[tuple[list[str], Any]] = [
         (["scenario", "warmup_s"], 600.0),
-        (["scenario", "duration_s"], 3000.0),
+        (["scenario", "duration_s"], 1800.0),
         (["controllers", "psa", "name"], rule),
     ]
-    run = rmfs.simulate("default", "default", "default", seed=1, overrides=overrides, trace=True)
+    run = rmfs.simulate(layout, scenario, "default", seed=1, overrides=overrides, trace=True)
     write_run(run, path, trace=True)
     return load_run(path)
 
 
 def _saved(picture: bytes, path: Path) -> Path:
-    """Write a picture with few colours, in the place of an older one."""
-    small = Image.open(io.BytesIO(picture)).convert("RGB").quantize(COLOURS)
+    """Write a picture as small as it can be with all its colours, in the place of an older one."""
     with replacing(path) as temporary:
-        small.save(temporary, format="PNG", optimize=True)
+        Image.open(io.BytesIO(picture)).convert("RGB").save(temporary, format="PNG", optimize=True)
     return path
