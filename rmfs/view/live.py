@@ -91,6 +91,7 @@ class LiveRun(Observer):
         self._asked: list[_News] = []
         self._exchanges: list[Choice] = []
         self._pages: dict[str, float] = {}
+        self._left: set[str] = set()
         self._simulation: Simulation | None = None
         self._ended = ""
         self._answered_s = time.process_time()
@@ -191,7 +192,7 @@ class LiveRun(Observer):
         """
         if page:
             with self._meeting:
-                self._pages[page] = time.monotonic()
+                self._is_here(page)
             self._spare()
         news = self._news(known)
         assert self._simulation is not None
@@ -204,12 +205,16 @@ class LiveRun(Observer):
     def control(self, wish: Table) -> None:
         """Pause, step or go on: `{"do": "pause" | "step" | "run", "by_s": ..., "speed": ...}`.
 
+        `page` may say who wishes so: what comes late from a closed page counts for nothing.
+
         Raises
         ------
         InputError
             If that is not what is wished for.
         """
         with self._meeting:
+            if "page" in wish and not self._is_here(str(wish["page"])):
+                return
             match wish.get("do"):
                 case "pause":
                     self._pace.pause()
@@ -250,6 +255,7 @@ class LiveRun(Observer):
     def leave(self, page: str) -> None:
         """Take note that a page was closed: the run goes on as if it had never been there."""
         with self._meeting:
+            self._left.add(page)
             self._leave(page)
 
     def close(self, reason: str) -> None:
@@ -274,6 +280,13 @@ class LiveRun(Observer):
         end_s = time.monotonic() + patience_s
         while self._pages and time.monotonic() < end_s:
             time.sleep(0.05)
+
+    def _is_here(self, page: str) -> bool:
+        """Take note that a page is there, and say so, unless it was closed."""
+        if page in self._left:
+            return False
+        self._pages[page] = time.monotonic()
+        return True
 
     def _spare(self) -> None:
         """Let the run have some time for itself: on a busy machine pages would ask too often."""

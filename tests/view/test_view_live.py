@@ -144,6 +144,17 @@ def test_a_page_that_goes_leaves_the_run_as_it_was(unwatched: Run) -> None:
     pd.testing.assert_series_equal(reproducible(watched.result()), reproducible(unwatched))
 
 
+def test_what_comes_late_from_a_closed_page_counts_for_nothing(unwatched: Run) -> None:
+    watched = Watched(speed=1000.0)
+    watched.start()
+    watched.told(page="one")
+    watched.live.leave("one")
+    # sent before, arrived after
+    watched.live.control({"do": "pause", "page": "one"})
+    watched.told(page="one")
+    pd.testing.assert_series_equal(reproducible(watched.result()), reproducible(unwatched))
+
+
 def test_a_rule_exchanged_by_hand_is_told(tmp_path: Any) -> None:
     watched = Watched()
     watched.live.control({"do": "pause"})

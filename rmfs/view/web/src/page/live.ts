@@ -71,6 +71,8 @@ export class LiveLink {
       this.status,
     );
     window.addEventListener("pagehide", () => this.leave());
+    // a page that was left is not there any more for the run, even if the browser had kept it
+    window.addEventListener("pageshow", ({ persisted }) => persisted && location.reload());
     this.update();
     void this.listen();
   }
@@ -124,7 +126,7 @@ export class LiveLink {
   }
 
   private wish(body: Record<string, unknown>): void {
-    ask("control", body).then(
+    ask("control", { ...body, page: this.page }).then(
       () => this.askOnce(),
       (reason: unknown) => this.say(String(reason)),
     );
