@@ -21,6 +21,9 @@ def speed(
         typer.Option(help="Run folder with a trace. [default: 128 robots, 2,000 pods]"),
     ] = None,
     large: Annotated[bool, typer.Option("--large", help="2,000 robots, 20,000 pods.")] = False,
+    card: Annotated[
+        bool, typer.Option("--card", help="Draw nothing, as if a graphics card did it at no cost.")
+    ] = False,
 ) -> None:
     """Measure the frames a second of every view, drawn in software."""
     from experiments.viewer.speed import SIZES, recorded, table
@@ -29,7 +32,7 @@ def speed(
 
     size = SIZES["large" if large else "usual"]
     packed = recorded(size) if run is None else scene.of_run(load_run(run))
-    print(table(packed, seconds).round(1).to_string(index=False))
+    print(table(packed, seconds, card=card).round(1).to_string(index=False))
 
 
 @app.command()

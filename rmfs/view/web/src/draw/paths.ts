@@ -41,7 +41,8 @@ export class Paths {
     const { x, y, tier } = this.run.layout;
     const height = placement.mode === "2d" ? 0.9 : 0.1;
     const served = this.run.robots.served[robot];
-    let here = [pose.x, pose.y];
+    let hereX = pose.x;
+    let hereY = pose.y;
     let runs = 0;
     for (let row = pose.row; row < track.count && runs < MOST_RUNS; row++) {
       const kind = track.kind[row];
@@ -52,20 +53,29 @@ export class Paths {
       const floor = tier[to];
       if (placement.shown[floor] && (row > pose.row || time_us < track.endOf(row))) {
         const z = placement.z[floor] + height;
-        this.segment(here[0] + placement.x[floor], here[1], x[to] + placement.x[floor], y[to], z);
+        this.segment(hereX + placement.x[floor], hereY, x[to] + placement.x[floor], y[to], z);
       }
-      here = [x[to], y[to]];
+      hereX = x[to];
+      hereY = y[to];
       runs++;
     }
   }
 
   finish(): void {
     this.lines.geometry.setDrawRange(0, 2 * this.used);
-    this.attribute.needsUpdate = true;
+    this.attribute.clearUpdateRanges();
+    this.attribute.addUpdateRange(0, 6 * this.used);
+    this.attribute.needsUpdate = this.used > 0;
   }
 
   private segment(x0: number, y0: number, x1: number, y1: number, z: number): void {
     if (this.used >= MOST_SEGMENTS) return;
-    this.points.set([x0, y0, z, x1, y1, z], 6 * this.used++);
+    const { points } = this;
+    const o = 6 * this.used++;
+    points[o] = x0;
+    points[o + 1] = y0;
+    points[o + 3] = x1;
+    points[o + 4] = y1;
+    points[o + 2] = points[o + 5] = z;
   }
 }
