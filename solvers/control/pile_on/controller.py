@@ -31,11 +31,11 @@ if TYPE_CHECKING:
 class PileOnControl(PickOrderAssignment[PileOnParameters]):
     """Keeps a plan of orders for slots and pods for robots, and asks the model to go on with it.
 
-    The model is asked, at most once per `buffer_s`, when a station runs out of work within the
-    horizon, when a pod reaches a station, and when a slot is free for which nothing is planned. It
-    says which orders go where and which pods are called for them; *prospects* too, orders that the
-    same pods can serve as soon as slots are free. All this is kept in a plan, from which slots and
-    robots are served until something no longer holds.
+    The model is asked, at most once per `buffer_s`, after what `triggers` names: a station runs out
+    of work within the horizon, a pod reaches a station, a slot is free for which nothing is
+    planned. It says which orders go where and which pods are called for them; *prospects* too,
+    orders that the same pods can serve as soon as slots are free. All this is kept in a plan, from
+    which slots and robots are served until something no longer holds.
 
     Robots get the pods called for their station, the nearest first. The heuristics are pod match
     if the optimiser fails, and PPS lexicographic, with its defaults, for open requests that no pod
@@ -92,13 +92,18 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
 
     def _is_short(self) -> bool:
         """Whether the plan should be extended."""
-        if self._arrived:
-            return True
         given = self.parameters
+        if self._arrived and "pod-at-station" in given.triggers:
+            return True
+        if "free-slot" in given.triggers and any(
+            station.free_slots > 0 and not self._plan.items[station.index]
+            for station in self.view.pick_stations
+        ):
+            return True
+        if not given.when_needed or "short-of-work" not in given.triggers:
+            return False
         for station in self.view.pick_stations:
-            if station.free_slots > 0 and not self._plan.items[station.index]:
-                return True
-            if given.when_needed and not self._plan.pods[station.index]:
+            if not self._plan.pods[station.index]:
                 units = sum(len(task.picks) for task in station.tasks.values())
                 seconds = self.view.layout.pick_stations[station.index].unit_transfer_s
                 if units * seconds < given.horizon_s:

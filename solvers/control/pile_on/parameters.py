@@ -12,10 +12,11 @@ from solvers.models.pile_on import Pruning, Weights
 NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 Count = Annotated[int, pydantic.Field(ge=1)]
 Method = Literal["joint", "greedy", "hadgs"]
+AsksPileOn = Literal["pod-at-station", "free-slot", "short-of-work"]
 
 
-class PileOnParameters(SearchParameters):
-    """Parameters of POA pile-on."""
+class JointParameters(SearchParameters):
+    """What both controllers that ask the joint model have in common."""
 
     method: Method = "joint"
     """Who decides: `joint` (pod match, improved by CP-SAT), or a heuristic alone: `greedy` (pod
@@ -39,6 +40,9 @@ class PileOnParameters(SearchParameters):
     """What a second of waiting adds to the worth of an order that gets a slot."""
     kept_slots: Annotated[int, pydantic.Field(ge=0)] = 1
     """Slots of each station kept for what the pod at its head can serve."""
+    bound_steps: Annotated[int, pydantic.Field(ge=0)] = 20
+    """Steps of the search for a bound of each decision, for the record; more make it better. They
+    are not counted as work."""
     pods_per_sku: Count = 4
     """Candidate pods per wanted SKU and station that CP-SAT is given."""
     orders_per_slot: Count = 16
@@ -53,3 +57,11 @@ class PileOnParameters(SearchParameters):
     def weights(self) -> Weights:
         """The objective, in seconds of a robot."""
         return Weights(visit=self.visit_s, complete=self.reward_s)
+
+
+class PileOnParameters(JointParameters):
+    """Parameters of POA pile-on."""
+
+    triggers: tuple[AsksPileOn, ...] = ("pod-at-station", "free-slot", "short-of-work")
+    """After what the optimiser is asked: a pod has reached a station, a slot is free for which
+    nothing is planned, a station runs out of work within the horizon (if `when_needed`)."""

@@ -20,6 +20,7 @@ from solvers.models.pile_on import (
     hadgs,
     neighbourhood,
     objective,
+    prices,
     prune,
 )
 from solvers.models.solution import Limits, Solution
@@ -45,6 +46,8 @@ class Question:
         `joint`, `greedy` or `hadgs`.
     limits, pruning
         Of CP-SAT.
+    bound_steps
+        Steps of the search for a bound.
     """
 
     data: PileOn
@@ -52,6 +55,7 @@ class Question:
     method: str
     limits: Limits
     pruning: Pruning
+    bound_steps: int
 
 
 def solve(question: Question) -> Answer:
@@ -66,7 +70,7 @@ def solve(question: Question) -> Answer:
     -------
     Answer
         `station` and `prospect` of each order, `pod_station` and `pod_robot` of each pod; -1 for
-        none.
+        none. The bound is one of all decisions that the snapshot allows.
     """
     began = time.perf_counter()
     data = question.data
@@ -74,12 +78,12 @@ def solve(question: Question) -> Answer:
     found = rule.solve(data, candidates=_allowed(everything(data), question.may_call))
     if question.method == "joint":
         return _improved(question, found, began)
-    return _answer(found.required, found.objective, "rule", found.work, found.wall_s, 0.0)
+    return _answer(question, found.required, "rule", found.work, began, 0.0)
 
 
 def by_rule(question: Question) -> Mapping[str, Any]:
     """Decide by pod match alone, when the optimiser has failed; as `Answer.solution`."""
-    found = solve(replace(question, method="greedy")).solution
+    found = solve(replace(question, method="greedy", bound_steps=0)).solution
     assert found is not None
     return found
 
@@ -90,10 +94,8 @@ def _improved(question: Question, rule: Solution[Assignment], began: float) -> A
     found = neighbourhood.solve(
         data, question.limits, start=rule.required, candidates=candidates.including(rule.required)
     )
-    values = found.required
     work = found.work + rule.work / SCORED_PER_S
-    wall_s = time.perf_counter() - began
-    return _answer(values, objective(data, values), "cp_sat", work, wall_s, found.build_s)
+    return _answer(question, found.required, "cp_sat", work, began, found.build_s)
 
 
 def _allowed(candidates: Candidates, may_call: NDArray[np.bool_]) -> Candidates:
@@ -102,7 +104,12 @@ def _allowed(candidates: Candidates, may_call: NDArray[np.bool_]) -> Candidates:
 
 
 def _answer(
-    values: Assignment, cost: float, backend: str, work: float, wall_s: float, build_s: float
+    question: Question,
+    values: Assignment,
+    backend: str,
+    work: float,
+    began: float,
+    build_s: float,
 ) -> Answer:
     station = np.where(values.slot.any(axis=1), values.slot.argmax(axis=1), -1)
     solution = {
@@ -111,13 +118,15 @@ def _answer(
         "pod_station": values.pod_station,
         "pod_robot": values.pod_robot,
     }
+    cost = objective(question.data, values)
+    bound = prices.bound(question.data, cost, question.bound_steps)
     return Answer(
         solution=solution,
         objective=cost,
-        bound=float("-inf"),
-        status="feasible",
+        bound=bound,
+        status="optimal" if bound == cost else "feasible",
         backend=backend,
         work=work,
-        wall_s=wall_s,
+        wall_s=time.perf_counter() - began,
         build_s=build_s,
     )

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation
-    from solvers.control.pile_on.parameters import PileOnParameters
+    from solvers.control.pile_on.parameters import JointParameters
     from solvers.control.pile_on.plan import Plan
 
 UNREACHABLE_S = 1e5
@@ -47,7 +47,7 @@ class Snapshot:
     items: Sequence[Item]
     robots: Sequence[Robot] = ()
 
-    def ask(self, given: PileOnParameters) -> Ask[Question]:
+    def ask(self, given: JointParameters) -> Ask[Question]:
         """Make the question for the optimiser of it."""
         data = self.data
         sizes = {
@@ -58,12 +58,14 @@ class Snapshot:
             "skus": data.skus,
             "robots": data.robots,
         }
-        question = Question(data, self.may_call, given.method, given.limits, given.pruning)
+        question = Question(
+            data, self.may_call, given.method, given.limits, given.pruning, given.bound_steps
+        )
         return Ask(solve, question, sizes, self)
 
 
 def take(
-    view: View, plan: Plan, given: PileOnParameters, robots: Sequence[Robot] | None = None
+    view: View, plan: Plan, given: JointParameters, robots: Sequence[Robot] | None = None
 ) -> Snapshot | None:
     """Collect what is to be decided now; None if there is nothing.
 
@@ -124,7 +126,7 @@ def _open_units(view: View, plan: Plan) -> NDArray[np.int64]:
 def _arrays(
     view: View,
     plan: Plan,
-    given: PileOnParameters,
+    given: JointParameters,
     items: Sequence[Item],
     open_units: NDArray[np.int64],
 ) -> PileOn:
@@ -175,7 +177,7 @@ def _fetch(view: View, robots: Sequence[Robot]) -> NDArray[np.float64]:
     return np.minimum(np.where(np.isfinite(found), found, UNREACHABLE_S), UNREACHABLE_S)
 
 
-def _needs_pod(view: View, plan: Plan, given: PileOnParameters, station: PickStation) -> bool:
+def _needs_pod(view: View, plan: Plan, given: JointParameters, station: PickStation) -> bool:
     """Whether a station, with no pod called, has less work than the horizon asks for."""
     if not station.active:
         return False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 import pydantic
@@ -22,7 +22,7 @@ from rmfs.control.ta import WORK, TaskAllocation
 from rmfs.control.ta.rest import RestPlaces, RestRule
 from rmfs.control.ta.stations import keeper_of
 from solvers.control.pile_on import snapshot
-from solvers.control.pile_on.parameters import PileOnParameters
+from solvers.control.pile_on.parameters import JointParameters
 from solvers.control.pile_on.plan import Plan
 from solvers.control.pile_on.question import by_rule
 
@@ -40,8 +40,15 @@ if TYPE_CHECKING:
     Decision = Ask[Question] | AssignOrder | AssignLines | TaskDecision
 
 
-class PileOnTasksParameters(PileOnParameters):
+AsksTasks = Literal["pod-at-station", "robot-free", "new-order"]
+
+
+class PileOnTasksParameters(JointParameters):
     """Parameters of the joint control of orders, pods and robots; defaults are those of M1G."""
+
+    triggers: tuple[AsksTasks, ...] = ("pod-at-station", "robot-free", "new-order")
+    """After what the optimiser is asked: a pod has reached a station, a robot is free, an order has
+    come while robots rest."""
 
     when_needed: bool = False
     """Whether pods are called only for stations that run out of work within the horizon; otherwise
@@ -61,14 +68,21 @@ class PileOnTasksParameters(PileOnParameters):
     `random`."""
 
 
+_ASKS: dict[Trigger, AsksTasks] = {
+    Trigger.POD_AT_STATION: "pod-at-station",
+    Trigger.ROBOT_FREE: "robot-free",
+    Trigger.NEW_ORDER: "new-order",
+}
+
+
 class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
     """Asks the model which orders take slots, which pods come, and which robots fetch them.
 
-    The model is asked, at most once per `buffer_s`, when a pod has reached a station, a robot is
-    free, or an order has come while robots rest, as long as a slot is free for which nothing is
-    planned. The robots it may send are those
-    without a task. What it says is kept as a plan and carried out as POA pile-on does; a pod
-    called whose robot has got another task meanwhile goes to the next robot that is free.
+    The model is asked, at most once per `buffer_s`, after what `triggers` names (a pod has reached
+    a station, a robot is free, an order has come while robots rest), as long as a slot is free for
+    which nothing is planned. The robots it may send are those without a task. What it says is kept
+    as a plan and carried out as POA pile-on does; a pod called whose robot has got another task
+    meanwhile goes to the next robot that is free.
 
     What M1G leaves open is decided by rules: a robot with a pod goes on while the pod can serve its
     station, then parks it where PSA says; up to a share of the robots brings pods to replenishment
@@ -105,7 +119,8 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
 
         A new order alone changes nothing as long as there is no robot for its pods.
         """
-        self._changed |= trigger is not Trigger.NEW_ORDER or bool(self.view.resting)
+        asks = _ASKS[trigger] in self.parameters.triggers
+        self._changed |= asks and (trigger is not Trigger.NEW_ORDER or bool(self.view.resting))
 
     def next_event_s(self) -> float:
         """When the optimiser may be asked again, if it is to be asked."""

@@ -51,6 +51,27 @@ def test_one_pod_for_both_orders(answer: bool) -> None:
     assert control.pick_pod(situation.world.robots[1], station) == -1
 
 
+def test_a_decision_has_a_bound() -> None:
+    """Nothing better than one pod for both orders can be decided, and the answer proves as much."""
+    situation = Situation()
+    situation.stock(2, s1=5, s2=5)
+    situation.order(s1=1), situation.order(s2=1)
+    control = situation.make(PileOnControl, when_needed=False, kept_slots=0, bound_steps=200)
+    (asked,) = [ask for ask in control.decide() if isinstance(ask, Ask)]
+    told = asked.solve(asked.question)
+    assert told.objective - 1.0 < told.bound <= told.objective
+
+
+def test_only_what_is_named_triggers_a_question() -> None:
+    """A slot is free and an order waits; no pod has come."""
+    for triggers, asks in (((), 0), (("pod-at-station",), 1), (("free-slot",), 1)):
+        situation = Situation()
+        situation.stock(0, s1=5)
+        situation.order(s1=1)
+        control = situation.make(PileOnControl, triggers=triggers)
+        assert sum(isinstance(said, Ask) for said in control.decide()) == asks
+
+
 def test_splits_an_order_whose_lines_no_pod_has_together() -> None:
     """With one line on the way, that line alone goes to the station."""
     situation = Situation()
