@@ -60,7 +60,7 @@ class Instance:
     twin: str
     reference: str
     theirs: dict[str, tuple[float, float, int]]
-    seeds: int = 10
+    seeds: int = 3
     slow: dict[str, int] = field(default_factory=dict)
     riding: bool = False
 
@@ -105,10 +105,10 @@ INSTANCES = [
         "study-tiers",
         "pp/3-12-12-96-1650.xinst",
         {"far": (1347.0, 234.2, 3600), "whca-n": (1342.0, 231.5, 3600)},
-        seeds=3,
+        seeds=2,
         slow={"bcp": 1},
     ),
-    Instance("study-tiers", "pp/3-12-12-96-1650.xinst", {}, seeds=3, slow={"bcp": 0}, riding=True),
+    Instance("study-tiers", "pp/3-12-12-96-1650.xinst", {}, seeds=1, slow={"bcp": 0}, riding=True),
 ]
 """The less time they were simulated, the more the start counts, when all robots are free."""
 
