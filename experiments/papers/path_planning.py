@@ -89,6 +89,7 @@ INSTANCES = [
             "cbs": (482.0, 71.4, 1800),
             "bcp": (396.0, 74.4, 300),
         },
+        seeds=10,
     ),
     Instance(
         "study-128",
