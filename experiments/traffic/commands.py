@@ -136,7 +136,8 @@ def scale_command(
     duels.check_planners([planner])
     frame = scale.table(planner, most, duration, seed, _tell)
     typer.echo(duels.markdown(frame, scale.DECIMALS))
-    for column, what in (("trips/h", "trips"), ("km/h", "metres driven")):
+    grown = (("trips/h", "trips"), ("km/h", "metres driven")) if len(frame) > 1 else ()
+    for column, what in grown:
         grows = scale.exponent(frame, column)
         typer.echo(f"CPU time grows like {what} to the power of {grows:.2f}")
     for path in scale.save(frame, out, planner=planner, duration_s=duration, seed=seed):

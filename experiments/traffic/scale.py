@@ -1,6 +1,6 @@
 """How work and memory grow with the fleet: `rmfs traffic scale`.
 
-Layouts of the default kind, with about 26 waypoints and 1/16 of a station for each robot whatever
+Layouts of the default kind, with 28 to 31 waypoints and about 1/16 of a station for each robot whatever
 their number, and random trips planned by one planner. Each size runs in a process of its own, so
 that its memory is its own. The time that counts is processor time: on a core that is free it is
 wall time.
@@ -213,7 +213,8 @@ def picture(frame: pd.DataFrame, path: Path) -> None:
         left.axhline(3600.0 / FASTER, linewidth=0.8, color="black")
         left.set_ylabel("CPU seconds per simulated hour")
         left.legend(fontsize=8)
-        right.loglog(robots, frame["peak MB"], marker="o")
+        right.semilogx(robots, frame["peak MB"], marker="o")
+        right.set_ylim(bottom=0)
         right.set_ylabel("peak memory (MB)")
         for ax in (left, right):
             ax.set_xlabel("robots")
