@@ -2,8 +2,8 @@
 
 Layouts of the default kind, with 28 to 31 waypoints and about 1/16 of a station for each robot
 whatever their number, and random trips planned by one planner. Each size runs in a process of its
-own, so that its memory is its own. The time that counts is processor time: on a core that is free it
-is wall time.
+own, so that its memory is its own. The time that counts is processor time: on a core that is free
+it is wall time.
 """
 
 from __future__ import annotations
