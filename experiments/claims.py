@@ -53,7 +53,8 @@ class ClaimEntry(Model):
 
     text: str = Field(description="one sentence; what the number is, with its unit")
     file: str = Field(description="a .csv table in results/published")
-    row: str = Field(description="what stands in the first column")
+    row: str = Field(description="what stands in the first columns, with a comma between them")
+    keys: int = Field(1, ge=1, description="how many columns those are")
     column: str = Field(description="name of the column, without its ending `mean`")
     command: str = Field(description="what publishes the file")
     above: float | None = Field(None, description="the whole interval must lie above this")
@@ -130,7 +131,9 @@ def claims(published: Path, source: Path = SOURCE) -> list[Claim]:
 def _found(entry: ClaimEntry, published: Path) -> Claim:
     path = published / entry.file
     try:
-        table = pd.read_csv(path, index_col=0).rename(index=str)
+        table = pd.read_csv(path)
+        names = table.iloc[:, : entry.keys].astype(str).agg(", ".join, axis=1)
+        table = table.iloc[:, entry.keys :].set_index(names)
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: cannot be read ({error})") from None
     endings = [f"{entry.column}{ending}" for ending in (" mean", " difference", "")]
