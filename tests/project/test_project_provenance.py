@@ -22,6 +22,7 @@ def commits_named() -> dict[str, str]:
     return found
 
 
+@pytest.mark.slow  # a clone need not hold the whole history
 def test_commits_that_made_published_results_are_in_the_history():
     if git("rev-parse", "--is-shallow-repository").stdout.strip() != "false":
         pytest.skip("no history here")
