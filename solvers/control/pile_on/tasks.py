@@ -48,8 +48,6 @@ class PileOnTasksParameters(PileOnParameters):
     whenever a slot can be filled, as in M1G."""
     kept_slots: Annotated[int, pydantic.Field(ge=0)] = 0
     """Slots of each station kept for what the pod at its head can serve."""
-    buffer_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Seconds for which decisions are collected before the optimiser is asked again."""
     reward_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 40.0
     """Seconds of a robot that one more order of a visit is worth."""
     visit_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
@@ -66,8 +64,9 @@ class PileOnTasksParameters(PileOnParameters):
 class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
     """Asks the model which orders take slots, which pods come, and which robots fetch them.
 
-    The model is asked when an order has come or gone, a pod has reached a station, or a robot is
-    free, as long as a slot is free for which nothing is planned. The robots it may send are those
+    The model is asked, at most once per `buffer_s`, when a pod has reached a station, a robot is
+    free, or an order has come while robots rest, as long as a slot is free for which nothing is
+    planned. The robots it may send are those
     without a task. What it says is kept as a plan and carried out as POA pile-on does; a pod
     called whose robot has got another task meanwhile goes to the next robot that is free.
 
@@ -102,8 +101,11 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
         self._wants_to_ask = False
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Take note that the model may decide otherwise than before."""
-        self._changed = True
+        """Take note that the model may decide otherwise than before.
+
+        A new order alone changes nothing as long as there is no robot for its pods.
+        """
+        self._changed |= trigger is not Trigger.NEW_ORDER or bool(self.view.resting)
 
     def next_event_s(self) -> float:
         """When the optimiser may be asked again, if it is to be asked."""
