@@ -1,9 +1,10 @@
 """The default rules beside those of RAWSim-O, over 48 h, with and without the fast lane.
 
 The inputs are RAWSim-O's instances `fastlane`: its layout and controllers, and SKUs distributed
-like its own. Ten seeds here stand against its one measured run of each. Robots here never wait for
-the next planning instant, as they do there; the arms `clocked` put the mean of that wait into
-turning and lifting, to tell how much of the difference it explains.
+like its own. Ten seeds here stand against its one measured run of each. Its robots drive by FAR and
+wait for the next step of its simulation before every hop, lift and set-down; here they drive by
+time windows, by FAR, and by FAR with the mean of that wait put into turning and lifting, to tell
+what comes from the rules and what from the driving.
 """
 
 from __future__ import annotations
