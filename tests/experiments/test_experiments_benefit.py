@@ -63,7 +63,7 @@ def test_under_nine_of_ten_decisions_by_optimisers_nothing_is_shown(capsys) -> N
 
 def test_the_smallest_fleet_that_feeds_the_stations() -> None:
     """Of 900 units: joint has 800 on average with six robots, the rule 550 with ten."""
-    found = fewer_robots.needed(results(), enough=0.88).frame
+    found = fewer_robots.needed(results(), ("controllers",), enough=0.88).frame
     assert found.loc["joint", ("robots", "")] == 6
     assert pd.isna(found.loc["rule", ("robots", "")])
 
@@ -94,6 +94,15 @@ def test_the_smallest_fleet_that_feeds_the_stations() -> None:
             ["fewer-robots", "fewer-robots-needed"],
         ),
         (
+            fewer_robots,
+            {
+                "demand": [{"label": "arrivals", "scenario": "small-arrivals"}],
+                "controllers": ["default", "pile-on-dispatch"],
+                "layout.robots": [4],
+            },
+            ["fewer-robots-later", "fewer-robots-later-needed"],
+        ),
+        (
             price_of_thinking,
             {
                 "thinking": [
@@ -105,7 +114,7 @@ def test_the_smallest_fleet_that_feeds_the_stations() -> None:
             ["price-of-thinking"],
         ),
     ],
-    ids=["joint-small", "joint-large", "fewer-robots", "price-of-thinking"],
+    ids=["joint-small", "joint-large", "fewer-robots", "fewer-robots-later", "price-of-thinking"],
 )
 def test_smoke(study, factors, tables, design, tmp_path, monkeypatch) -> None:
     """Two seeds, five minutes: every table is there, with its provenance."""
