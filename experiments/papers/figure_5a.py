@@ -19,10 +19,9 @@ import pandas as pd
 
 from experiments.figures import progression
 from experiments.figures.style import COLOURS, axis_label, saving
-from experiments.papers.study import RESULTS, command, done, parser
+from experiments.papers.study import command, done, parser
 from experiments.statistics import paired, rates
 from experiments.tables import HALF, Table, digits
-from rmfs.errors import InputError
 
 if TYPE_CHECKING:
     from experiments.papers.study import Study
@@ -113,9 +112,9 @@ def as_table(found: pd.DataFrame) -> Table:
     return Table(frame, decimals, caption)
 
 
-def picture(study: Study, series: pd.DataFrame, name: str) -> Path:
+def picture(study: Study, series: pd.DataFrame) -> Path:
     """Draw the course of orders and distance per hour."""
-    path = study.published / f"{name}.png"
+    path = study.place("figure-5a.png")
     colours = {STAYS: "0.55", CHANGES: COLOURS[1], NEAREST: COLOURS[0]}
     series = series.assign(distance_m=series["distance_m"] / 1000.0)
     labels = {
@@ -144,24 +143,13 @@ def picture(study: Study, series: pd.DataFrame, name: str) -> Path:
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
-    options = parser("psa-exchange", __doc__)
-    options.add_argument(
-        "--reference", type=Path, metavar="DIR", help="the public instances of RAWSim-O"
-    )
-    given = options.parse_args(arguments)
-    base, name = None, "figure-5a"
-    if given.reference is not None:
-        layout = given.reference / "mati" / "MaTiMilli.xinst"
-        if not layout.is_file():
-            raise InputError(f"--reference {given.reference}: {layout} is not there")
-        base, name = {"layout": str(layout.absolute())}, "figure-5a-reference"
-        given.out = given.out or RESULTS / "psa-exchange-reference"
-    study = done(given, base)
+    options = parser("psa-exchange", __doc__, reference="mati/MaTiMilli.xinst")
+    study = done(options.parse_args(arguments))
     series = study.table("series")
     settle_s = min(SETTLED_S, float(series["time_s"].max()) / 24)
     found = differences(halves(series, settle_s=settle_s))
-    study.publish(as_table(found), name, list(COLUMNS), settled_s=settle_s)
-    print(picture(study, series, name))
+    study.publish(as_table(found), "figure-5a", list(COLUMNS), settled_s=settle_s)
+    print(picture(study, series))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,11 @@
 """Figure 5b: where robots drive and wait (Merschformann, Xie, Li 2018).
 
 The paper shows a heat map of robot movement, in colours on a logarithmic scale: robots queue at the
-stations, and some areas are so busy that congestion threatens. Here the visits of all seeds are
-added up, and a table says how they are spread over the areas of the layout.
+stations, and some areas are so busy that congestion threatens. Here the visits of each waypoint are
+averaged over the seeds, and a table says how they are spread over the areas of the layout.
+
+With `--reference DIR` (the public instances of RAWSim-O) the layout MaTiMilli itself is taken
+instead of its twin.
 """
 
 from __future__ import annotations
@@ -17,7 +20,6 @@ import pandas as pd
 from experiments.figures.style import saving
 from experiments.papers.study import command, done, parser
 from experiments.tables import Table
-from rmfs import layout as layouts
 from rmfs.measure.plots import heat as draw_heat
 
 if TYPE_CHECKING:
@@ -71,7 +73,7 @@ def as_table(found: pd.DataFrame, seeds: int) -> Table:
 
 def picture(study: Study, mean: pd.DataFrame, seeds: int) -> Path:
     """Draw the heat map."""
-    path = study.published / "figure-5b.png"
+    path = study.place("figure-5b.png")
     with saving(path, 9.0, 4.6) as figure:
         ax = figure.subplots()
         draw_heat(mean, ax)
@@ -83,13 +85,12 @@ def picture(study: Study, mean: pd.DataFrame, seeds: int) -> Path:
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
-    study = done(parser("heat-map", __doc__).parse_args(arguments))
+    options = parser("heat-map", __doc__, reference="mati/MaTiMilli.xinst")
+    study = done(options.parse_args(arguments))
     (arm,) = study.plan.arms
-    own = [(keys[1:], value) for keys, value in arm.overrides if keys[0] == "layout"]
-    layout = layouts.load(arm.inputs["layout"], own)
     mean = together(study.table("heat"))
     seeds = study.frame["replication"].nunique()
-    study.publish(as_table(spread(mean, areas(layout)), seeds), "figure-5b", ["robots"])
+    study.publish(as_table(spread(mean, areas(study.layout(arm))), seeds), "figure-5b", ["robots"])
     print(picture(study, mean, seeds))
 
 
