@@ -13,7 +13,7 @@ from solvers.control.answers import answer
 from solvers.control.parameters import SearchParameters
 from solvers.control.storage.ahead import Ahead
 from solvers.control.storage.bands import bands, means
-from solvers.control.storage.parameters import StorageParameters
+from solvers.control.storage.parameters import Positive, StorageParameters
 from solvers.models.solution import Limits
 from solvers.models.storage.stays import Stays, solve_by_cp_sat, solve_greedily
 from solvers.models.storage.zones import expected_stay_h
@@ -59,6 +59,8 @@ class StaysParameters(StorageParameters, SearchParameters):
     """Limit of the search in deterministic seconds of CP-SAT: about the same in wall time."""
     gap: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.001
     """Relative gap between value and bound at which the search ends."""
+    horizon_s: Positive = 900.0
+    """How far ahead pods are followed; those that stay longer only take a place away."""
     zones: Annotated[int, pydantic.Field(ge=1)] = 8
     """Zones of places, by their distance from the pick stations."""
 
