@@ -18,7 +18,7 @@ from experiments.statistics import interval
 from experiments.tables import HALF, Table, digits
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
 LANE, DRIVING = "controllers.poa.fast_lane", "driving"
 COLUMNS = ("orders_completed", "units_picked", "units_per_visit", "distance_m")
@@ -27,6 +27,13 @@ THEIRS = {
     False: (22383.0, 36856.0, 3.92, 740_300.0),
 }
 """Measured on RAWSim-O, seed 0: the same columns, with and without fast lane."""
+
+
+def _frame(rows: Mapping[str, Mapping[tuple[str, str], float]], name: str) -> pd.DataFrame:
+    """Return rows as a table whose columns are pairs; those of the first row are all there are."""
+    columns = pd.MultiIndex.from_tuples(list(next(iter(rows.values()))))
+    cells = [[row.get(column, float("nan")) for column in columns] for row in rows.values()]
+    return pd.DataFrame(cells, index=pd.Index(list(rows), name=name), columns=columns)
 
 
 def beside(frame: pd.DataFrame) -> Table:
@@ -39,9 +46,7 @@ def beside(frame: pd.DataFrame) -> Table:
             row[column, "mean"], row[column, HALF] = found.mean, found.half_width
             row[f"{column} against RAWSim-O, %", ""] = 100 * (found.mean / theirs - 1)
         rows[f"{driving}, {'with' if lane else 'without'} fast lane"] = row
-    made = pd.DataFrame.from_dict(rows, orient="index")
-    made.columns = pd.MultiIndex.from_tuples([(str(a), str(b)) for a, b in made.columns])
-    made.index.name = "robots and rule"
+    made = _frame(rows, "robots and rule")
     decimals = dict.fromkeys(made.columns, 1) | {("seeds", ""): 0}
     for column in COLUMNS:
         shown = digits(made[column, HALF], made[column, "mean"])
@@ -64,9 +69,7 @@ def gain(frame: pd.DataFrame, columns: Sequence[str] = COLUMNS) -> Table:
     rows["RAWSim-O (one seed)"] = {
         (column, "mean"): 100 * (with_lane / without - 1) for column, with_lane, without in pairs
     }
-    made = pd.DataFrame.from_dict(rows, orient="index")
-    made.columns = pd.MultiIndex.from_tuples([(str(a), str(b)) for a, b in made.columns])
-    made.index.name = "what the fast lane adds, %"
+    made = _frame(rows, "what the fast lane adds, %")
     caption = (
         "With against without fast lane, seed by seed, in percent with 95% confidence intervals."
     )
