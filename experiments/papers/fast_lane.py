@@ -47,7 +47,7 @@ def beside(frame: pd.DataFrame) -> Table:
             row[f"{column} against RAWSim-O, %", ""] = 100 * (found.mean / theirs - 1)
         rows[f"{driving}, {'with' if lane else 'without'} fast lane"] = row
     made = _frame(rows, "robots and rule")
-    decimals = dict.fromkeys(made.columns, 1) | {("seeds", ""): 0}
+    decimals = {key: 1 for row in rows.values() for key in row} | {("seeds", ""): 0}
     for column in COLUMNS:
         shown = digits(made[column, HALF], made[column, "mean"])
         decimals |= {(column, "mean"): shown, (column, HALF): shown}
@@ -73,7 +73,9 @@ def gain(frame: pd.DataFrame, columns: Sequence[str] = COLUMNS) -> Table:
     caption = (
         "With against without fast lane, seed by seed, in percent with 95% confidence intervals."
     )
-    return Table(made, dict.fromkeys(made.columns, 2), caption)
+    return Table(
+        made, {(column, part): 2 for column in columns for part in ("mean", HALF)}, caption
+    )
 
 
 def main(arguments: list[str] | None = None) -> None:
