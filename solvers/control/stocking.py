@@ -76,8 +76,8 @@ def solve(question: Question) -> Answer:
 class StockingParameters(SearchParameters):
     """Parameters of RPS stocking."""
 
-    method: Method = "cp_sat"
-    """Who decides: CP-SAT, HiGHS (at its root node), rounding of the relaxation, or the greedy
+    method: Method = "highs"
+    """Who decides: HiGHS (at its root node), CP-SAT, rounding of the relaxation, or the greedy
     rule."""
     buffer_s: NotNegative = 30.0
     """Seconds for which decisions are collected before the optimiser is asked again."""

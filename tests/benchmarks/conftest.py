@@ -31,7 +31,7 @@ def note(benchmark: Any) -> Callable[..., None]:
             "build ms": 1e3 * solution.build_s,
             "solve ms": 1e3 * solution.solve_s,
             "median ms": 1e3 * benchmark.stats.stats.median,
-            "gap %": 100.0 * solution.gap,
+            "gap %": round(100.0 * solution.gap, 4),
             "status": solution.status.value,
             "work": solution.work,
         }

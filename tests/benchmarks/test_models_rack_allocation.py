@@ -18,13 +18,16 @@ SIZES = {
 BACKENDS = {"cp_sat": solve_by_cp_sat, "highs": solve_by_highs, "rule": solve_greedily}
 
 
+CASES = [(size, backend) for size in SIZES for backend in BACKENDS]
+CASES.remove(("large", "highs"))  # its root node alone takes minutes
+
+
 @pytest.mark.benchmark(group="rack allocation")
-@pytest.mark.parametrize("backend", BACKENDS)
-@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize(("size", "backend"), CASES)
 def test_rack_allocation(benchmark: Any, note: Any, size: str, backend: str) -> None:
     data = site(*SIZES[size], seed=7)
     start = solve_greedily(data)
-    limits = Limits(deterministic_s=2.0, nodes=1)
+    limits = Limits(deterministic_s=1.0, nodes=1)
     solution = benchmark.pedantic(
         BACKENDS[backend], (data, limits), {"start": start.values}, rounds=1
     )

@@ -1,11 +1,11 @@
-"""What both back ends share: the relaxation's bound, rounded up to whole pods."""
+"""What both back ends share: the bound of the relaxation over all stations together, in pods."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
 
-from solvers.models.backends.backend import Backend, solve_by, with_relaxed_bound
+from solvers.models.backends.backend import Backend, relax, solve_by
 from solvers.models.rack_allocation.data import (
     Allocation,
     RackAllocation,
@@ -13,8 +13,8 @@ from solvers.models.rack_allocation.data import (
     pods_needed,
     violations,
 )
-from solvers.models.rack_allocation.program import formulate
-from solvers.models.solution import Limits, Solution
+from solvers.models.rack_allocation.program import formulate, together
+from solvers.models.solution import Limits, Solution, Status
 
 _TOLERANCE = 1e-4
 """What a bound may be above a whole number by rounding."""
@@ -44,7 +44,7 @@ def solve_with(
         If the start is not feasible.
     """
     found = solve_by(
-        with_relaxed_bound(backend),
+        backend,
         lambda: formulate(data),
         limits,
         seed=seed,
@@ -52,7 +52,12 @@ def solve_with(
         objective=lambda values: objective(data, values),
         violations=lambda values: violations(data, values),
     )
-    if math.isinf(found.bound):
+    if found.status is Status.INFEASIBLE:
         return found
-    bound = max(float(math.ceil(found.bound - _TOLERANCE)), pods_needed(data))
-    return replace(found, bound=bound)
+    relaxed = relax(together(data))
+    bound = max(found.bound, relaxed.bound)
+    whole = float(math.ceil(bound - _TOLERANCE)) if math.isfinite(bound) else 0.0
+    proven = max(whole, pods_needed(data))
+    if found.found and proven >= found.objective:
+        found = replace(found, status=Status.OPTIMAL)
+    return replace(found, bound=proven, wall_s=found.wall_s + relaxed.wall_s)

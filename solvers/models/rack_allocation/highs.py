@@ -30,7 +30,7 @@ def solve(
 
     Returns
     -------
-    Who goes where. The bound is at least that of the relaxation.
+    Who goes where. The bound is at least that of the relaxation over all stations together.
 
     Raises
     ------

@@ -27,8 +27,7 @@ def formulate(data: RackAllocation) -> Formulation[Allocation]:
     data
         The problem.
     """
-    orders = np.flatnonzero((data.units <= data.stock.sum(axis=0)).all(axis=1))
-    pods = np.flatnonzero((data.stock[:, data.units[orders].any(axis=0)] > 0).any(axis=1))
+    orders, pods = _useful(data)
     stations = len(data.slots)
 
     def encode(allocation: Allocation) -> NDArray[np.float64]:
@@ -46,30 +45,63 @@ def formulate(data: RackAllocation) -> Formulation[Allocation]:
             order_station[orders], pod_station[pods] = at[: len(orders)], at[len(orders) :]
         return Allocation(order_station, pod_station)
 
-    return Formulation(_program(data, orders, pods), encode, decode)
+    units, stock = _wanted(data, orders, pods)
+    program = _program(units, stock, data.slots, _most_wanted(units, data.slots))
+    return Formulation(program, encode, decode)
+
+
+def together(data: RackAllocation) -> LinearProgram:
+    """State the sum of the programme over the stations: a relaxation with few columns.
+
+    Of every cap d the greatest over the stations is taken, so that each row is implied by the sum
+    of the rows it stands for. With equal slots the relaxations of both have the same value.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    """
+    units, stock = _wanted(data, *_useful(data))
+    most = _most_wanted(units, data.slots).max(axis=1, keepdims=True, initial=0)
+    return _program(units, stock, data.slots.sum(keepdims=True), most)
+
+
+def _useful(data: RackAllocation) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Find the orders that stock can serve, and the pods with something they want."""
+    orders = np.flatnonzero((data.units <= data.stock.sum(axis=0)).all(axis=1))
+    pods = np.flatnonzero((data.stock[:, data.units[orders].any(axis=0)] > 0).any(axis=1))
+    return orders, pods
+
+
+def _wanted(
+    data: RackAllocation, orders: NDArray[np.int64], pods: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return units and stock of these orders and pods, for SKUs that are wanted."""
+    skus = np.flatnonzero(data.units[orders].any(axis=0))
+    return data.units[np.ix_(orders, skus)], data.stock[np.ix_(pods, skus)]
 
 
 def _program(
-    data: RackAllocation, orders: NDArray[np.int64], pods: NDArray[np.int64]
+    units: NDArray[np.int64],
+    stock: NDArray[np.int64],
+    slots: NDArray[np.int64],
+    most: NDArray[np.int64],
 ) -> LinearProgram:
-    """State the programme over the orders and pods that have columns."""
-    units, stations = data.units[orders], len(data.slots)
-    skus = np.flatnonzero(units.any(axis=0))
-    units, stock = units[:, skus], data.stock[np.ix_(pods, skus)]
+    """State the programme; `most` caps the stock that counts, shape (K, S)."""
+    (orders, skus), pods, stations = units.shape, len(stock), len(slots)
     builder = ProgramBuilder()
-    x = builder.columns((len(orders), stations))
-    y = builder.columns((len(pods), stations), cost=1.0)
+    x = builder.columns((orders, stations))
+    y = builder.columns((pods, stations), cost=1.0)
     at = np.arange(stations)
-    builder.rows(stations, (at, x, 1.0), lower=data.slots, upper=data.slots)
-    builder.rows(len(orders), (np.arange(len(orders))[:, np.newaxis], x, 1.0), upper=1.0)
-    builder.rows(len(pods), (np.arange(len(pods))[:, np.newaxis], y, 1.0), upper=1.0)
+    builder.rows(stations, (at, x, 1.0), lower=slots, upper=slots)
+    builder.rows(orders, (np.arange(orders)[:, np.newaxis], x, 1.0), upper=1.0)
+    builder.rows(pods, (np.arange(pods)[:, np.newaxis], y, 1.0), upper=1.0)
 
-    most = _most_wanted(units, data.slots)
     pod, held = np.nonzero(stock)
     order, wanted = np.nonzero(units)
     enough = np.minimum(stock[pod, held, np.newaxis], most[held])
     builder.rows(
-        len(skus) * stations,
+        skus * stations,
         (held[:, np.newaxis] * stations + at, y[pod], enough),
         (wanted[:, np.newaxis] * stations + at, x[order], -units[order, wanted, np.newaxis]),
         lower=0.0,
