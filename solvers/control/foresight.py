@@ -24,8 +24,8 @@ class Foresight:
 
     Units wanted within the horizon are those of waiting orders and those that new orders will ask
     for: the rate at which units were picked so far, shared out by the units ordered of each SKU.
-    What has been measured counts from the first hour on; before, pick stations are taken to pick
-    two units per visit without a break.
+    So that the beginning is no accident, six minutes of picking without a break, and
+    twenty visits of two units, are counted in advance.
 
     Parameters
     ----------

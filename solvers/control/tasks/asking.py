@@ -97,8 +97,10 @@ class Asking(TaskAllocation[P]):
         for robot in list(self.view.asking.values()):
             if robot.task is None and robot.index in told:
                 yield from self._by_rule(robot, consult)
-        # others have come to need a task meanwhile
-        yield from self.decide(consult)
+        waiting = (robot for robot in self.view.asking.values() if robot.task is None)
+        if any(robot.index not in told for robot in waiting):
+            # they have come to need a task meanwhile; who was told nothing would be told it again
+            yield from self.decide(consult)
 
     def rest_place(self, robot: Robot) -> int:
         """Choose by the rest rule."""

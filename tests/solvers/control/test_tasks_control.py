@@ -133,6 +133,20 @@ def test_what_was_done_meanwhile_is_stale() -> None:
     assert call.stale == 1
 
 
+@pytest.mark.parametrize("control", [DispatchControl, RoutesControl])
+def test_a_robot_without_a_place_for_its_pod_is_not_asked_about_for_ever(control: type) -> None:
+    """Every place is taken: nothing is said, and nothing asked again at the same instant."""
+    situation = Situation(small_layout(places=4, robots=1))
+    situation.stock(3, s1=5)
+    situation.assigned(s1=1)
+    situation.carry(0, 3)
+    robot = situation.world.robots[0]
+    robot.task = None
+    situation.world.asking[0] = robot
+    situation.world.storage.keep(Situation(small_layout(robots=2)).world.robots[1], 3)
+    assert told(situation, situation.make(control))[0] == []
+
+
 def test_jobs_cover_requests_with_few_pods() -> None:
     """Pod 2 completes an order alone and comes first; pod 0 comes for what is left, pod 1 not."""
     situation = Situation()
