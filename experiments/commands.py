@@ -1,4 +1,4 @@
-"""`rmfs experiment`: plan, run, status, table, plot; and what `rmfs compare` prints.
+"""`rmfs experiment`: plan, run, status, table, plot.
 
 The command line prints an `InputError` as one line and exits with code 2; these functions just
 raise it.
@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from experiments.console import open_console
 from rmfs.errors import InputError
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from experiments.compare import Comparison
     from experiments.design.planning import Plan
     from experiments.store import Store
     from experiments.tables import Table
@@ -24,9 +24,6 @@ if TYPE_CHECKING:
 app = typer.Typer(help="Experiments: many arms, many seeds, one table.", no_args_is_help=True)
 
 RESULTS = Path("results")
-WIDE = 240
-"""Width of a table that goes to a file or a pipe."""
-
 FAILED = 1
 """Exit code where runs failed."""
 
@@ -202,8 +199,9 @@ def table(
     shown = _tables(made, frame, chosen, baseline, confidence, anova=anova, bootstrap=bootstrap)
     if file is None:
         if rows is None:
+            console = open_console()
             for one in shown:
-                _console().print(one.rich())
+                console.print(one.rich())
         return
     if len(shown) > 1:
         raise InputError("--anova: one column for one file")
@@ -286,88 +284,6 @@ def plot(
         confidence=confidence,
     )
     typer.echo(f"{target}: written, with {beside.name}")
-
-
-def print_comparisons(found: list[Comparison], columns: list[str], *, everything: bool) -> None:
-    """Print what `rmfs compare` found."""
-    from experiments.compare import chosen_columns
-
-    console = _console()
-    for number, one in enumerate(found):
-        if number:
-            console.print()
-        console.print(f"baseline  {one.baseline.name}", markup=False)
-        console.print(f"other     {one.other.name}", markup=False)
-        if one.identical:
-            console.print("identical: all reproducible columns are the same")
-        _print_inputs(console, one)
-        shown = chosen_columns(one, columns, everything=everything)
-        console.print(_outputs(one, shown))
-        console.print(_how(one))
-
-
-def _console() -> Any:
-    """Return what tables are printed to; elsewhere than on a terminal they are not folded."""
-    import sys
-
-    from rich.console import Console
-
-    return Console(highlight=False, width=None if sys.stdout.isatty() else WIDE)
-
-
-def _print_inputs(console: Any, one: Comparison) -> None:
-    from rich import box
-    from rich.table import Table
-
-    if one.inputs.empty:
-        known = bool(one.baseline.inputs) and bool(one.other.inputs)
-        console.print("input: the same" if known else "input: not known")
-        return
-    shown = Table("input", "baseline", "other", box=box.SIMPLE_HEAD)
-    for row in one.inputs.itertuples():
-        shown.add_row(str(row.key), str(row.baseline), str(row.other))
-    console.print(shown)
-
-
-def _outputs(one: Comparison, columns: list[str]) -> Any:
-    from rich import box
-    from rich.table import Table
-
-    from experiments.statistics.paired import holm
-
-    # over what is shown: a hundred columns nobody looks at prove nothing
-    corrected = holm(one.outputs.loc[columns, "p"])
-    shown = Table("output", box=box.SIMPLE_HEAD)
-    heads = ["baseline", "other", "difference", "relative"]
-    several = bool(one.outputs["low"].notna().any())
-    if several:
-        heads += ["interval", "p (Holm)"]
-    for head in heads:
-        shown.add_column(head, justify="right")
-    for column in columns:
-        row: dict[Any, Any] = one.outputs.loc[column].to_dict()
-        p = corrected[column]
-        cells = [_number(row["baseline"]), _number(row["other"]), _number(row["difference"])]
-        cells.append("-" if row["relative"] != row["relative"] else f"{row['relative']:+.1%}")
-        if several:
-            cells.append(f"{_number(row['low'])} to {_number(row['high'])}")
-            cells.append("-" if p != p else f"{p:.4f}")
-        shown.add_row(column, *cells)
-    return shown
-
-
-def _how(one: Comparison) -> str:
-    if one.pairs:
-        return f"paired by {one.pairs} common seed{'s' if one.pairs > 1 else ''}"
-    counts = f"{len(one.baseline.rows)} and {len(one.other.rows)}"
-    return f"no common seed: {counts} runs taken as independent (Welch)"
-
-
-def _number(value: float) -> str:
-    if value != value:
-        return "-"
-    size = abs(value)
-    return f"{value:,.0f}" if size >= 10_000 else f"{value:,.4g}"
 
 
 def _planned(design: str) -> Plan:

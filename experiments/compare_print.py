@@ -1,0 +1,83 @@
+"""What `rmfs compare` prints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from experiments.console import open_console
+
+if TYPE_CHECKING:
+    from experiments.compare import Comparison
+
+
+def print_comparisons(found: list[Comparison], columns: list[str], *, everything: bool) -> None:
+    """Print what `rmfs compare` found."""
+    from experiments.compare import chosen_columns
+
+    console = open_console()
+    for number, one in enumerate(found):
+        if number:
+            console.print()
+        console.print(f"baseline  {one.baseline.name}", markup=False)
+        console.print(f"other     {one.other.name}", markup=False)
+        if one.identical:
+            console.print("identical: all reproducible columns are the same")
+        _print_inputs(console, one)
+        shown = chosen_columns(one, columns, everything=everything)
+        console.print(_outputs(one, shown))
+        console.print(_how(one))
+
+
+def _print_inputs(console: Any, one: Comparison) -> None:
+    from rich import box
+    from rich.table import Table
+
+    if one.inputs.empty:
+        known = bool(one.baseline.inputs) and bool(one.other.inputs)
+        console.print("input: the same" if known else "input: not known")
+        return
+    shown = Table("input", "baseline", "other", box=box.SIMPLE_HEAD)
+    for row in one.inputs.itertuples():
+        shown.add_row(str(row.key), str(row.baseline), str(row.other))
+    console.print(shown)
+
+
+def _outputs(one: Comparison, columns: list[str]) -> Any:
+    from rich import box
+    from rich.table import Table
+
+    from experiments.statistics.paired import holm
+
+    # over what is shown: a hundred columns nobody looks at prove nothing
+    corrected = holm(one.outputs.loc[columns, "p"])
+    shown = Table("output", box=box.SIMPLE_HEAD)
+    heads = ["baseline", "other", "difference", "relative"]
+    several = bool(one.outputs["low"].notna().any())
+    if several:
+        heads += ["interval", "p (Holm)"]
+    for head in heads:
+        shown.add_column(head, justify="right")
+    for column in columns:
+        row: dict[Any, Any] = one.outputs.loc[column].to_dict()
+        p = corrected[column]
+        cells = [_number(row["baseline"]), _number(row["other"]), _number(row["difference"])]
+        cells.append("-" if row["relative"] != row["relative"] else f"{row['relative']:+.1%}")
+        if several:
+            cells.append(f"{_number(row['low'])} to {_number(row['high'])}")
+            cells.append("-" if p != p else f"{p:.4f}")
+        shown.add_row(column, *cells)
+    return shown
+
+
+def _how(one: Comparison) -> str:
+    if one.pairs:
+        return f"paired by {one.pairs} common seed{'s' if one.pairs > 1 else ''}"
+    counts = f"{len(one.baseline.rows)} and {len(one.other.rows)}"
+    return f"no common seed: {counts} runs taken as independent (Welch)"
+
+
+def _number(value: float) -> str:
+    if value != value:
+        return "-"
+    size = abs(value)
+    return f"{value:,.0f}" if size >= 10_000 else f"{value:,.4g}"
