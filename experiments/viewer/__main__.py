@@ -37,12 +37,13 @@ def speed(
 
 @app.command()
 def cost(
-    pairs: Annotated[int, typer.Option(min=1, help="Runs without and with a page.")] = 5,
+    rounds: Annotated[int, typer.Option(min=1, help="Runs of each kind.")] = 5,
+    drawn: Annotated[bool, typer.Option("--drawn", help="With the page in Chromium too.")] = False,
 ) -> None:
     """Measure how much slower runs of some ten seconds are when a page watches them."""
-    from experiments.viewer.live_cost import ratios, table
+    from experiments.viewer.live_cost import How, ratios, table
 
-    frame = table(pairs)
+    frame = table(rounds, [how for how in How if drawn or how is not How.DRAWN])
     print(frame.round(3).to_string(index=False))
     print(ratios(frame).round(3).to_string())
 

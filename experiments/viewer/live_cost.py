@@ -1,41 +1,50 @@
-"""How much slower a run is when a page watches it: pairs of runs, with and without, in turn."""
+"""How much slower a run is when a page watches it: runs alone and watched, in turn.
+
+Each run has an interpreter of its own, which has simulated a little before it is timed.
+"""
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
 import threading
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
 import rmfs
+from experiments.viewer.chromium import chromium
 from rmfs.view.answers import live_server
 from rmfs.view.live import LiveRun
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
 WATCHER = """
-import sys, time, urllib.request
+import http.client, sys, time
+from urllib.parse import urlsplit
 from rmfs.view.container import unpack
-url, known = sys.argv[1], {"motion": 0, "events": 0}
-ask = lambda path: unpack(urllib.request.urlopen(url + path, timeout=60).read())[0]["live"]
+server = http.client.HTTPConnection(urlsplit(sys.argv[1]).netloc, timeout=60)
+def ask(path):
+    server.request("GET", path)
+    return unpack(server.getresponse().read())[0]["live"]
 try:
-    known = ask("runs/0")["known"]
+    known = ask("/runs/0")["known"]
     while True:
         time.sleep(0.25)
-        told = ask(f"live?motion={known['motion']}&events={known['events']}&page=1")
+        told = ask(f"/live?motion={known['motion']}&events={known['events']}&page=1")
         known = told["known"]
         if told["ended"]:
             break
-except OSError:
+except (OSError, http.client.HTTPException):
     pass
 """
-"""Asks as the page does, in a process of its own as the page is."""
+"""Asks as the page does, in a process of its own as the page is, but draws nothing."""
 
 Overrides = list[tuple[list[str], Any]]
 
@@ -65,16 +74,34 @@ CASES = (
 """Some ten seconds of wall time each: 32 robots with little to plan, 128 with much."""
 
 
+PATIENCE_S = 5.0
+"""Wall time a run waits for its page to come."""
+
+WARM_S = 60.0
+"""Simulated time of the run that comes before the timed one: what is needed is loaded then."""
+
+
+class How(StrEnum):
+    """How a run is done."""
+
+    ALONE = "alone"
+    """Nothing is kept that only a page would need."""
+    KEPT = "kept"
+    """Trace and events are kept, but nobody asks for them."""
+    ASKED = "asked"
+    """A program asks as the page does, and draws nothing."""
+    DRAWN = "drawn"
+    """The page itself, in Chromium, which draws in software."""
+
+
 @dataclass(frozen=True, slots=True)
 class Timed:
     """One run.
 
     Attributes
     ----------
-    watched
-        Whether a page looked on; without one, nothing is kept that only a page would need.
     processor_s
-        Processor time of the simulating process, which no other process's load changes.
+        Processor time of the simulating process.
     wall_s
         Wall time.
     load
@@ -82,47 +109,79 @@ class Timed:
     """
 
     layout: str
-    watched: bool
+    how: How
     processor_s: float
     wall_s: float
     load: float
 
 
-def runs(case: Case, pairs: int) -> Iterator[Timed]:
-    """Time so many pairs of runs; which of the two comes first alternates."""
-    for index in range(pairs):
-        for watched in (False, True) if index % 2 == 0 else (True, False):
-            processor_s, wall_s = _watched(case) if watched else _timed(case)
-            yield Timed(case.layout, watched, processor_s, wall_s, os.getloadavg()[0])
+def runs(case: Case, rounds: int, hows: Sequence[How]) -> Iterator[Timed]:
+    """Time a run of each kind, so many times; the order is reversed every other time."""
+    for index in range(rounds):
+        for how in hows if index % 2 == 0 else reversed(hows):
+            yield Timed(case.layout, how, *_timed(case, how), os.getloadavg()[0])
 
 
-def table(pairs: int, cases: Iterable[Case] = CASES) -> pd.DataFrame:
+def table(rounds: int, hows: Sequence[How], cases: Iterable[Case] = CASES) -> pd.DataFrame:
     """Return all runs, one row each."""
-    return pd.DataFrame([asdict(run) for case in cases for run in runs(case, pairs)])
+    return pd.DataFrame([asdict(run) for case in cases for run in runs(case, rounds, hows)])
 
 
 def ratios(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return what a page costs per layout: medians with one, divided by medians without."""
-    medians = frame.groupby(["layout", "watched"])[["processor_s", "wall_s"]].median()
-    alone, watched = (medians.xs(key, level="watched") for key in (False, True))
-    return (watched / alone).add_suffix("_ratio").join(alone)
+    """Return what each kind of run takes per layout: medians, divided by those of runs alone."""
+    medians = frame.groupby(["layout", "how"])[["processor_s", "wall_s"]].median()
+    alone = medians.xs(How.ALONE, level="how")
+    return (medians / alone).add_suffix("_ratio").join(medians)
 
 
-def _watched(case: Case) -> tuple[float, float]:
-    names = {name: getattr(case, name) for name in ("layout", "scenario", "controllers")}
+def _timed(case: Case, how: How) -> tuple[float, float]:
+    """Return processor and wall time of a run in an interpreter of its own."""
+    given = json.dumps({**asdict(case), "how": how})
+    code = "import sys; from experiments.viewer.live_cost import tell; tell(sys.argv[1])"
+    with subprocess.Popen(
+        [sys.executable, "-c", code, given], text=True, stdout=subprocess.PIPE
+    ) as run:
+        assert run.stdout is not None
+        match how:
+            case How.ASKED:
+                with subprocess.Popen(
+                    [sys.executable, "-c", WATCHER, run.stdout.readline().strip()]
+                ):
+                    told = run.stdout.readline()
+            case How.DRAWN:
+                with chromium() as browser:
+                    browser.new_page().goto(run.stdout.readline().strip())
+                    told = run.stdout.readline()
+            case _:
+                told = run.stdout.readline()
+    processor_s, wall_s = json.loads(told)
+    return processor_s, wall_s
+
+
+def tell(given: str) -> None:
+    """Do a run and print its processor and wall time; before that an address, if it is watched."""
+    told = json.loads(given)
+    how, case = How(told.pop("how")), Case(**told)
+    _simulated(replace(case, simulated_s=WARM_S))
+    if how is How.ALONE:
+        print(json.dumps(_simulated(case)))
+        return
+    names = {name: told[name] for name in ("layout", "scenario", "controllers")}
     live = LiveRun(names, title="cost")
+    kept: dict[str, Any] = {"events": live.events, "observers": [live]}
+    if how is How.KEPT:
+        print(json.dumps(_simulated(case, **kept)))
+        return
     with live_server(live) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
-        with subprocess.Popen([sys.executable, "-c", WATCHER, server.url]) as page:
-            try:
-                return _timed(case, events=live.events, observers=[live])
-            finally:
-                live.close("over")
-                page.wait(60)
-                server.shutdown()
+        print(server.url, flush=True)
+        live.await_page(PATIENCE_S)
+        print(json.dumps(_simulated(case, **kept)), flush=True)
+        live.await_farewell(1.0)
+        server.shutdown()
 
 
-def _timed(case: Case, **options: Any) -> tuple[float, float]:
+def _simulated(case: Case, **options: Any) -> tuple[float, float]:
     wall_s, own_s = time.perf_counter(), time.process_time()
     rmfs.simulate(
         case.layout, case.scenario, case.controllers, seed=1, overrides=case.overrides, **options

@@ -92,6 +92,7 @@ class LiveRun(Observer):
         self._exchanges: list[Choice] = []
         self._pages: dict[str, float] = {}
         self._left: set[str] = set()
+        self._visited = self._greeted = False
         self._simulation: Simulation | None = None
         self._ended = ""
         self._answered_s = time.process_time()
@@ -161,6 +162,9 @@ class LiveRun(Observer):
 
     def scene(self) -> bytes:
         """Pack everything so far, the warehouse included."""
+        with self._meeting:
+            self._visited = True
+            self._meeting.notify_all()
         news = self._news(Known())
         simulation = self._simulation
         assert simulation is not None
@@ -270,15 +274,15 @@ class LiveRun(Observer):
             self._meeting.notify_all()
 
     def await_page(self, patience_s: float) -> None:
-        """Wait until a page is there, but not for long."""
-        end_s = time.monotonic() + patience_s
+        """Wait until a page asks for the run, but not for long."""
         with self._meeting:
-            self._meeting.wait_for(lambda: self._pages, end_s - time.monotonic())
+            self._meeting.wait_for(lambda: self._visited, patience_s)
 
     def await_farewell(self, patience_s: float) -> None:
         """Give the pages that are there a moment to see the end."""
         end_s = time.monotonic() + patience_s
-        while self._pages and time.monotonic() < end_s:
+        # one that has only just come does not say yet that it is there
+        while (self._pages or (self._visited and not self._greeted)) and time.monotonic() < end_s:
             time.sleep(0.05)
 
     def _is_here(self, page: str) -> bool:
@@ -286,6 +290,7 @@ class LiveRun(Observer):
         if page in self._left:
             return False
         self._pages[page] = time.monotonic()
+        self._greeted = True
         return True
 
     def _spare(self) -> None:

@@ -208,6 +208,27 @@ def test_after_the_end_pages_are_told_why() -> None:
         watched.live.exchange("psa", {"name": "random"})
 
 
+def test_a_run_that_waits_for_its_page_begins_when_that_asks() -> None:
+    watched = Watched()
+    waits = threading.Thread(target=watched.live.await_page, args=(3600.0,), daemon=True)
+    waits.start()
+    asks = threading.Thread(target=watched.live.scene, daemon=True)
+    asks.start()
+    waits.join(60)
+    assert not waits.is_alive()
+    # the page waits for the run, and is not there yet when it ends
+    watched.start()
+    watched.result()
+    asks.join(60)
+    assert not asks.is_alive()
+    leaves = threading.Thread(target=watched.live.await_farewell, args=(3600.0,), daemon=True)
+    leaves.start()
+    watched.told(page="one")
+    watched.live.leave("one")
+    leaves.join(60)
+    assert not leaves.is_alive()
+
+
 def test_a_run_that_never_began_is_told() -> None:
     live = LiveRun(NAMES, title="test")
     live.close("the run was given up")
