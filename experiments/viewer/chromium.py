@@ -6,7 +6,7 @@ import shutil
 import threading
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rmfs.errors import InputError
 
@@ -18,10 +18,18 @@ if TYPE_CHECKING:
     from rmfs.view.server import Server
 
 PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
-SOFTWARE = ["--no-sandbox", "--enable-unsafe-swiftshader"]
-"""Draws without a graphics card; the sandbox needs rights that a container may not have."""
+SOFTWARE = ["--no-sandbox", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"]
+"""Draws without a graphics card, and without rights and memory that a container may not have."""
 
 PATIENCE_MS = 120_000
+"""How long to wait for what a busy machine draws in software."""
+
+
+def open_page(browser: Browser, **options: Any) -> Page:
+    """Open a page that waits patiently for all that is asked of it."""
+    page = browser.new_page(**options)
+    page.set_default_timeout(PATIENCE_MS)
+    return page
 
 
 def installed() -> str | None:
@@ -57,7 +65,9 @@ def chromium() -> Iterator[Browser]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=SOFTWARE)
+        browser = playwright.chromium.launch(
+            executable_path=program, args=SOFTWARE, timeout=PATIENCE_MS
+        )
         yield browser
         browser.close()
 
@@ -74,4 +84,4 @@ def served(server: Server) -> Iterator[str]:
 def show(page: Page, url: str) -> None:
     """Go to an address of the viewer and wait for its first frame."""
     page.goto(url)
-    page.wait_for_function("window.rmfs?.frames > 0", timeout=PATIENCE_MS)
+    page.wait_for_function("window.rmfs?.frames > 0")

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 import rmfs
-from experiments.viewer.chromium import chromium
+from experiments.viewer.chromium import chromium, open_page
 from rmfs.view.answers import live_server
 from rmfs.view.live import LiveRun
 
@@ -150,7 +150,7 @@ def _timed(case: Case, how: How) -> tuple[float, float]:
                     told = run.stdout.readline()
             case How.DRAWN:
                 with chromium() as browser:
-                    browser.new_page().goto(run.stdout.readline().strip())
+                    open_page(browser).goto(run.stdout.readline().strip())
                     told = run.stdout.readline()
             case _:
                 told = run.stdout.readline()

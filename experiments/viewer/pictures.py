@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from PIL import Image
 
 import rmfs
-from experiments.viewer.chromium import chromium, served, show
+from experiments.viewer.chromium import chromium, open_page, served, show
 from rmfs.files import replacing
 from rmfs.measure import load_run, write_run
 from rmfs.view.answers import replay_server
@@ -58,8 +58,8 @@ def take(folder: Path, tell: Callable[[str], None]) -> list[Path]:
         paths = []
         with chromium() as browser:
             for name, (shown, change) in PICTURES.items():
-                page = browser.new_page(
-                    viewport={"width": WIDTH, "height": HEIGHT}, bypass_csp=True
+                page = open_page(
+                    browser, viewport={"width": WIDTH, "height": HEIGHT}, bypass_csp=True
                 )
                 with served(replay_server([runs[one] for one in shown])) as url:
                     show(page, url)

@@ -13,7 +13,7 @@ import pandas as pd
 import psutil  # type: ignore[import-untyped]
 
 import rmfs
-from experiments.viewer.chromium import chromium, served, show
+from experiments.viewer.chromium import chromium, open_page, served, show
 from experiments.viewer.copies import copies
 from rmfs.measure import load_run, write_run
 from rmfs.view import scene
@@ -146,8 +146,7 @@ def _measure(
     browser: Browser, url: str, change: str, seconds: float, card: bool
 ) -> tuple[float, float, float, int]:
     # waiting for a function of the page is what its policy forbids
-    context = browser.new_context(viewport={"width": WIDTH, "height": HEIGHT}, bypass_csp=True)
-    page = context.new_page()
+    page = open_page(browser, viewport={"width": WIDTH, "height": HEIGHT}, bypass_csp=True)
     if card:
         page.add_init_script(CARD)
     show(page, url)
@@ -158,7 +157,7 @@ def _measure(
     after = *_processor_s(), _frames(page)
     page_s, processor_s, frames = (b - a for a, b in zip(before, after, strict=True))
     calls = int(page.evaluate("rmfs.panes[0].stage.renderer.info.render.calls"))
-    context.close()
+    page.close()
     return rate, 1000 * page_s / max(frames, 1), 1000 * processor_s / max(frames, 1), calls
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import rmfs
-from experiments.viewer.chromium import chromium
+from experiments.viewer.chromium import chromium, open_page
 from rmfs.measure import RunFolder, load_run, write_run
 
 WARMUP_S, END_S = 60.0, 660.0
@@ -40,7 +40,7 @@ def browser() -> Iterator[Any]:
 def page(browser: Any) -> Iterator[Any]:
     """A page that must not complain."""
     # asking the page things from outside needs what its policy forbids
-    made = browser.new_page(viewport={"width": 1100, "height": 700}, bypass_csp=True)
+    made = open_page(browser, viewport={"width": 1100, "height": 700}, bypass_csp=True)
     complaints: list[str] = []
     made.on("console", lambda m: complaints.append(m.text) if m.type == "error" else None)
     made.on("pageerror", lambda error: complaints.append(str(error)))

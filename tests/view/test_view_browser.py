@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from in_browser import needs_browser, show, state
 
+from experiments.viewer.chromium import open_page
 from rmfs.measure import RunFolder
 from rmfs.measure.checker import motion
 from rmfs.measure.checker.trace import Kinematics, read
@@ -178,7 +179,7 @@ def test_a_file_that_is_cut_off_says_so(page: Any, runs: list[RunFolder], tmp_pa
 
 
 def test_the_policy_lets_the_page_work(browser: Any, address: str) -> None:
-    page = browser.new_page()
+    page = open_page(browser)
     complaints: list[str] = []
     page.on("console", lambda m: complaints.append(m.text) if m.type == "error" else None)
     page.goto(address)
@@ -191,7 +192,7 @@ def test_the_policy_lets_the_page_work(browser: Any, address: str) -> None:
 def test_a_damaged_run_gives_a_message(browser: Any, runs: list[RunFolder], tmp_path: Path) -> None:
     with replay_server([RunFolder(tmp_path, runs[0].parameters)]) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
-        page = browser.new_page()
+        page = open_page(browser)
         page.goto(server.url)
         page.wait_for_selector(".failure")
         assert "run with --trace" in page.text_content(".failure")

@@ -123,9 +123,9 @@ def test_the_form_starts_a_run(page: Any, started: Any, tmp_path: Path) -> None:
     page.fill("#start-out", "mine")
     page.fill("#start-speed", "600")
     page.click("#start-run")
-    page.wait_for_function("window.rmfs?.runs[0].live !== undefined", timeout=60_000)
+    page.wait_for_function("window.rmfs?.runs[0].live !== undefined")
     assert page.evaluate("rmfs.runs[0].layout.robotWaypoint.length") == 6
-    page.wait_for_function("rmfs.runs[0].live.ended !== ''", timeout=60_000)
+    page.wait_for_function("rmfs.runs[0].live.ended !== ''")
     written = tmp_path / "results" / "mine" / "run.json"
     for _ in range(600):
         if written.is_file():
