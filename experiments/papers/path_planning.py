@@ -99,17 +99,17 @@ INSTANCES = [
             "whca-n": (1172.0, 344.8, 900),
             "whca-v": (1248.0, 372.4, 900),
         },
-        seeds=6,
-        slow={"bcp": 1},
+        seeds=10,
+        slow={"bcp": 3},
     ),
     Instance(
         "study-tiers",
         "pp/3-12-12-96-1650.xinst",
         {"far": (1347.0, 234.2, 3600), "whca-n": (1342.0, 231.5, 3600)},
-        seeds=5,
-        slow={"bcp": 1},
+        seeds=10,
+        slow={"bcp": 3},
     ),
-    Instance("study-tiers", "pp/3-12-12-96-1650.xinst", {}, seeds=1, slow={"bcp": 0}, riding=True),
+    Instance("study-tiers", "pp/3-12-12-96-1650.xinst", {}, seeds=5, slow={"bcp": 0}, riding=True),
 ]
 """The less time they were simulated, the more the start counts, when all robots are free."""
 

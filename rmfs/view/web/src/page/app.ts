@@ -20,6 +20,8 @@ import { toolbar } from "./toolbar";
 const FIGURES_MS = 250;
 /** How long it takes (s) to come closer to the present by two thirds. */
 const CATCHING_UP_S = 0.15;
+/** Further from the present than this (simulated s) nobody could follow the robots: it is shown at once. */
+const FAR_S = 30;
 /** A frame that took longer counts as so long: a page that was hidden does not jump ahead. */
 const LONGEST_FRAME_S = 0.25;
 const HEAT_PARTS: (keyof ViewState)[] = ["heat", "from_s", "to_s", "theme", "mode", "tier"];
@@ -179,7 +181,8 @@ export class App {
   private follow(passed_s: number): void {
     const missing_s = this.end_s - this.store.state.time_s;
     if (Math.abs(missing_s) < 1e-6) return;
-    const share = Math.abs(missing_s) < 0.01 ? 1 : 1 - Math.exp(-passed_s / CATCHING_UP_S);
+    const near = Math.abs(missing_s) > 0.01 && Math.abs(missing_s) < FAR_S;
+    const share = near ? 1 - Math.exp(-passed_s / CATCHING_UP_S) : 1;
     this.following = true;
     this.store.set({ time_s: this.store.state.time_s + share * missing_s, playing: false });
     this.following = false;
