@@ -137,7 +137,7 @@ class CostAsleep:
     cpu_s
         Processor time of the driver and all workers.
     memory_mb
-        Resident memory of the driver after each run.
+        Resident memory of the driver after each run, and when all are stored.
     """
 
     runs: int
@@ -334,6 +334,7 @@ def drive_asleep(design: str, asleep_s: str, jobs: str) -> None:
     memory = _Memory(optional("psutil", "experiments", "the cost of the harness").Process())
     done = drive(made, Store(path.parent / "out"), engine, memory)
     assert done.finished == done.wanted and not done.failed
+    memory.look()
     told = {"cpu_s": memory.cpu_s(), "memory_mb": memory.mb}
     path.with_name(TOLD).write_text(json.dumps(told), encoding="utf-8")
 
@@ -353,6 +354,9 @@ class _Memory(Silent):
         self.mb: list[float] = []
 
     def ended(self, job: Job, outcome: Outcome) -> None:
+        self.look()
+
+    def look(self) -> None:
         self.mb.append(round(self.process.memory_info().rss / 1e6, 1))
 
     def cpu_s(self) -> float:

@@ -37,6 +37,9 @@ MERGED = "merged-"
 MANY = 256
 """Files of single runs that are merged into one."""
 
+FEW = 16
+"""Of these, how many are read at a time."""
+
 ORIGIN = ("run", "arm_digest", "replication", "arm", "design", "design_hash")
 """Columns of a stored row, before the footprint, that say which run it is."""
 
@@ -123,7 +126,12 @@ class Store:
             return
         for start in range(0, len(single), MANY):
             chunk = single[start : start + MANY]
-            table = _together([_read(path) for path in chunk])
+            # a table of one row takes a hundred times what it holds: few of them at a time
+            parts = [
+                _together([_read(path) for path in chunk[first : first + FEW]]).combine_chunks()
+                for first in range(0, len(chunk), FEW)
+            ]
+            table = _together(parts)
             self._write(self.folder / RUNS / f"{MERGED}{chunk[0].stem}.parquet", table)
             # a reader that comes now meets some rows twice and drops the doubles
             for path in chunk:

@@ -138,8 +138,10 @@ def _timed(case: Case, how: How) -> tuple[float, float]:
     """Return processor and wall time of a run in an interpreter of its own."""
     given = json.dumps({**asdict(case), "how": how})
     code = "import sys; from experiments.viewer.live_cost import tell; tell(sys.argv[1])"
+    # the order of sets makes more difference than a page
+    same = {**os.environ, "PYTHONHASHSEED": "0"}
     with subprocess.Popen(
-        [sys.executable, "-c", code, given], text=True, stdout=subprocess.PIPE
+        [sys.executable, "-c", code, given], env=same, text=True, stdout=subprocess.PIPE
     ) as run:
         assert run.stdout is not None
         match how:

@@ -63,8 +63,14 @@ def test_of_sleeping_runs_the_processor_time_counts():
 @pytest.mark.slow
 def test_sleeping_runs_go_the_whole_way():
     cost = measure_asleep(5, 0.2, 5)
-    assert len(cost.memory_mb) == 5 and min(cost.memory_mb) > 10
+    assert len(cost.memory_mb) == 6 and min(cost.memory_mb) > 10
     assert cost.wall_s > 0.2 and cost.cpu_s > 0
+
+
+@pytest.mark.slow
+def test_the_memory_of_the_driver_is_flat_although_it_merges_the_files_of_the_runs():
+    cost = measure_asleep(300, 0.02, 4)
+    assert max(cost.memory_mb[30:]) < 1.05 * cost.memory_mb[30]
 
 
 @pytest.mark.slow
