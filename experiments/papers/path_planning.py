@@ -109,7 +109,7 @@ INSTANCES = [
         seeds=10,
         slow={"bcp": 3},
     ),
-    Instance("study-tiers", "pp/3-12-12-96-1650.xinst", {}, seeds=5, slow={"bcp": 0}, riding=True),
+    Instance("study-tiers", "pp/3-12-12-96-1650.xinst", {}, seeds=3, slow={"bcp": 0}, riding=True),
 ]
 """The less time they were simulated, the more the start counts, when all robots are free."""
 

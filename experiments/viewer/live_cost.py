@@ -109,6 +109,7 @@ class Timed:
     """
 
     layout: str
+    round: int
     how: How
     processor_s: float
     wall_s: float
@@ -119,7 +120,7 @@ def runs(case: Case, rounds: int, hows: Sequence[How]) -> Iterator[Timed]:
     """Time a run of each kind, so many times; the order is reversed every other time."""
     for index in range(rounds):
         for how in hows if index % 2 == 0 else reversed(hows):
-            yield Timed(case.layout, how, *_timed(case, how), os.getloadavg()[0])
+            yield Timed(case.layout, index, how, *_timed(case, how), os.getloadavg()[0])
 
 
 def table(rounds: int, hows: Sequence[How], cases: Iterable[Case] = CASES) -> pd.DataFrame:
@@ -128,10 +129,15 @@ def table(rounds: int, hows: Sequence[How], cases: Iterable[Case] = CASES) -> pd
 
 
 def ratios(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return what each kind of run takes per layout: medians, divided by those of runs alone."""
-    medians = frame.groupby(["layout", "how"])[["processor_s", "wall_s"]].median()
-    alone = medians.xs(How.ALONE, level="how")
-    return (medians / alone).add_suffix("_ratio").join(medians)
+    """Return what each kind of run takes per layout, divided by what a run alone takes.
+
+    Runs of one round are compared with each other, as machines are now faster and now slower; then
+    the quartiles over the rounds are taken.
+    """
+    times = frame.set_index(["layout", "round", "how"])[["processor_s", "wall_s"]]
+    alone = times.xs(How.ALONE, level="how")
+    each = (times / alone).groupby(["layout", "how"])
+    return pd.concat({f"{q:.0%}": each.quantile(q) for q in (0.25, 0.5, 0.75)}, axis=1)
 
 
 def _timed(case: Case, how: How) -> tuple[float, float]:
