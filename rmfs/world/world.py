@@ -90,14 +90,15 @@ class World(WorldState):
             What has the slot: the order, or its part.
         """
         target = self.pick_stations[station]
-        if order.index in target.orders:
-            return self.assign_lines(order, station, [line.sku for line in order.lines])
-        if not target.active or target.free_slots <= 0:
+        joins = order.index in target.orders
+        if not joins and (not target.active or target.free_slots <= 0):
             raise ValueError(f"station {station} takes no order now")
         if order.queued_at >= 0:
             if order.queued_at != station:
                 raise ValueError(f"order {order.index} is queued at station {order.queued_at}")
             self._leave_pool(order)
+        if joins:
+            return self.assign_lines(order, station, [line.sku for line in order.lines])
         self.orders.remove(order)
         order.station = station
         if isnan(order.assigned_s):

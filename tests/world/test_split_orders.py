@@ -92,6 +92,24 @@ def test_lines_join_the_part_that_is_there(situation: Situation) -> None:
     verify(world, [order, part])
 
 
+def test_what_is_left_of_an_order_joins_its_part_out_of_the_pool(situation: Situation) -> None:
+    """The rest was queued where the part is: it leaves the pool, and needs no slot."""
+    world = situation.world
+    order = situation.order(s1=1, s2=2)
+    part = world.assign_lines(order, 0, [1])
+    world.queue_order(order, 0)
+    situation.assigned(s3=1)
+    assert world.pick_stations[0].free_slots == 0
+    assert world.assign_order(order, 0) is part
+    assert not world.pick_stations[0].queued
+    assert order not in world.orders
+    verify(world)
+    situation.carry(robot=0, pod=0)
+    pick_all(situation)
+    assert world.complete_order(part) is order
+    verify(world, [order, part])
+
+
 def test_times_and_lines_of_the_whole(situation: Situation) -> None:
     """Assigned with its first line."""
     world = situation.world
