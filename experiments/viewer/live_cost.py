@@ -9,8 +9,8 @@ import json
 import os
 import subprocess
 import sys
-import threading
 import time
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 import rmfs
-from experiments.viewer.chromium import chromium, open_page
+from experiments.viewer.chromium import chromium, open_page, served
 from rmfs.view.answers import live_server
 from rmfs.view.live import LiveRun
 
@@ -76,6 +76,9 @@ CASES = (
 
 PATIENCE_S = 5.0
 """Wall time a run waits for its page to come."""
+
+FAREWELL_S = 1.0
+"""Wall time the page has to see the end."""
 
 WARM_S = 60.0
 """Simulated time of the run that comes before the timed one: what is needed is loaded then."""
@@ -171,22 +174,15 @@ def tell(given: str) -> None:
     told = json.loads(given)
     how, case = How(told.pop("how")), Case(**told)
     _simulated(replace(case, simulated_s=WARM_S))
-    if how is How.ALONE:
-        print(json.dumps(_simulated(case)))
-        return
     names = {name: told[name] for name in ("layout", "scenario", "controllers")}
     live = LiveRun(names, title="cost")
     kept: dict[str, Any] = {"events": live.events, "observers": [live]}
-    if how is How.KEPT:
-        print(json.dumps(_simulated(case, **kept)))
-        return
-    with live_server(live) as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        print(server.url, flush=True)
-        live.await_page(PATIENCE_S)
-        print(json.dumps(_simulated(case, **kept)), flush=True)
-        live.await_farewell(1.0)
-        server.shutdown()
+    with ExitStack() as stack:
+        if how in (How.ASKED, How.DRAWN):
+            print(stack.enter_context(served(live_server(live))), flush=True)
+            live.await_page(PATIENCE_S)
+        print(json.dumps(_simulated(case, **({} if how is How.ALONE else kept))), flush=True)
+        live.await_farewell(FAREWELL_S)
 
 
 def _simulated(case: Case, **options: Any) -> tuple[float, float]:

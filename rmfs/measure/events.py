@@ -58,6 +58,8 @@ COLUMNS = ("time_us", "kind", "robot", "pod", "station", "order", "sku", "units"
 
 
 ROW = Struct(f"{len(COLUMNS)}q")
+"""An event in the log's memory: its columns as 64-bit integers."""
+
 _row = ROW.pack
 
 KINDS = [kind.name.lower().replace("_", "-") for kind in Happening]

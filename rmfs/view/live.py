@@ -92,7 +92,7 @@ class LiveRun(Observer):
         self._exchanges: list[Choice] = []
         self._pages: dict[str, float] = {}
         self._left: set[str] = set()
-        self._visited = self._greeted = False
+        self._visited = False
         self._simulation: Simulation | None = None
         self._ended = ""
         self._answered_s = time.process_time()
@@ -281,8 +281,8 @@ class LiveRun(Observer):
     def await_farewell(self, patience_s: float) -> None:
         """Give the pages that are there a moment to see the end."""
         end_s = time.monotonic() + patience_s
-        # one that has only just come does not say yet that it is there
-        while (self._pages or (self._visited and not self._greeted)) and time.monotonic() < end_s:
+        # a page that is still being built has not said yet that it is there
+        while (self._pages or (self._visited and not self._left)) and time.monotonic() < end_s:
             time.sleep(0.05)
 
     def _is_here(self, page: str) -> bool:
@@ -290,7 +290,6 @@ class LiveRun(Observer):
         if page in self._left:
             return False
         self._pages[page] = time.monotonic()
-        self._greeted = True
         return True
 
     def _spare(self) -> None:

@@ -88,6 +88,12 @@ class World(WorldState):
         -------
         Order
             What has the slot: the order, or its part.
+
+        Raises
+        ------
+        ValueError
+            If the order is queued at another station, or needs a slot and the station is inactive
+            or has none free.
         """
         target = self.pick_stations[station]
         joins = order.index in target.orders
@@ -118,6 +124,12 @@ class World(WorldState):
         -------
         Order
             What now is at the station: the part, or the order itself.
+
+        Raises
+        ------
+        ValueError
+            If these are no lines of an order of the backlog that is in no pool, or they need a slot
+            and the station is inactive or has none free.
         """
         target = self.pick_stations[station]
         lines = tuple(line for line in order.lines if line.sku in skus)
