@@ -1,21 +1,25 @@
 """Maturin as the build back end, after a look whether Rust is there.
 
-Left alone, maturin downloads an unpinned Rust, or ends in a traceback where it cannot.
+Left alone, maturin downloads an unpinned Rust, or ends in a traceback where it cannot; and it does
+not follow the links by which `solvers`, `experiments` and `instances` are parts of the package.
 """
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import os
 import re
 import shutil
 import subprocess
+import zipfile
 from pathlib import Path
 from typing import Any
 
+import maturin
 from maturin import (
     build_editable,
     build_sdist,
-    build_wheel,
     prepare_metadata_for_build_editable,
     prepare_metadata_for_build_wheel,
 )
@@ -31,7 +35,17 @@ __all__ = [
     "prepare_metadata_for_build_wheel",
 ]
 
-MANIFEST = Path(__file__).resolve().parent.parent / "rmfs" / "traffic" / "Cargo.toml"
+ROOT = Path(__file__).resolve().parent.parent
+MANIFEST = ROOT / "rmfs" / "traffic" / "Cargo.toml"
+
+FOLDERS = {
+    "solvers": "rmfs/solvers",
+    "experiments": "rmfs/experiments",
+    "instances": "rmfs/shipped",
+}
+"""Folders of the repository that are installed below the package: no name at the top is taken."""
+
+_AGE = (1980, 1, 1, 0, 0, 0)  # of every file that is added: equal sources give equal wheels
 
 os.environ["MATURIN_NO_INSTALL_RUST"] = "1"
 
@@ -78,3 +92,40 @@ def get_requires_for_build_wheel(config_settings: Any = None) -> list[str]:
 
 get_requires_for_build_editable = get_requires_for_build_wheel
 get_requires_for_build_sdist = get_requires_for_build_wheel
+
+
+def build_wheel(
+    wheel_directory: str, config_settings: Any = None, metadata_directory: str | None = None
+) -> str:
+    """Build the wheel, and put the folders into it that are installed below the package."""
+    name: str = maturin.build_wheel(wheel_directory, config_settings, metadata_directory)
+    add_folders(Path(wheel_directory) / name)
+    return name
+
+
+def add_folders(wheel: Path) -> None:
+    """Put the files of `FOLDERS` into a wheel and its record."""
+    added = {
+        f"{target}/{path.relative_to(ROOT / folder).as_posix()}": path.read_bytes()
+        for folder, target in FOLDERS.items()
+        for path in sorted((ROOT / folder).rglob("*"))
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+    whole = wheel.with_suffix(".new")
+    with zipfile.ZipFile(wheel) as old, zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED) as new:
+        for entry in old.infolist():
+            content = old.read(entry)
+            if entry.filename.endswith(".dist-info/RECORD"):
+                content = b"".join(map(recorded, added, added.values())) + content
+            new.writestr(entry, content, zipfile.ZIP_DEFLATED)
+        for name, content in added.items():
+            entry = zipfile.ZipInfo(name, _AGE)
+            entry.external_attr = 0o644 << 16
+            new.writestr(entry, content, zipfile.ZIP_DEFLATED)
+    whole.replace(wheel)
+
+
+def recorded(name: str, content: bytes) -> bytes:
+    """Return the line of a file in the record of a wheel."""
+    digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+    return f"{name},sha256={digest},{len(content)}\n".encode()

@@ -8,20 +8,20 @@ frame = experiments.load("results/fleet-size")
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from experiments.design.planning import Plan as Plan
-    from experiments.design.planning import plan as plan
-    from experiments.results import failures as failures
-    from experiments.results import load as load
-    from experiments.results import reproducible_table as reproducible_table
-    from experiments.running import run as run
+    from rmfs.experiments.design.planning import Plan as Plan
+    from rmfs.experiments.design.planning import plan as plan
+    from rmfs.experiments.results import failures as failures
+    from rmfs.experiments.results import load as load
+    from rmfs.experiments.results import reproducible_table as reproducible_table
+    from rmfs.experiments.running import run as run
 
 _PLACES = {
-    "Plan": "experiments.design.planning",
-    "plan": "experiments.design.planning",
-    "failures": "experiments.results",
-    "load": "experiments.results",
-    "reproducible_table": "experiments.results",
-    "run": "experiments.running",
+    "Plan": "rmfs.experiments.design.planning",
+    "plan": "rmfs.experiments.design.planning",
+    "failures": "rmfs.experiments.results",
+    "load": "rmfs.experiments.results",
+    "reproducible_table": "rmfs.experiments.results",
+    "run": "rmfs.experiments.running",
 }
 
 

@@ -1,8 +1,8 @@
 """What a unit of work of each solver takes on this machine: the rates of the pacing mode `work`.
 
-`python -m experiments.calibrate` collects the questions that controllers ask in short runs, answers
-each again three times, and takes the least processor time (which other programs disturb little).
-Per back end, seconds of a call and seconds per unit of work are fitted to that by least squares,
+`python -m rmfs.experiments.calibrate` collects the questions that controllers ask in short runs,
+answers each again three times, and takes the least processor time (which other programs disturb
+little). Per back end, seconds of a call and seconds per unit of work are fitted to that by least squares,
 neither below zero. It writes `results/published/seconds-per-unit.md` and .csv, and prints the key
 `pacing.seconds_per_unit` for one's own runs. The defaults in `rmfs/simulation/pacing/computed.py`
 are those of the published table.
@@ -151,7 +151,7 @@ def main(arguments: list[str] | None = None) -> None:
         before = pd.read_csv(given.out.with_suffix(".csv"), index_col="backend")
         found = pd.concat([before.drop(index=found.index, errors="ignore"), found]).sort_index()
     told = (
-        f"Measured by `python -m experiments.calibrate` on {datetime.date.today()}: "
+        f"Measured by `python -m rmfs.experiments.calibrate` on {datetime.date.today()}: "
         f"{processor()}, Python {platform.python_version()}. "
         "seconds_per_call: of building and all else that does not grow with the work."
     )

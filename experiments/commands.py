@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from experiments.console import open_console
 from rmfs.errors import InputError
+from rmfs.experiments.console import open_console
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from experiments.design.planning import Plan
-    from experiments.store import Store
-    from experiments.tables import Table
+    from rmfs.experiments.design.planning import Plan
+    from rmfs.experiments.store import Store
+    from rmfs.experiments.tables import Table
 
 app = typer.Typer(help="Experiments: many arms, many seeds, one table.", no_args_is_help=True)
 
@@ -59,10 +59,10 @@ def plan(
     pilot: Annotated[bool, typer.Option(help="Try out short runs to estimate the time.")] = True,
 ) -> None:
     """Check a design: number of runs, time, and everything that is wrong with it."""
-    from experiments.design.stages import schedule
-    from experiments.results import assigned, failed_pairs
-    from experiments.running import cores
-    from experiments.running.pilot import estimate
+    from rmfs.experiments.design.stages import schedule
+    from rmfs.experiments.results import assigned, failed_pairs
+    from rmfs.experiments.running import cores
+    from rmfs.experiments.running.pilot import estimate
 
     made = _planned(design)
     store = _store(made, out)
@@ -89,7 +89,7 @@ def plan(
 
 
 def _tell_time(found: Any, left: int, processes: int) -> None:
-    from experiments.running.progress import spoken
+    from rmfs.experiments.running.progress import spoken
 
     if found is None:
         typer.echo("  time     unknown: no short run got through")
@@ -119,8 +119,8 @@ def run(
 
     Exit code 1 if runs failed: the others are done all the same.
     """
-    from experiments.running import run as run_plan
-    from experiments.running.progress import watching
+    from rmfs.experiments.running import run as run_plan
+    from rmfs.experiments.running.progress import watching
 
     made = _planned(design)
     _refuse(made)
@@ -136,8 +136,8 @@ def run(
 @app.command()
 def status(design: Design, out: Out = None) -> None:
     """Say how far an experiment has come, and what failed."""
-    from experiments.results import assigned, failed
-    from experiments.running.driver import progress_of
+    from rmfs.experiments.results import assigned, failed
+    from rmfs.experiments.running.driver import progress_of
 
     made = _planned(design)
     _refuse(made)
@@ -186,9 +186,9 @@ def table(
     ] = None,
 ) -> None:
     """Show means with confidence intervals, paired differences, or an analysis of variance."""
-    from experiments import tables
-    from experiments.provenance import write
-    from experiments.results import to_csv
+    from rmfs.experiments import tables
+    from rmfs.experiments.provenance import write
+    from rmfs.experiments.results import to_csv
 
     made, frame = _results(design, out)
     chosen = list(columns or tables.COLUMNS)
@@ -227,8 +227,8 @@ def _tables(
     anova: bool,
     bootstrap: bool,
 ) -> list[Table]:
-    from experiments import tables
-    from experiments.statistics import anova as analysis
+    from rmfs.experiments import tables
+    from rmfs.experiments.statistics import anova as analysis
 
     if anova:
         named = made.short_names
@@ -262,8 +262,8 @@ def plot(
     ] = None,
 ) -> None:
     """Draw a picture of the results."""
-    from experiments.plotting import KINDS, draw
-    from experiments.provenance import write
+    from rmfs.experiments.plotting import KINDS, draw
+    from rmfs.experiments.provenance import write
 
     if kind not in KINDS:
         raise InputError(f"--kind {kind}: no such picture; valid: {', '.join(KINDS)}")
@@ -287,7 +287,7 @@ def plot(
 
 
 def _planned(design: str) -> Plan:
-    from experiments.design.planning import plan as make
+    from rmfs.experiments.design.planning import plan as make
 
     return make(design)
 
@@ -301,14 +301,14 @@ def _refuse(made: Plan) -> None:
 
 
 def _store(made: Plan, out: Path | None) -> Store:
-    from experiments.store import Store
+    from rmfs.experiments.store import Store
 
     return Store(out if out is not None else RESULTS / made.design.name)
 
 
 def _results(design: str, out: Path | None) -> tuple[Plan, pd.DataFrame]:
     """Return the plan and the finished rows of an experiment."""
-    from experiments.results import assigned
+    from rmfs.experiments.results import assigned
 
     made = _planned(design)
     _refuse(made)
@@ -330,7 +330,7 @@ def _is_open(made: Plan) -> bool:
 
 
 def _require_columns(frame: pd.DataFrame, columns: list[str]) -> None:
-    from experiments.statistics.intervals import require
+    from rmfs.experiments.statistics.intervals import require
 
     require(frame, *columns)
     words = [c for c in columns if not _is_number(frame[c])]

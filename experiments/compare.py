@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from experiments.design import planning as plans
-from experiments.results import load
-from experiments.statistics.paired import paired, unpaired
 from rmfs.errors import InputError
+from rmfs.experiments.design import planning as plans
+from rmfs.experiments.results import load
+from rmfs.experiments.statistics.paired import paired, unpaired
 from rmfs.measure.dictionary import FOOTPRINT, REAL, names, reproducible
 from rmfs.measure.folder import PARAMETERS, load_run
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from experiments.console import open_console
+from rmfs.experiments.console import open_console
 
 if TYPE_CHECKING:
-    from experiments.compare import Comparison
+    from rmfs.experiments.compare import Comparison
 
 
 def print_comparisons(found: list[Comparison], columns: list[str], *, everything: bool) -> None:
     """Print what `rmfs compare` found."""
-    from experiments.compare import chosen_columns
+    from rmfs.experiments.compare import chosen_columns
 
     console = open_console()
     for number, one in enumerate(found):
@@ -46,7 +46,7 @@ def _outputs(one: Comparison, columns: list[str]) -> Any:
     from rich import box
     from rich.table import Table
 
-    from experiments.statistics.paired import holm
+    from rmfs.experiments.statistics.paired import holm
 
     # over what is shown: a hundred columns nobody looks at prove nothing
     corrected = holm(one.outputs.loc[columns, "p"])

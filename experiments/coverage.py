@@ -1,4 +1,4 @@
-"""Do the intervals keep their promise? `python -m experiments.coverage` reports it.
+"""Do the intervals keep their promise? `python -m rmfs.experiments.coverage` reports it.
 
 A synthetic simulator, whose true means are known, stands in for the warehouse: an arm's result is
 its mean plus an effect of the seed that all arms share (common random numbers) plus noise of its
@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import pandas as pd
 
-from experiments.extras import optional
-from experiments.statistics import against, interval, kim_nelson, narrow_enough
 from rmfs.errors import InputError
+from rmfs.experiments.extras import optional
+from rmfs.experiments.statistics import against, interval, kim_nelson, narrow_enough
 from rmfs.files import write_text
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from experiments.statistics.intervals import Method
+    from rmfs.experiments.statistics.intervals import Method
 
 EXPERIMENTS = 2000
 SEEDS = (5, 10, 30)
@@ -197,7 +197,7 @@ FORMATS = ("", "", ".3f", ".3f", ".3f", ".1f", ".3f", ".3f")
 PAGE = """\
 # Do the intervals keep their promise?
 
-<!-- written by python -m experiments.coverage --page docs/coverage.md -->
+<!-- written by python -m rmfs.experiments.coverage --page docs/coverage.md -->
 
 A synthetic simulator whose true means are known stands in for the warehouse. A run is the mean of
 its arm, plus an effect of the seed that all arms share (common random numbers), plus noise of its
@@ -224,7 +224,7 @@ just the smallest difference worth detecting: right in {right:.3f} of the experi
 
 def main(arguments: list[str] | None = None) -> int:
     """Print the page, or write it to a file."""
-    parser = argparse.ArgumentParser(prog="python -m experiments.coverage")
+    parser = argparse.ArgumentParser(prog="python -m rmfs.experiments.coverage")
     parser.add_argument("--experiments", type=int, default=EXPERIMENTS, help="of each kind")
     parser.add_argument("--page", type=Path, help="the .md file to write (default: print it)")
     given = parser.parse_args(arguments)

@@ -1,4 +1,4 @@
-"""What the harness itself costs: `python -m experiments.overhead`.
+"""What the harness itself costs: `python -m rmfs.experiments.overhead`.
 
 Real runs of ten seconds or more are done by the real command, `rmfs experiment run`, in an
 interpreter of its own. What it takes beyond the time that its runs spend simulating is overhead:
@@ -26,9 +26,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from experiments.extras import optional
-from experiments.running.driver import Silent
 from rmfs.errors import InputError
+from rmfs.experiments.extras import optional
+from rmfs.experiments.running.driver import Silent
 from rmfs.files import write_text
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-    from experiments.running.job import Job, Outcome
+    from rmfs.experiments.running.job import Job, Outcome
 
 DESIGN = """\
 format = "rmfs-design/1"
@@ -200,7 +200,7 @@ def measure(
     InputError
         If the number of runs is wrong or the folder holds something.
     """
-    from experiments.results import load
+    from rmfs.experiments.results import load
 
     psutil = optional("psutil", "experiments", "the cost of the harness")
     path = _design(folder, runs, duration_s)
@@ -241,8 +241,8 @@ def measure(
 
 def _publish(cost: Cost, rows: pd.DataFrame, design: Path, file: Path) -> None:
     """Write what it has cost as a table, with its provenance."""
-    from experiments.design.planning import plan
-    from experiments.provenance import write
+    from rmfs.experiments.design.planning import plan
+    from rmfs.experiments.provenance import write
 
     figures = {
         "runs": cost.runs,
@@ -311,7 +311,7 @@ def measure_asleep(runs: int, asleep_s: float, jobs: int) -> CostAsleep:
     with tempfile.TemporaryDirectory() as name:
         path = _design(Path(name) / "overhead", runs, SHORT_S)
         given = [str(path), str(asleep_s), str(jobs)]
-        code = f"from experiments.overhead import drive_asleep; drive_asleep(*{given!r})"
+        code = f"from rmfs.experiments.overhead import drive_asleep; drive_asleep(*{given!r})"
         begun = time.perf_counter()
         subprocess.run([sys.executable, "-c", code], check=True)
         wall_s = time.perf_counter() - begun
@@ -321,11 +321,11 @@ def measure_asleep(runs: int, asleep_s: float, jobs: int) -> CostAsleep:
 
 def drive_asleep(design: str, asleep_s: str, jobs: str) -> None:
     """Do the whole experiment and write down what it cost; the inside of `measure_asleep`."""
-    from experiments.design.planning import plan
-    from experiments.running.driver import drive
-    from experiments.running.execute import execute
-    from experiments.running.local import LocalProcesses
-    from experiments.store import Store
+    from rmfs.experiments.design.planning import plan
+    from rmfs.experiments.running.driver import drive
+    from rmfs.experiments.running.execute import execute
+    from rmfs.experiments.running.local import LocalProcesses
+    from rmfs.experiments.store import Store
 
     path = Path(design)
     made = plan(path)
@@ -366,7 +366,7 @@ class _Memory(Silent):
 
 def main(arguments: list[str] | None = None) -> int:
     """Measure and tell."""
-    parser = argparse.ArgumentParser(prog="python -m experiments.overhead")
+    parser = argparse.ArgumentParser(prog="python -m rmfs.experiments.overhead")
     parser.add_argument("--runs", type=int, default=500)
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (default: 2)")
     parser.add_argument(

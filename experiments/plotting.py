@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from experiments.figures import effects, intervals, pareto, progression
-from experiments.figures.style import COLOURS, axis_label, saving
-from experiments.results import load
 from rmfs.errors import InputError
+from rmfs.experiments.figures import effects, intervals, pareto, progression
+from rmfs.experiments.figures.style import COLOURS, axis_label, saving
+from rmfs.experiments.results import load
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     import pandas as pd
 
-    from experiments.design.planning import Plan
+    from rmfs.experiments.design.planning import Plan
 
 KINDS = {
     "intervals": ("units_per_h",),

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from experiments.running.code import code
+from rmfs.experiments.running.code import code
 from rmfs.files import write_text
 from rmfs.measure.provenance import commit
 

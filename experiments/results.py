@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from experiments.design import planning as plans
-from experiments.design.arms import PARTS
-from experiments.design.stages import schedule
-from experiments.running.job import run_key
-from experiments.store import PROVENANCE, Store
 from rmfs.errors import InputError
+from rmfs.experiments.design import planning as plans
+from rmfs.experiments.design.arms import PARTS
+from rmfs.experiments.design.stages import schedule
+from rmfs.experiments.running.job import run_key
+from rmfs.experiments.store import PROVENANCE, Store
 from rmfs.measure.dictionary import names, reproducible
 
 if TYPE_CHECKING:
-    from experiments.design.planning import Plan
+    from rmfs.experiments.design.planning import Plan
 
 
 def load(folder: str | Path, *, table: str = "footprint") -> pd.DataFrame:

@@ -29,7 +29,7 @@ from rmfs.measure.dictionary import names
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from experiments.running.job import Job, Outcome
+    from rmfs.experiments.running.job import Job, Outcome
 
 RUNS, FAILURES, LOCK = "runs", "failures", ".lock"
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 import pandas as pd
 
-from experiments.extras import optional
-from experiments.statistics import against, per_arm
 from rmfs.errors import InputError
+from rmfs.experiments.extras import optional
+from rmfs.experiments.statistics import against, per_arm
 from rmfs.files import write_text
 from rmfs.measure.dictionary import FOOTPRINT
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from experiments.statistics.intervals import Method
+    from rmfs.experiments.statistics.intervals import Method
 
 Format = Literal["latex", "markdown", "csv", "html"]
 
@@ -224,7 +224,7 @@ def differences(
     by: str = "arm",
 ) -> Table:
     """Return paired differences to a baseline, with p values corrected for all arms and columns."""
-    from experiments.statistics.paired import holm
+    from rmfs.experiments.statistics.paired import holm
 
     found = {
         column: against(frame, column, baseline, confidence=confidence, method=method, by=by)
@@ -253,7 +253,7 @@ def differences(
 
 
 def effects(found: pd.DataFrame, column: str) -> Table:
-    """Return an analysis of variance (`experiments.statistics.anova`) as a table."""
+    """Return an analysis of variance (`rmfs.experiments.statistics.anova`) as a table."""
     partial = ["partial_eta_sq", "partial_eta_sq_low", "partial_eta_sq_high"]
     chosen = ["sum_sq", "df", "f", "p", "eta_sq", *partial, "omega_sq"]
     made = found[chosen].copy()

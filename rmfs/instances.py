@@ -10,8 +10,8 @@ from rmfs.errors import InputError
 
 Kind = Literal["layouts", "scenarios", "controllers"]
 
-ROOT = Path(__file__).resolve().parent.parent / "instances"
-"""The folder of shipped instances: beside the package in a checkout as in an installed wheel."""
+ROOT = (Path(__file__).parent / "shipped").resolve()
+"""The folder of shipped instances: part of a wheel, and a link to `instances` in a checkout."""
 
 
 def names(kind: Kind) -> list[str]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.measure.tables.at_pile_on import change_s
-from solvers.models.run_bound import (
+from rmfs.solvers.models.run_bound import (
     Legs,
     PickStations,
     Refill,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from rmfs.measure.observer import Observer
-from solvers.models.run_bound import Throughput, solve, violations
-from solvers.run_bound import run_bound
+from rmfs.solvers.models.run_bound import Throughput, solve, violations
+from rmfs.solvers.run_bound import run_bound
 
 
 class Counter(Observer):

@@ -5,7 +5,7 @@ and gives it a digest, `planning` puts everything together and says what is wron
 which runs are wanted next.
 """
 
-from experiments.design.arms import Arm as Arm
-from experiments.design.file import DesignFile as DesignFile
-from experiments.design.planning import Plan as Plan
-from experiments.design.planning import plan as plan
+from rmfs.experiments.design.arms import Arm as Arm
+from rmfs.experiments.design.file import DesignFile as DesignFile
+from rmfs.experiments.design.planning import Plan as Plan
+from rmfs.experiments.design.planning import plan as plan

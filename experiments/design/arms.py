@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
-    from experiments.design.file import DesignFile
+    from rmfs.experiments.design.file import DesignFile
 
 PARTS = ("layout", "scenario", "controllers")
 """The three inputs of a run."""

@@ -128,7 +128,7 @@ class DesignFile(Strict):
     only_file: str | None = Field(
         None,
         description=".csv with a column per factor and a row per combination: all others are left "
-        "out (a fraction of the grid, see `experiments.design.fraction`)",
+        "out (a fraction of the grid, see `rmfs.experiments.design.fraction`)",
     )
     stages: list[Stage] = Field([], description="default: one stage with the seeds above")
 

@@ -1,4 +1,6 @@
-"""A fraction of a grid that tells the main effects best: `python -m experiments.design.fraction`.
+"""A fraction of a grid that tells the main effects best.
+
+`python -m rmfs.experiments.design.fraction` finds one.
 
 A full factorial of many rules has thousands of arms. For a screening, the effects of the factors
 can be told from far fewer, if their levels are spread well. The arms chosen here maximise the
@@ -18,9 +20,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from experiments.design import file as design_file
-from experiments.design.arms import arms, factor_names, shown_value
 from rmfs.errors import InputError
+from rmfs.experiments.design import file as design_file
+from rmfs.experiments.design.arms import arms, factor_names, shown_value
 from rmfs.files import write_text
 
 if TYPE_CHECKING:
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from experiments.design.arms import Arm
+    from rmfs.experiments.design.arms import Arm
 
 EXCHANGES = 10_000
 """More than are ever needed: each one improves the design."""
@@ -132,7 +134,7 @@ def to_csv(made: Sequence[Arm]) -> str:
 
 def main(arguments: list[str] | None = None) -> int:
     """Choose a fraction of a design's grid and write it."""
-    parser = argparse.ArgumentParser(prog="python -m experiments.design.fraction")
+    parser = argparse.ArgumentParser(prog="python -m rmfs.experiments.design.fraction")
     parser.add_argument("design", help="a design file or the name of a shipped one")
     parser.add_argument("count", type=int, help="how many arms")
     parser.add_argument("file", type=Path, help="the .csv file to write")

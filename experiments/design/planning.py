@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from experiments.design import file as design_file
-from experiments.design.arms import Arm, arms, factor_names
-from experiments.design.file import DesignFile
-from experiments.design.resolve import Resolver
-from experiments.running.job import Job
 from rmfs import config
 from rmfs.errors import InputError
+from rmfs.experiments.design import file as design_file
+from rmfs.experiments.design.arms import Arm, arms, factor_names
+from rmfs.experiments.design.file import DesignFile
+from rmfs.experiments.design.resolve import Resolver
+from rmfs.experiments.running.job import Job
 from rmfs.files import write_text
 
 if TYPE_CHECKING:

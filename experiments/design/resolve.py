@@ -25,13 +25,13 @@ from rmfs.simulation.pacing import pacing_settings
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from experiments.design.arms import Arm, Overrides
     from rmfs.control.settings import ControllerSettings
+    from rmfs.experiments.design.arms import Arm, Overrides
     from rmfs.layout.model import Layout
     from rmfs.scenario import Scenario
 
-OWN_PACKAGES = ("rmfs", "solvers")
-"""Rules in these packages are told by the version of the code, others by a hash of their file."""
+OWN_PACKAGE = "rmfs"
+"""Rules in this package are told by the version of the code, others by a hash of their file."""
 
 _SHIPPED = "instances/"
 
@@ -182,7 +182,7 @@ def _rule_files(settings: ControllerSettings) -> Iterator[str]:
     """Yield the source files of rules that are not part of rmfs."""
     for choice in settings.choices.values():
         module = choice.controller.__module__
-        if module.split(".")[0] not in OWN_PACKAGES:
+        if module.split(".")[0] != OWN_PACKAGE:
             try:
                 yield inspect.getfile(choice.controller)
             except (OSError, TypeError):  # a class of the interpreter's own input

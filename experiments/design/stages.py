@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from experiments.statistics.selection import kim_nelson
-from experiments.statistics.sequential import narrow_enough
+from rmfs.experiments.statistics.selection import kim_nelson
+from rmfs.experiments.statistics.sequential import narrow_enough
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from experiments.design.file import Best, Select, Stage, Until
-    from experiments.design.planning import Plan
+    from rmfs.experiments.design.file import Best, Select, Stage, Until
+    from rmfs.experiments.design.planning import Plan
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from experiments.figures.style import COLOURS, axis_label
-from experiments.statistics import interval
+from rmfs.experiments.figures.style import COLOURS, axis_label
+from rmfs.experiments.statistics import interval
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from experiments.figures.style import COLOURS, axis_label
-from experiments.statistics import per_arm
+from rmfs.experiments.figures.style import COLOURS, axis_label
+from rmfs.experiments.statistics import per_arm
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from experiments.statistics.intervals import Method
+    from rmfs.experiments.statistics.intervals import Method
 
 SPREAD = 0.25
 """Vertical extent of the seeds of an arm, in rows."""

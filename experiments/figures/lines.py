@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from experiments.figures.style import COLOURS, axis_label
-from experiments.statistics import per_arm
+from rmfs.experiments.figures.style import COLOURS, axis_label
+from rmfs.experiments.statistics import per_arm
 
 if TYPE_CHECKING:
     import pandas as pd

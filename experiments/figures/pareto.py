@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from experiments.figures.style import COLOURS, axis_label
-from experiments.statistics import per_arm
+from rmfs.experiments.figures.style import COLOURS, axis_label
+from rmfs.experiments.statistics import per_arm
 
 if TYPE_CHECKING:
     import pandas as pd

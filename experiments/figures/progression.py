@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy import stats
 
-from experiments.figures.style import COLOURS
-from experiments.statistics.intervals import require
+from rmfs.experiments.figures.style import COLOURS
+from rmfs.experiments.statistics.intervals import require
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

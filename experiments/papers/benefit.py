@@ -5,16 +5,16 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from experiments.papers.study import FAILED
-from experiments.statistics import interval
-from experiments.tables import HALF, Table, digits, rows_frame
+from rmfs.experiments.papers.study import FAILED
+from rmfs.experiments.statistics import interval
+from rmfs.experiments.tables import HALF, Table, digits, rows_frame
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import pandas as pd
 
-    from experiments.papers.study import Study
+    from rmfs.experiments.papers.study import Study
 
 CONTROLLERS = "controllers"
 RATES = ("units_per_h", "lines_per_h", "orders_per_h")

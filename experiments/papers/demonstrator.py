@@ -14,17 +14,17 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from experiments.figures.style import saving
-from experiments.papers.figure_5b import together
-from experiments.papers.study import command, done, parser
-from experiments.tables import means
 from rmfs import layout as layouts
+from rmfs.experiments.figures.style import saving
+from rmfs.experiments.papers.figure_5b import together
+from rmfs.experiments.papers.study import command, done, parser
+from rmfs.experiments.tables import means
 from rmfs.measure.plots import heat as draw_heat
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from experiments.papers.study import Study
+    from rmfs.experiments.papers.study import Study
 
 COLUMNS = (
     *("units_per_h", "distance_per_unit_m", "trip_time_mean_s"),

@@ -12,9 +12,9 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from experiments.papers.study import command, done, parser
-from experiments.statistics import interval
-from experiments.tables import HALF, Table, digits, rows_frame
+from rmfs.experiments.papers.study import command, done, parser
+from rmfs.experiments.statistics import interval
+from rmfs.experiments.tables import HALF, Table, digits, rows_frame
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

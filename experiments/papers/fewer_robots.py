@@ -11,12 +11,12 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from experiments.figures.lines import lines
-from experiments.figures.style import saving
-from experiments.papers.benefit import CONTROLLERS, completed, overview, require_optimised
-from experiments.papers.study import command, done, parser, station_units_per_h
-from experiments.statistics import interval
-from experiments.tables import HALF, Table, rows_frame
+from rmfs.experiments.figures.lines import lines
+from rmfs.experiments.figures.style import saving
+from rmfs.experiments.papers.benefit import CONTROLLERS, completed, overview, require_optimised
+from rmfs.experiments.papers.study import command, done, parser, station_units_per_h
+from rmfs.experiments.statistics import interval
+from rmfs.experiments.tables import HALF, Table, rows_frame
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-    from experiments.papers.study import Study
+    from rmfs.experiments.papers.study import Study
 
 ROBOTS = "layout.robots"
 ENOUGH = 0.95

@@ -11,8 +11,8 @@ import json
 import sys
 from pathlib import Path
 
-from experiments.papers.study import PUBLISHED, command
 from rmfs import layout as layouts
+from rmfs.experiments.papers.study import PUBLISHED, command
 from rmfs.files import write_text
 from rmfs.measure.provenance import commit, digest
 

@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from experiments.figures import progression
-from experiments.figures.style import COLOURS, axis_label, saving
-from experiments.papers.study import command, done, parser
-from experiments.statistics import paired, rates
-from experiments.tables import HALF, Table, digits
+from rmfs.experiments.figures import progression
+from rmfs.experiments.figures.style import COLOURS, axis_label, saving
+from rmfs.experiments.papers.study import command, done, parser
+from rmfs.experiments.statistics import paired, rates
+from rmfs.experiments.tables import HALF, Table, digits
 
 if TYPE_CHECKING:
-    from experiments.papers.study import Study
+    from rmfs.experiments.papers.study import Study
 
 STAYS, CHANGES = "random throughout", "random, then nearest"
 NEAREST = "nearest throughout"

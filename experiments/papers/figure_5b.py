@@ -17,16 +17,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from experiments.figures.style import saving
-from experiments.papers.study import command, done, parser
-from experiments.tables import means
+from rmfs.experiments.figures.style import saving
+from rmfs.experiments.papers.study import command, done, parser
+from rmfs.experiments.tables import means
 from rmfs.measure.plots import heat as draw_heat
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from experiments.papers.study import Study
-    from experiments.tables import Table
+    from rmfs.experiments.papers.study import Study
+    from rmfs.experiments.tables import Table
     from rmfs.layout.model import Layout
 
 COUNTS = ("visits", "loaded_visits", "waiting_s")

@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from experiments.figures import pareto
-from experiments.figures.pareto import front
-from experiments.figures.style import saving
-from experiments.papers.study import command, done, parser
-from experiments.statistics import interval, per_arm
-from experiments.tables import HALF, Table, digits, means
+from rmfs.experiments.figures import pareto
+from rmfs.experiments.figures.pareto import front
+from rmfs.experiments.figures.style import saving
+from rmfs.experiments.papers.study import command, done, parser
+from rmfs.experiments.statistics import interval, per_arm
+from rmfs.experiments.tables import HALF, Table, digits, means
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from experiments.papers.study import Study
+    from rmfs.experiments.papers.study import Study
 
 ROBOTS, RULE = "layout.robots", "controllers.psa"
 UNITS = "units_per_h"

@@ -11,14 +11,14 @@ from __future__ import annotations
 
 import sys
 
-from experiments.papers.benefit import (
+from rmfs.experiments.papers.benefit import (
     COLUMNS,
     completed,
     gains,
     overview,
     require_optimised,
 )
-from experiments.papers.study import command, done, parser, station_units_per_h
+from rmfs.experiments.papers.study import command, done, parser, station_units_per_h
 
 BASELINE = "default"
 

@@ -18,15 +18,15 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from experiments.papers.study import command, done, parser
-from experiments.statistics import against, interval
-from experiments.tables import HALF, Table
+from rmfs.experiments.papers.study import command, done, parser
+from rmfs.experiments.statistics import against, interval
+from rmfs.experiments.tables import HALF, Table
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Mapping
 
-    from experiments.papers.study import Study
+    from rmfs.experiments.papers.study import Study
 
 Rows = dict[tuple[str, str], dict[tuple[str, str], float]]
 """Per layout and method the cells of the table."""
@@ -128,7 +128,7 @@ def row(runs: pd.DataFrame, difference: Mapping[Any, float] | None) -> dict[tupl
     runs
         Its runs, a row each.
     difference
-        As `experiments.statistics.against` gives it; None for the method of comparison.
+        As `rmfs.experiments.statistics.against` gives it; None for the method of comparison.
     """
     cells = {("seeds", ""): float(len(runs))}
     hours = runs["duration_s"] / 3600.0

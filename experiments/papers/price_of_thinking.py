@@ -11,17 +11,17 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from experiments.figures.lines import lines
-from experiments.figures.style import saving
-from experiments.papers.benefit import completed, overview, require_optimised
-from experiments.papers.study import command, done, parser, station_units_per_h
+from rmfs.experiments.figures.lines import lines
+from rmfs.experiments.figures.style import saving
+from rmfs.experiments.papers.benefit import completed, overview, require_optimised
+from rmfs.experiments.papers.study import command, done, parser, station_units_per_h
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     import pandas as pd
 
-    from experiments.papers.study import Study
+    from rmfs.experiments.papers.study import Study
 
 THINKING, LIMIT = "thinking", "controllers.poa.work_s"
 COLUMNS = ("units_per_h", "units_per_visit", "distance_per_unit_m", "paced_mean_s")

@@ -12,10 +12,10 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from experiments.papers.study import command, done, parser
-from experiments.plotting import draw
-from experiments.statistics import anova, per_arm
-from experiments.tables import effects, means
+from rmfs.experiments.papers.study import command, done, parser
+from rmfs.experiments.plotting import draw
+from rmfs.experiments.statistics import anova, per_arm
+from rmfs.experiments.tables import effects, means
 
 if TYPE_CHECKING:
     import pandas as pd

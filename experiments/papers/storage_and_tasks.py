@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import sys
 
-from experiments.papers.benefit import DECISION_S, SHARES, require_optimised
-from experiments.papers.study import command, done, parser
-from experiments.tables import differences, means
+from rmfs.experiments.papers.benefit import DECISION_S, SHARES, require_optimised
+from rmfs.experiments.papers.study import command, done, parser
+from rmfs.experiments.tables import differences, means
 
 RULES = "nearest, balanced"
 COLUMNS = (

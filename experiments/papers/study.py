@@ -8,22 +8,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from experiments import provenance
-from experiments.design.planning import plan
-from experiments.results import load
-from experiments.running import run
-from experiments.running.progress import watching
 from rmfs import layout as layouts
 from rmfs.errors import InputError
+from rmfs.experiments import provenance
+from rmfs.experiments.design.planning import plan
+from rmfs.experiments.results import load
+from rmfs.experiments.running import run
+from rmfs.experiments.running.progress import watching
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
     import pandas as pd
 
-    from experiments.design.arms import Arm
-    from experiments.design.planning import Plan
-    from experiments.tables import Table
+    from rmfs.experiments.design.arms import Arm
+    from rmfs.experiments.design.planning import Plan
+    from rmfs.experiments.tables import Table
     from rmfs.layout.model import Layout
 
 PUBLISHED = Path("results") / "published"

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from experiments.design.planning import Plan
-    from experiments.running.driver import Tally, Watcher
-    from experiments.running.local import Engine
+    from rmfs.experiments.design.planning import Plan
+    from rmfs.experiments.running.driver import Tally, Watcher
+    from rmfs.experiments.running.local import Engine
 
 
 def run(
@@ -39,10 +39,10 @@ def run(
     InputError
         If the folder cannot be written, or there is no cluster.
     """
-    from experiments.running.cluster import DaskWorkers
-    from experiments.running.driver import drive
-    from experiments.running.local import LocalProcesses
-    from experiments.store import Store
+    from rmfs.experiments.running.cluster import DaskWorkers
+    from rmfs.experiments.running.driver import drive
+    from rmfs.experiments.running.local import LocalProcesses
+    from rmfs.experiments.store import Store
 
     plan.require_sound()
     engine: Engine = DaskWorkers(dask) if dask is not None else LocalProcesses(processes or cores())

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import pydantic
 
-from experiments.extras import optional
-from experiments.running.job import Job, Outcome
 from rmfs.config import Model, read_toml, validate
 from rmfs.errors import InputError
+from rmfs.experiments.extras import optional
+from rmfs.experiments.running.job import Job, Outcome
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -187,14 +187,14 @@ def _work_of(work: Callable[[Job], Outcome] | None) -> Callable[[Job], Outcome]:
     if work is not None:
         return work
     # imported by the worker
-    from experiments.running.execute import execute
+    from rmfs.experiments.running.execute import execute
 
     return execute
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Print the job script of a profile: `python -m experiments.running.cluster PROFILE.toml`."""
-    parser = argparse.ArgumentParser(prog="python -m experiments.running.cluster")
+    """Print the job script of a profile: `python -m rmfs.experiments.running.cluster PROFILE`."""
+    parser = argparse.ArgumentParser(prog="python -m rmfs.experiments.running.cluster")
     parser.add_argument("profile", type=Path, help="a cluster profile (.toml)")
     given = parser.parse_args(arguments)
     try:

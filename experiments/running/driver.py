@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import pandas as pd
 
-from experiments.design.stages import columns, schedule
-from experiments.results import assigned, failed_pairs
-from experiments.running.code import code
+from rmfs.experiments.design.stages import columns, schedule
+from rmfs.experiments.results import assigned, failed_pairs
+from rmfs.experiments.running.code import code
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from experiments.design.arms import Arm
-    from experiments.design.planning import Plan
-    from experiments.design.stages import Schedule
-    from experiments.running.job import Job, Outcome
-    from experiments.running.local import Engine
-    from experiments.store import Store
+    from rmfs.experiments.design.arms import Arm
+    from rmfs.experiments.design.planning import Plan
+    from rmfs.experiments.design.stages import Schedule
+    from rmfs.experiments.running.job import Job, Outcome
+    from rmfs.experiments.running.local import Engine
+    from rmfs.experiments.store import Store
 
 ATTEMPTS = 3
 """How often a run is begun whose worker dies without a word."""

@@ -11,9 +11,9 @@ import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from experiments.design import resolve
-from experiments.running.job import Job, Outcome
 from rmfs.errors import InputError
+from rmfs.experiments.design import resolve
+from rmfs.experiments.running.job import Job, Outcome
 from rmfs.measure import tables
 from rmfs.simulation.run import simulate
 

@@ -17,13 +17,13 @@ from multiprocessing import connection, forkserver
 from types import FrameType, ModuleType
 from typing import TYPE_CHECKING, Any, Protocol
 
-from experiments.running.job import Job, Outcome
+from rmfs.experiments.running.job import Job, Outcome
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from multiprocessing.context import ForkServerProcess
 
-IMPORTED_ONCE = ("experiments.running.warm",)
+IMPORTED_ONCE = ("rmfs.experiments.running.warm",)
 
 ONE_THREAD = dict.fromkeys(
     (
@@ -153,7 +153,7 @@ def _worker(sender: connection.Connection, job: Job, work: Callable[[Job], Outco
     # the driver decides what an interruption means
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if work is None:
-        from experiments.running.execute import execute
+        from rmfs.experiments.running.execute import execute
 
         work = execute
     _forget_earlier_memory()

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from experiments.design import resolve
 from rmfs.errors import InputError
+from rmfs.experiments.design import resolve
 from rmfs.measure import tables
 from rmfs.simulation.run import simulate
 from rmfs.simulation.simulation import StalledError
 
 if TYPE_CHECKING:
-    from experiments.design.planning import Plan
-    from experiments.running.job import Job
-    from experiments.store import Store
+    from rmfs.experiments.design.planning import Plan
+    from rmfs.experiments.running.job import Job
+    from rmfs.experiments.store import Store
 
 ARMS = 4
 """Arms that are tried out, evenly spread over the design."""
@@ -60,7 +60,7 @@ class Estimate:
 
 def estimate(plan: Plan, store: Store) -> Estimate | None:
     """Estimate how long a run of a design takes; nothing if no pilot run got through."""
-    from experiments.results import assigned
+    from rmfs.experiments.results import assigned
 
     known = assigned(plan, store)
     if len(known) >= ENOUGH:

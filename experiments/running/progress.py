@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
     from rich.progress import Progress, TaskID
 
-    from experiments.running.driver import Watcher
-    from experiments.running.job import Job, Outcome
+    from rmfs.experiments.running.driver import Watcher
+    from rmfs.experiments.running.job import Job, Outcome
 
 LINE_EVERY_S = 10.0
 

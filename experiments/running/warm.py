@@ -8,7 +8,7 @@ from rmfs.control.problems import Problem
 
 # pandas imports it at the first table
 import_module("pyarrow.pandas_compat")
-import_module("experiments.running.execute")
+import_module("rmfs.experiments.running.execute")
 
 for problem in Problem:
     # a rule that cannot be imported fails in the run that uses it, and says why there

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import pandas as pd
 from scipy import optimize, stats
 
-from experiments.statistics.intervals import require
 from rmfs.errors import InputError
+from rmfs.experiments.statistics.intervals import require
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,7 +54,7 @@ def anova(
     InputError
         If no factor varies, or there are too few runs for the model.
     """
-    from experiments.extras import statsmodels
+    from rmfs.experiments.extras import statsmodels
 
     require(frame, column, *factors)
     varying = [factor for factor in factors if len(frame[factor].unique()) > 1]

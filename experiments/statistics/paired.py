@@ -12,8 +12,8 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from experiments.statistics.intervals import Method, interval, require
 from rmfs.errors import InputError
+from rmfs.experiments.statistics.intervals import Method, interval, require
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
@@ -123,7 +123,7 @@ def against(
 
 def holm(p_values: pd.Series) -> pd.Series:
     """Return p values corrected for their number; missing ones stay missing."""
-    from experiments.extras import statsmodels
+    from rmfs.experiments.extras import statsmodels
 
     known = p_values.dropna()
     if len(known) < 2:

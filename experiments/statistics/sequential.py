@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from experiments.statistics.intervals import interval
+from rmfs.experiments.statistics.intervals import interval
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,7 +17,8 @@ def narrow_enough(values: Sequence[float], relative: float, confidence: float = 
     confidence intervals with specified precision, after Chow and Robbins 1965): the half width is
     compared with relative / (1 + relative) times the mean, so that the true mean is missed by no
     more than `relative` of itself. As it stops where the sample happens to vary little, its
-    coverage lies somewhat below `confidence` when few runs are the start (`experiments.coverage`).
+    coverage lies somewhat below `confidence` when few runs are the start
+    (`rmfs.experiments.coverage`).
 
     Parameters
     ----------

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from experiments.statistics.intervals import require
 from rmfs.errors import InputError
+from rmfs.experiments.statistics.intervals import require
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

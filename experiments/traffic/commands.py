@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from experiments.traffic import duel as duels
 from rmfs import layout as layouts
 from rmfs.config import parse_override
 from rmfs.errors import InputError
+from rmfs.experiments.traffic import duel as duels
 from rmfs.trips import drive, mapf, random_trips
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ def scale_command(
     out: Annotated[Path, typer.Option(help="Folder of table and picture.")] = Path("results/scale"),
 ) -> None:
     """Measure how work and memory grow from 32 to 2000 robots, density kept."""
-    from experiments.traffic import scale
+    from rmfs.experiments.traffic import scale
 
     duels.check_planners([planner])
     frame = scale.table(planner, most, duration, seed, _tell)
@@ -154,7 +154,7 @@ def fuzz(
     ] = None,
 ) -> None:
     """Drive random trips on random layouts, some of them spoilt, and look for failures."""
-    from experiments.traffic import fuzz as fuzzing
+    from rmfs.experiments.traffic import fuzz as fuzzing
 
     if replay is not None:
         verdict = fuzzing.run(fuzzing.read(replay))

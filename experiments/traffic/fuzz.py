@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from experiments.traffic.duel import all_planners, settings
 from rmfs import layout as layouts
 from rmfs.errors import InputError
+from rmfs.experiments.traffic.duel import all_planners, settings
 from rmfs.files import write_text
 from rmfs.layout.checks import IMPOSSIBLE, check
 from rmfs.random import Stream, generator

@@ -20,11 +20,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from experiments.figures.style import saving
-from experiments.provenance import FORMAT, SUFFIX, command
-from experiments.running.code import code
-from experiments.traffic.duel import save as save_table
-from experiments.traffic.duel import settings
+from rmfs.experiments.figures.style import saving
+from rmfs.experiments.provenance import FORMAT, SUFFIX, command
+from rmfs.experiments.running.code import code
+from rmfs.experiments.traffic.duel import save as save_table
+from rmfs.experiments.traffic.duel import settings
 from rmfs.files import write_text
 from rmfs.layout import load
 from rmfs.measure.memory import peak_rss_mb
@@ -106,7 +106,7 @@ def table(
     Parameters
     ----------
     planner
-        As `experiments.traffic.duel.settings` takes it.
+        As `rmfs.experiments.traffic.duel.settings` takes it.
     tell
         Told of each row as soon as it is there.
     """

@@ -13,8 +13,8 @@ import pandas as pd
 import psutil  # type: ignore[import-untyped]
 
 import rmfs
-from experiments.viewer.chromium import chromium, open_page, served, show
-from experiments.viewer.copies import copies
+from rmfs.experiments.viewer.chromium import chromium, open_page, served, show
+from rmfs.experiments.viewer.copies import copies
 from rmfs.measure import load_run, write_run
 from rmfs.view import scene
 from rmfs.view.container import unpack

@@ -89,7 +89,7 @@ def bench(
     out: Annotated[Path, typer.Option(help="Folder of the tables.")] = Path("results/bench"),
 ) -> None:
     """Measure how fast runs are and where their time goes."""
-    from experiments import speed
+    from rmfs.experiments import speed
 
     frame = speed.table(runs=runs, tell=step)
     speed.save(frame, out)
@@ -110,7 +110,7 @@ def import_command(
     ] = None,
 ) -> None:
     """Turn RAWSim-O's files into ours; list what differs, is dead, unknown or refused."""
-    from rmfs.importing import LIST, Imported, import_files
+    from rmfs.rawsimo.folder import LIST, Imported, import_files
 
     def told(one: Imported) -> None:
         print(*one.lines(), sep="\n", flush=True)

@@ -12,8 +12,8 @@ SUB_COMMANDS = {
     "layout": ("rmfs.layout.commands", "Make, draw, check and import layouts."),
     "scenario": ("rmfs.scenario.commands", "List, show and check scenarios."),
     "controllers": ("rmfs.control.commands", "List, show and check sets of controllers."),
-    "traffic": ("experiments.traffic.commands", "Path planners alone: trips, duels, growth."),
-    "experiment": ("experiments.commands", "Plan and run experiments; tables and figures."),
+    "traffic": ("rmfs.experiments.traffic.commands", "Path planners alone: trips, duels, growth."),
+    "experiment": ("rmfs.experiments.commands", "Plan and run experiments; tables and figures."),
 }
 """Module and help of each group of commands; its module is imported when it is called."""
 

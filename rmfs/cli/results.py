@@ -106,8 +106,8 @@ def compare(
     confidence: Annotated[float, typer.Option(min=0.5, max=0.999, help="Of the intervals.")] = 0.95,
 ) -> None:
     """Say in what runs, arms or tables differ: input and output, paired by seed."""
-    from experiments.compare import compare as compared
-    from experiments.compare_print import print_comparisons
+    from rmfs.experiments.compare import compare as compared
+    from rmfs.experiments.compare_print import print_comparisons
 
     print_comparisons(
         compared(sources, confidence=confidence), columns or [], everything=everything

@@ -107,17 +107,17 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
 }
 
 _SOLVER_BACKED: dict[Problem, dict[str, str]] = {
-    Problem.POA: {"pile-on": "solvers.control.pile_on:PileOnControl"},
-    Problem.RPS: {"stocking": "solvers.control.stocking:StockingControl"},
+    Problem.POA: {"pile-on": "rmfs.solvers.control.pile_on:PileOnControl"},
+    Problem.RPS: {"stocking": "rmfs.solvers.control.stocking:StockingControl"},
     Problem.PSA: {
-        "placement": "solvers.control.storage.placement:PlacementControl",
-        "prices": "solvers.control.storage.prices:PricesControl",
-        "stays": "solvers.control.storage.stays:StaysControl",
+        "placement": "rmfs.solvers.control.storage.placement:PlacementControl",
+        "prices": "rmfs.solvers.control.storage.prices:PricesControl",
+        "stays": "rmfs.solvers.control.storage.stays:StaysControl",
     },
     Problem.TA: {
-        "pile-on": "solvers.control.pile_on:PileOnTasks",
-        "dispatch": "solvers.control.tasks.dispatch:DispatchControl",
-        "routes": "solvers.control.tasks.routes:RoutesControl",
+        "pile-on": "rmfs.solvers.control.pile_on:PileOnTasks",
+        "dispatch": "rmfs.solvers.control.tasks.dispatch:DispatchControl",
+        "routes": "rmfs.solvers.control.tasks.routes:RoutesControl",
     },
 }
 """Controllers of the same distribution that ask optimisers."""

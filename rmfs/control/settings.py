@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 import pydantic
 
-from rmfs import config, instances
+from rmfs import config, foreign, instances
 from rmfs.config import Table
 from rmfs.control.base import RuleTables
 from rmfs.control.choices import DEFAULTS, Choice, check_together, choose
 from rmfs.control.problems import Problem
-from rmfs.control.rawsimo import read_xconf
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -83,7 +82,7 @@ def load_with_notes(
     """
     path = instances.locate("controllers", str(name_or_path))
     if path.suffix.lower() == ".xconf":
-        table, notes = read_xconf(path)
+        table, notes = foreign.read(path)
     else:
         table, notes = config.read_toml(path), []
     return settings(table, overrides, source=str(path)), notes

@@ -15,10 +15,10 @@ from rmfs.config import apply_overrides, parse_override, validate
 from rmfs.errors import InputError
 from rmfs.files import write_text
 from rmfs.layout.checks import IMPOSSIBLE, check
-from rmfs.layout.importing import SUFFIXES, import_layout
 from rmfs.layout.loading import load_with_notes
 from rmfs.layout.parameters import LayoutParameters
 from rmfs.layout.toml import to_toml
+from rmfs.rawsimo.layout.writing import SUFFIXES, import_layout
 
 app = typer.Typer(help="Layouts: make, look at, check, import.", no_args_is_help=True)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rmfs import instances
+from rmfs import foreign, instances
 from rmfs.config import Table, apply_overrides, read_toml, validate
 from rmfs.errors import InputError
 from rmfs.layout.explicit import read_json
@@ -12,8 +12,6 @@ from rmfs.layout.generator import generate
 from rmfs.layout.mapf import read_map
 from rmfs.layout.overrides import FACTORS, override
 from rmfs.layout.parameters import LayoutParameters
-from rmfs.layout.rawsimo.xinst import read_xinst
-from rmfs.layout.rawsimo.xlayo import read_xlayo_table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -65,12 +63,12 @@ def load_with_notes(
         case ".toml":
             return _generated(read_toml(path), overrides, source), []
         case ".xlayo":
-            table, notes = read_xlayo_table(path)
+            table, notes = foreign.read(path)
             return _generated(table, overrides, source), notes
         case ".json":
             return override(read_json(path), overrides, source), []
         case ".xinst":
-            layout, notes = read_xinst(path)
+            layout, notes = foreign.read(path)
             return override(layout, overrides, source), notes
         case ".map":
             return override(read_map(path), overrides, source), []

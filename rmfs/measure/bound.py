@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
     from rmfs.scenario import SkuSet
 
-BOUND = "solvers.run_bound:units_per_h_bound"
+BOUND = "rmfs.solvers.run_bound:units_per_h_bound"
 """Module and function that work it out."""
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rmfs.files import write_text
-from rmfs.measure import dictionary, rawsimo
+from rmfs.measure import dictionary
+from rmfs.rawsimo import footprint as rawsimo
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -14,12 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rmfs import instances
+from rmfs import foreign, instances
 from rmfs.config import apply_overrides, read_toml, validate
 from rmfs.errors import InputError
 from rmfs.layout.loading import split_factors
 from rmfs.layout.parameters import LayoutParameters
-from rmfs.layout.rawsimo.xlayo import read_xlayo_table
 from rmfs.scenario import named_files
 
 if TYPE_CHECKING:
@@ -101,7 +100,7 @@ def source(part: str, given: str) -> dict[str, Any]:
     except (InputError, OSError):
         return {"name": given, "file": None, "sha256": None}
     shipped = path.is_relative_to(instances.ROOT)
-    told = path.relative_to(instances.ROOT.parent) if shipped else path
+    told = Path("instances") / path.relative_to(instances.ROOT) if shipped else path
     return {
         "name": path.stem,
         "file": told.as_posix(),
@@ -128,7 +127,7 @@ def layout_parameters(
     if path.suffix == ".toml":
         table = read_toml(path)
     elif path.suffix == ".xlayo":
-        table, _ = read_xlayo_table(path)
+        table, _ = foreign.read(path)
     else:
         return None
     own, _ = split_factors([(keys[1:], value) for keys, value in overrides if keys[0] == "layout"])

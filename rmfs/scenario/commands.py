@@ -10,13 +10,12 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from rmfs import instances
+from rmfs import foreign, instances
 from rmfs.config import parse_override
 from rmfs.errors import InputError
 from rmfs.scenario.intake import Site, bundle_intake, export_stream, order_intake
 from rmfs.scenario.loading import load, load_with_notes
 from rmfs.scenario.parameters import Scenario, SkuFile, StreamDemand, StreamReplenishment
-from rmfs.scenario.rawsimo import read_xitem
 from rmfs.scenario.skus import SkuSet, write_sku_set
 from rmfs.scenario.sources import bundle_stream, order_stream, sku_set
 from rmfs.scenario.streams import digest
@@ -159,7 +158,7 @@ def _skus(scenario: str, settings: list[str] | None) -> SkuSet:
     if not path.is_file():
         raise InputError(f"{path}: no such file")
     if path.suffix.lower() == ".xitem":
-        _print_notes(read_xitem(path).notes)
+        _print_notes(foreign.read(path).notes)
     return sku_set(SkuFile(file=path))
 
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rmfs import foreign
 from rmfs.config import apply_overrides, read_toml, validate
 from rmfs.instances import locate
 from rmfs.scenario.parameters import Scenario
-from rmfs.scenario.rawsimo import read_xsett
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rmfs.config import Table
-
+    from rmfs import foreign
+from rmfs.config import Table
 
 _FILES = (("skus", "file"), ("skus", "words"), ("demand", "file"), ("replenishment", "file"))
 """Keys that name files."""
@@ -50,7 +50,7 @@ def load_with_notes(
     path = locate("scenarios", str(name_or_path))
     notes: list[str] = []
     if path.suffix.lower() == ".xsett":
-        read = read_xsett(path)
+        read = foreign.read(path)
         table, notes = read.table, read.notes
     else:
         table = read_toml(path)
@@ -69,7 +69,10 @@ def asked_of_layout(name_or_path: str | Path) -> list[tuple[list[str], Any]]:
         If the file cannot be read.
     """
     path = locate("scenarios", str(name_or_path))
-    return read_xsett(path).layout if path.suffix.lower() == ".xsett" else []
+    if path.suffix.lower() != ".xsett":
+        return []
+    asked: list[tuple[list[str], Any]] = foreign.read(path).layout
+    return asked
 
 
 def named_files(scenario: Scenario) -> dict[str, Path]:

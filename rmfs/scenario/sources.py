@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rmfs import foreign
 from rmfs.errors import InputError
 from rmfs.scenario import exact
 from rmfs.scenario.parameters import LetterSkus, SkuFile
-from rmfs.scenario.rawsimo.xgenc import read_xgenc
-from rmfs.scenario.rawsimo.xitem import read_xitem
 from rmfs.scenario.skus import SkuSet, draw_sku_set, read_sku_set
 from rmfs.scenario.skus.drawing import draw_bundle_units, draw_space
 from rmfs.scenario.skus.letters import letter_sku_set
@@ -36,8 +35,8 @@ def sku_set(config: Skus) -> SkuSet:
         case ".json":
             return read_sku_set(config.file)
         case ".xitem":
-            return _completed(read_xitem(config.file).skus, config)
-    return _completed(read_xgenc(config.file), config)
+            return _completed(foreign.read(config.file).skus, config)
+    return _completed(foreign.read(config.file), config)
 
 
 def order_stream(config: StreamDemand, skus: SkuSet) -> OrderStream:
@@ -49,7 +48,7 @@ def order_stream(config: StreamDemand, skus: SkuSet) -> OrderStream:
         If the file is broken, or its digest is another one.
     """
     if config.file.suffix.lower() == ".xitem":
-        stream = read_xitem(config.file).orders(skus)
+        stream: OrderStream = foreign.read(config.file).orders(skus)
     else:
         stream = read_orders(config.file, skus)
     _check_digest(config, digest(stream, skus) if config.digest else None)
@@ -70,7 +69,7 @@ def bundle_stream(config: StreamReplenishment, skus: SkuSet, largest_pod: float)
         If the file is broken, a bundle fits into no pod, or the digest is another one.
     """
     if config.file.suffix.lower() == ".xitem":
-        stream = read_xitem(config.file).bundles(skus, largest_pod)
+        stream: BundleStream = foreign.read(config.file).bundles(skus, largest_pod)
     else:
         stream = read_bundles(config.file, skus, largest_pod)
     _check_digest(config, digest(stream, skus) if config.digest else None)

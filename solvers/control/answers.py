@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rmfs.control.asks import Plain
-    from solvers.models.solution import Solution
+    from rmfs.solvers.models.solution import Solution
 
 
 def answer(solution: Solution[Any], values: Mapping[str, Plain] | None) -> Answer:

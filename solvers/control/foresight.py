@@ -6,7 +6,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from rmfs.control.trackers.frequency import Frequency
-from solvers.models.storage.placement import expected_visits
+from rmfs.solvers.models.storage.placement import expected_visits
 
 if TYPE_CHECKING:
     import numpy as np

@@ -7,7 +7,7 @@ from typing import Annotated
 import pydantic
 
 from rmfs.control.base import Parameters
-from solvers.models.solution import Limits
+from rmfs.solvers.models.solution import Limits
 
 
 class BufferParameters(Parameters):

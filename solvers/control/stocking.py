@@ -14,12 +14,12 @@ from rmfs.control.decisions import PromiseBundle, ReleasePod, SendBundle
 from rmfs.control.problems import Problem, Trigger
 from rmfs.control.rps import ReplenishmentPodSelection
 from rmfs.control.trackers.frequency import Frequency, PairFrequency
-from solvers.control.answers import answer
-from solvers.control.foresight import Foresight
-from solvers.control.parameters import SearchParameters
-from solvers.models import replenishment
-from solvers.models.replenishment import Replenishment
-from solvers.models.solution import Limits
+from rmfs.solvers.control.answers import answer
+from rmfs.solvers.control.foresight import Foresight
+from rmfs.solvers.control.parameters import SearchParameters
+from rmfs.solvers.models import replenishment
+from rmfs.solvers.models.replenishment import Replenishment
+from rmfs.solvers.models.solution import Limits
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -109,7 +109,7 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
     parameters_model = StockingParameters
     decides: ClassVar[frozenset[Problem]] = frozenset({Problem.ROA})
     subscriptions = frozenset({Trigger.BUNDLE_STORED, Trigger.STATION_SWITCHED})
-    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.stocking",)
+    optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.stocking",)
 
     def __init__(
         self, parameters: StockingParameters, view: View, rng: np.random.Generator

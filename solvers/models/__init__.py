@@ -1,12 +1,12 @@
 """Pure optimisation models: a frozen dataclass of arrays in, a `Solution` out.
 
 Nothing here knows of a warehouse that moves: a model can be solved, tested and timed without a
-simulation. `solvers.control` fills the arrays from a world and applies the solution.
+simulation. `rmfs.solvers.control` fills the arrays from a world and applies the solution.
 """
 
-from solvers.models.checks import ModelError as ModelError
-from solvers.models.solution import Limits as Limits
-from solvers.models.solution import Sense as Sense
-from solvers.models.solution import Solution as Solution
-from solvers.models.solution import Status as Status
-from solvers.models.solution import WallGuardError as WallGuardError
+from rmfs.solvers.models.checks import ModelError as ModelError
+from rmfs.solvers.models.solution import Limits as Limits
+from rmfs.solvers.models.solution import Sense as Sense
+from rmfs.solvers.models.solution import Solution as Solution
+from rmfs.solvers.models.solution import Status as Status
+from rmfs.solvers.models.solution import WallGuardError as WallGuardError

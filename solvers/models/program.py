@@ -1,7 +1,7 @@
 """Mixed-integer linear programs in matrix form, and a builder that fills them by blocks.
 
-A model states its formulation once, here; `solvers.models.backends` hands it to each solver. All
-building is array work: one call per family of columns or rows, never one per row.
+A model states its formulation once, here; `rmfs.solvers.models.backends` hands it to each solver.
+All building is array work: one call per family of columns or rows, never one per row.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array
 
-from solvers.models.checks import flags, integers, reals, require
+from rmfs.solvers.models.checks import flags, integers, reals, require
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

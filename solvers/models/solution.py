@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Generic, TypeVar
 
-from solvers.models.checks import number, require
+from rmfs.solvers.models.checks import number, require
 
 V_co = TypeVar("V_co", covariant=True)
 

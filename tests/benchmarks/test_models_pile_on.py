@@ -4,11 +4,20 @@ from typing import Any
 
 import pytest
 
-from solvers.models import Limits, Solution
-from solvers.models.pile_on import Pruning, cp_sat, greedy, hadgs, highs, joint, objective, prune
-from solvers.models.pile_on.relaxation import PileOnRelaxation
-from solvers.models.pile_on.sample import LARGE, MEDIUM, SMALL, Size, snapshot
-from solvers.models.solution import Status
+from rmfs.solvers.models import Limits, Solution
+from rmfs.solvers.models.pile_on import (
+    Pruning,
+    cp_sat,
+    greedy,
+    hadgs,
+    highs,
+    joint,
+    objective,
+    prune,
+)
+from rmfs.solvers.models.pile_on.relaxation import PileOnRelaxation
+from rmfs.solvers.models.pile_on.sample import LARGE, MEDIUM, SMALL, Size, snapshot
+from rmfs.solvers.models.solution import Status
 
 SIZES = {"small": SMALL, "medium": MEDIUM, "large": LARGE}
 

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from solvers.models import Limits
-from solvers.models.rack_allocation import solve_by_cp_sat, solve_by_highs, solve_greedily
-from solvers.models.rack_allocation.sample import site
+from rmfs.solvers.models import Limits
+from rmfs.solvers.models.rack_allocation import solve_by_cp_sat, solve_by_highs, solve_greedily
+from rmfs.solvers.models.rack_allocation.sample import site
 
 SIZES = {
     "small": (30, 60, 60, 2, 6),

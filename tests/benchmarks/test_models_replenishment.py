@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solvers.models import Limits
-from solvers.models.replenishment import (
+from rmfs.solvers.models import Limits
+from rmfs.solvers.models.replenishment import (
     Replenishment,
     best_pods,
     bundle_worth_s,

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solvers.models.run_bound import (
+from rmfs.solvers.models.run_bound import (
     Orders,
     PickStations,
     Refill,

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from solvers.models import Limits
-from solvers.models.sequencing import beam, cp_sat, dynamic, violations
-from solvers.models.sequencing.sample import station
+from rmfs.solvers.models import Limits
+from rmfs.solvers.models.sequencing import beam, cp_sat, dynamic, violations
+from rmfs.solvers.models.sequencing.sample import station
 
 SIZES = {"small": (8, 10, 12, 3), "medium": (30, 60, 60, 6), "large": (200, 300, 250, 12)}
 """Orders, pods, SKUs and slots of one station."""

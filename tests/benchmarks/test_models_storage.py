@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solvers.models import Limits, Status
-from solvers.models.storage import placement, stays, zones
+from rmfs.solvers.models import Limits, Status
+from rmfs.solvers.models.storage import placement, stays, zones
 
 PLACEMENT = {"small": (8, 30), "medium": (45, 210), "large": (128, 1400)}
 """Pods that return and free places."""

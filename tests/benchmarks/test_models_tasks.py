@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solvers.models import Limits
-from solvers.models.tasks import balance, matching, sequence
+from rmfs.solvers.models import Limits
+from rmfs.solvers.models.tasks import balance, matching, sequence
 
 SIZES = {"small": (10, 20), "medium": (45, 90), "large": (128, 256)}
 """Robots and tasks."""

@@ -13,9 +13,11 @@ def answers(mib: int, commands: list[list[str]]) -> list[tuple[int, str]]:
 
     Everything is imported first, so that what is bounded is what reading takes.
     """
-    from rmfs import importing, simulation  # noqa: F401
+    from rmfs import simulation  # noqa: F401
     from rmfs.cli import main
     from rmfs.layout import commands as layouts  # noqa: F401
+    from rmfs.rawsimo import folder  # noqa: F401
+    from rmfs.rawsimo.layout import xinst, xlayo  # noqa: F401
     from rmfs.scenario import commands as scenarios  # noqa: F401
 
     mapped = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()

@@ -9,8 +9,8 @@ from rawsimo_files import XCONF, XITEM, XLAYO, xsett
 
 from rmfs import control, layout, scenario
 from rmfs.cli import main
-from rmfs.importing import LIST, import_files
 from rmfs.measure import load_run
+from rmfs.rawsimo.folder import LIST, import_files
 from rmfs.scenario.skus.file import read_sku_set
 
 REFERENCE = Path(__file__).resolve().parents[3] / "shared" / "reference" / "instances"

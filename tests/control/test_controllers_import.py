@@ -9,9 +9,9 @@ import pytest
 from rmfs.cli import main
 from rmfs.control.pp.far import Far
 from rmfs.control.problems import Problem
-from rmfs.control.rawsimo import read_xconf
 from rmfs.control.settings import load, load_with_notes
 from rmfs.errors import InputError
+from rmfs.rawsimo.control import read_xconf
 
 REFERENCE = Path(__file__).resolve().parents[3] / "shared" / "reference" / "instances"
 HEAD = '<ControlConfiguration xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"><Name>x</Name>'

@@ -190,8 +190,7 @@ def _environment() -> dict[str, str]:
 
 
 def _toml(block: Block, session: Session) -> None:
-    import experiments
-    from rmfs import control, layout, scenario
+    from rmfs import control, experiments, layout, scenario
     from rmfs.config import read_toml
 
     path = session.folder / block.options.get("file", "block.toml")
@@ -200,7 +199,7 @@ def _toml(block: Block, session: Session) -> None:
     if form == "rmfs-design":
         assert experiments.plan(path).problems == [], f"{block}"
     elif form == "rmfs-cluster":
-        from experiments.running.cluster import read_profile
+        from rmfs.experiments.running.cluster import read_profile
 
         read_profile(path)
     else:

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from experiments.running.job import Job, Outcome
+from rmfs.experiments.running.job import Job, Outcome
 from rmfs.measure.dictionary import FOOTPRINT, REAL, SERIES
 
 EFFECT = {"nearest": 40.0, "random": 0.0}

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-import experiments
-from experiments.design.arms import factor_names
+from rmfs import experiments
 from rmfs.errors import InputError
+from rmfs.experiments.design.arms import factor_names
 
 
 def names(path) -> list[str]:

@@ -8,8 +8,14 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from experiments.papers import benefit, fewer_robots, joint_large, joint_small, price_of_thinking
-from experiments.papers.study import FAILED
+from rmfs.experiments.papers import (
+    benefit,
+    fewer_robots,
+    joint_large,
+    joint_small,
+    price_of_thinking,
+)
+from rmfs.experiments.papers.study import FAILED
 
 SMALL = {"layout": "small", "scenario": "small", "layout.robots": 6}
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pandas as pd
 import pytest
 
-from experiments import calibrate
+from rmfs.experiments import calibrate
 from rmfs.simulation.pacing.computed import SECONDS_PER_CALL, SECONDS_PER_UNIT
 
 

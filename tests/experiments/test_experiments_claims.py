@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from experiments.claims import SOURCE, ClaimFile, claims, main, page
 from rmfs.config import read_toml, validate
 from rmfs.errors import InputError
+from rmfs.experiments.claims import SOURCE, ClaimFile, claims, main, page
 
 ROOT = Path(__file__).resolve().parents[2]
 PUBLISHED = ROOT / "results" / "published"
@@ -20,7 +20,7 @@ TABLE = "arm,seeds,units_per_h mean,units_per_h ±,gain difference,gain ±,p\nma
 
 def source(folder: Path, **entry) -> Path:
     told = {"text": "Many pick", "file": "t.csv", "row": "many", "column": "units_per_h",
-            "command": "python -m experiments.papers.figure_4", **entry}  # fmt: skip
+            "command": "python -m rmfs.experiments.papers.figure_4", **entry}  # fmt: skip
     lines = [f"{key} = {json.dumps(value)}" for key, value in told.items()]
     path = folder / "claims.toml"
     path.write_text('format = "rmfs-claims/1"\n[[claims]]\n' + "\n".join(lines) + "\n")
@@ -35,7 +35,7 @@ def published(tmp_path):
 
 
 def test_the_page_is_what_is_published(tmp_path):
-    """Otherwise: python -m experiments.claims. Fails as soon as a published number changes."""
+    """Otherwise: python -m rmfs.experiments.claims. Fails as soon as a published number changes."""
     assert main(["--published", str(PUBLISHED), "--page", str(tmp_path / "claims.md")]) == 0
     written = (tmp_path / "claims.md").read_text("utf-8")
     assert (ROOT / "docs" / "claims.md").read_text("utf-8") == written

@@ -9,11 +9,11 @@ import pandas as pd
 import pytest
 from stand_in import Inline, work_that_fails_for_random
 
-import experiments
-from experiments.results import to_csv
-from experiments.running.driver import drive
-from experiments.store import Store
+from rmfs import experiments
 from rmfs.cli import main
+from rmfs.experiments.results import to_csv
+from rmfs.experiments.running.driver import drive
+from rmfs.experiments.store import Store
 
 
 @pytest.fixture
@@ -76,7 +76,7 @@ def test_failed_runs_end_in_exit_code_1(design, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     path = design()
     monkeypatch.setattr(
-        "experiments.running.local.LocalProcesses",
+        "rmfs.experiments.running.local.LocalProcesses",
         lambda processes: Inline(do=work_that_fails_for_random),
     )
     assert main(["experiment", "run", str(path)]) == 1

@@ -9,11 +9,11 @@ import time
 
 import pytest
 
-import experiments
-from experiments.results import reproducible_table
-from experiments.running.cluster import DaskWorkers, job_script
-from experiments.running.cluster import main as cluster_main
+from rmfs import experiments
 from rmfs.errors import InputError
+from rmfs.experiments.results import reproducible_table
+from rmfs.experiments.running.cluster import DaskWorkers, job_script
+from rmfs.experiments.running.cluster import main as cluster_main
 
 distributed = pytest.importorskip("distributed")
 
@@ -73,8 +73,8 @@ def test_a_failing_run_does_not_stop_the_cluster(design, tmp_path, monkeypatch):
     profile.write_text('format = "rmfs-cluster/1"\ncluster = "local"\nworkers = 2\n')
     plan = experiments.plan(design())
     engine = DaskWorkers(str(profile), work=stand_in.work_that_fails_for_random)
-    from experiments.running.driver import drive
-    from experiments.store import Store
+    from rmfs.experiments.running.driver import drive
+    from rmfs.experiments.store import Store
 
     done = drive(plan, Store(tmp_path / "out"), engine)
     assert (done.finished, len(done.failed)) == (10, 2)
@@ -97,7 +97,7 @@ def test_a_wrong_profile_is_refused(tmp_path, text, told):
 
 def test_a_batch_system_is_told_to_start_single_threaded_workers(monkeypatch, tmp_path):
     jobqueue = pytest.importorskip("dask_jobqueue")
-    from experiments.running.cluster import Profile, started
+    from rmfs.experiments.running.cluster import Profile, started
 
     made = []
 
@@ -120,7 +120,7 @@ def test_a_batch_system_is_told_to_start_single_threaded_workers(monkeypatch, tm
 
 
 def test_a_scheduler_that_does_not_answer_is_told(monkeypatch):
-    monkeypatch.setattr("experiments.running.cluster.CONNECT_S", 0.2)
+    monkeypatch.setattr("rmfs.experiments.running.cluster.CONNECT_S", 0.2)
     with pytest.raises(InputError, match="no scheduler answers"):
         DaskWorkers("tcp://127.0.0.1:9")
 

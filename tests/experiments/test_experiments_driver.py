@@ -11,15 +11,15 @@ import pytest
 import stand_in
 from stand_in import Inline, work, work_that_fails_for_random
 
-import experiments
-from experiments.design.planning import PlanError
-from experiments.results import reproducible_table
-from experiments.running.driver import Silent, drive, progress_of
-from experiments.running.job import Outcome
-from experiments.running.local import LocalProcesses
-from experiments.store import Store
+from rmfs import experiments
 from rmfs.cli import main
 from rmfs.errors import InputError
+from rmfs.experiments.design.planning import PlanError
+from rmfs.experiments.results import reproducible_table
+from rmfs.experiments.running.driver import Silent, drive, progress_of
+from rmfs.experiments.running.job import Outcome
+from rmfs.experiments.running.local import LocalProcesses
+from rmfs.experiments.store import Store
 from rmfs.instances import ROOT
 
 
@@ -129,7 +129,7 @@ def test_a_changed_input_is_noticed(design, store, tmp_path):
 
 
 def test_an_input_that_changes_under_way_fails_the_run(design, tmp_path):
-    from experiments.running.execute import execute
+    from rmfs.experiments.running.execute import execute
 
     scenario = (ROOT / "scenarios" / "basic.toml").read_text()
     (tmp_path / "own.toml").write_text(scenario)
@@ -146,7 +146,7 @@ def test_runs_of_other_code_are_told(design, store, monkeypatch):
     plan = experiments.plan(design())
     drive(plan, store, Inline())
     other = {"rmfs_version": "9", "git_commit": "f" * 40, "code": "other"}
-    monkeypatch.setattr("experiments.running.driver.code", lambda: other)
+    monkeypatch.setattr("rmfs.experiments.running.driver.code", lambda: other)
     notes = Notes()
     drive(plan, store, Inline(), notes)
     assert any("12 finished runs were made with other code" in r for r in notes.remarks)
@@ -194,7 +194,7 @@ def local(do) -> LocalProcesses:
 
 
 def test_closing_ends_what_runs():
-    from experiments.running.job import Job
+    from rmfs.experiments.running.job import Job
 
     engine = LocalProcesses(1, stand_in.work_without_end)
     job = Job("d", "h", "a", "0" * 64, 1, 1, {}, [], "instant", False, False, (), {})

@@ -13,8 +13,8 @@ from pathlib import Path
 import psutil
 import pytest
 
-import experiments
-from experiments.results import to_csv
+from rmfs import experiments
+from rmfs.experiments.results import to_csv
 
 FACTORS = {"layout.robots": [8, 16], "controllers.psa": ["nearest", "random"]}
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pandas as pd
 import pytest
 
-from experiments.overhead import Cost, CostAsleep, gaps, main, measure, measure_asleep
 from rmfs.errors import InputError
+from rmfs.experiments.overhead import Cost, CostAsleep, gaps, main, measure, measure_asleep
 
 
 def test_overhead_is_what_is_not_simulation():

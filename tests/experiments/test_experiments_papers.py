@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from experiments.papers import demonstrator, figure_5b, fleet_size
-from experiments.papers.study import WRONG_INPUT, command
+from rmfs.experiments.papers import demonstrator, figure_5b, fleet_size
+from rmfs.experiments.papers.study import WRONG_INPUT, command
 
 
 def warehouse() -> SimpleNamespace:

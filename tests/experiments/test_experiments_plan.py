@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-import experiments
-from experiments.design.planning import PlanError, load
+from rmfs import experiments
+from rmfs.experiments.design.planning import PlanError, load
 from rmfs.instances import ROOT
 
 
@@ -62,7 +62,7 @@ def test_the_hash_is_of_meaning(design, tmp_path):
 
 
 def test_the_content_of_a_file_that_an_input_names_counts(design, tmp_path):
-    from experiments.design.resolve import Resolver
+    from rmfs.experiments.design.resolve import Resolver
 
     named = tmp_path / "skus.xgenc"
     named.write_text("one")

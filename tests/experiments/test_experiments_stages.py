@@ -6,11 +6,11 @@ import pandas as pd
 import pytest
 from stand_in import Inline, footprint
 
-import experiments
-from experiments.design.stages import schedule
-from experiments.running.driver import drive
-from experiments.running.job import Outcome
-from experiments.store import Store
+from rmfs import experiments
+from rmfs.experiments.design.stages import schedule
+from rmfs.experiments.running.driver import drive
+from rmfs.experiments.running.job import Outcome
+from rmfs.experiments.store import Store
 
 FACTORS = {"layout.robots": [8, 12, 16], "controllers.psa": ["nearest", "random"]}
 

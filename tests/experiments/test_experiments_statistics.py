@@ -11,8 +11,9 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from experiments import coverage
-from experiments.statistics import (
+from rmfs.errors import InputError
+from rmfs.experiments import coverage
+from rmfs.experiments.statistics import (
     against,
     anova,
     interval,
@@ -23,8 +24,7 @@ from experiments.statistics import (
     rates,
     unpaired,
 )
-from experiments.statistics.paired import holm
-from rmfs.errors import InputError
+from rmfs.experiments.statistics.paired import holm
 
 
 def test_t_interval_is_that_of_the_textbook():

@@ -8,16 +8,16 @@ import re
 import pytest
 from stand_in import Inline
 
-import experiments
-from experiments import provenance, tables
-from experiments.figures import front, pareto, progression
-from experiments.figures.progression import per_bin
-from experiments.figures.style import axis_label, saving
-from experiments.plotting import KINDS, draw
-from experiments.running.driver import drive
-from experiments.statistics import anova
-from experiments.store import Store
+from rmfs import experiments
 from rmfs.errors import InputError
+from rmfs.experiments import provenance, tables
+from rmfs.experiments.figures import front, pareto, progression
+from rmfs.experiments.figures.progression import per_bin
+from rmfs.experiments.figures.style import axis_label, saving
+from rmfs.experiments.plotting import KINDS, draw
+from rmfs.experiments.running.driver import drive
+from rmfs.experiments.statistics import anova
+from rmfs.experiments.store import Store
 
 
 @pytest.fixture

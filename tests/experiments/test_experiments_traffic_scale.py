@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
-from experiments.traffic import scale
-from experiments.traffic.commands import app
+from rmfs.experiments.traffic import scale
+from rmfs.experiments.traffic.commands import app
 
 
 def frame(cpu_s):

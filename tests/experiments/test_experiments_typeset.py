@@ -7,9 +7,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from experiments import typeset
-from experiments.tables import Table
 from rmfs.errors import InputError
+from rmfs.experiments import typeset
+from rmfs.experiments.tables import Table
 
 ROOT = Path(__file__).resolve().parents[2]
 PUBLISHED = sorted((ROOT / "results" / "published").glob("*.tex"))
@@ -68,7 +68,7 @@ def test_a_missing_table_is_told(tmp_path, capsys):
 @pytest.mark.slow
 @latex
 def test_arms_and_captions_may_hold_any_sign(tmp_path):
-    from experiments.tables import means
+    from rmfs.experiments.tables import means
 
     arm = r"a_b%c&d#e$f{g}h\i~j^k<l>m"
     frame = pd.DataFrame({"arm": arm, "replication": [1, 2], "units_per_h": [1.0, 2.0]})

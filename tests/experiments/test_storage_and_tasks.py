@@ -5,8 +5,8 @@ from __future__ import annotations
 import pandas as pd
 import pytest
 
-from experiments.papers import benefit, storage_and_tasks
-from experiments.papers.study import command
+from rmfs.experiments.papers import benefit, storage_and_tasks
+from rmfs.experiments.papers.study import command
 
 
 def test_the_study_is_run_and_published(design, tmp_path, monkeypatch):

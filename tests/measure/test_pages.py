@@ -9,7 +9,7 @@ import pytest
 
 from rmfs.measure.dictionary import TABLES, markdown
 from rmfs.measure.pages import DICTIONARY, FROM_RAWSIMO, with_measures, write_pages
-from rmfs.measure.rawsimo import COLUMNS, FILES
+from rmfs.rawsimo.footprint import COLUMNS, FILES
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "../shared/reference/rawsimo-inputs-outputs.md"

@@ -1,4 +1,6 @@
 import importlib.util
+import zipfile
+from pathlib import Path
 from types import ModuleType
 
 import pytest
@@ -21,9 +23,28 @@ def backend() -> ModuleType:
     return module
 
 
-def test_the_wheel_carries_the_instances() -> None:
-    (included,) = [entry for entry in MATURIN["include"] if entry["path"].startswith("instances/")]
-    assert included == {"path": "instances/**/*", "format": ["sdist", "wheel"]}
+def test_a_wheel_takes_one_name_and_carries_the_folders_below_it(
+    backend: ModuleType, tmp_path: Path
+) -> None:
+    wheel = tmp_path / "rmfs-0-py3-none-any.whl"
+    with zipfile.ZipFile(wheel, "w") as bare:
+        bare.writestr("rmfs/__init__.py", "")
+        bare.writestr("rmfs-0.dist-info/RECORD", "rmfs/__init__.py,,\n")
+    backend.add_folders(wheel)
+    with zipfile.ZipFile(wheel) as whole:
+        names = whole.namelist()
+        record = whole.read("rmfs-0.dist-info/RECORD").decode().splitlines()
+    assert {name.split("/")[0] for name in names} == {"rmfs", "rmfs-0.dist-info"}
+    assert {line.split(",")[0] for line in record} == {*names} - {"rmfs-0.dist-info/RECORD"}
+    for name in ("solvers/models/solution.py", "experiments/designs/smoke.toml"):
+        assert f"rmfs/{name}" in names
+    assert "rmfs/shipped/layouts/default.toml" in names
+
+
+def test_the_source_distribution_carries_the_folders_of_the_wheel(backend: ModuleType) -> None:
+    for folder, target in backend.FOLDERS.items():
+        assert {"path": f"{folder}/**/*", "format": "sdist"} in MATURIN["include"]
+        assert (ROOT / target).resolve() == ROOT / folder
 
 
 def test_instances_are_found_and_of_known_kinds() -> None:
@@ -41,7 +62,7 @@ def test_instances_are_found_and_of_known_kinds() -> None:
 def test_the_wheel_carries_all_packages() -> None:
     packages = {path.parent for path in tracked("*/__init__.py")}
     top = {path.relative_to(ROOT).parts[0] for path in packages} - {"tests"}
-    assert top == set(MATURIN["python-packages"])
+    assert top - {"solvers", "experiments"} == set(MATURIN["python-packages"])
 
 
 def test_the_wheel_leaves_the_crate_out() -> None:

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from scenario_tools import SITE, FakeState, drive
 
+from rmfs.rawsimo.scenario import read_xitem, read_xsett, xsett
 from rmfs.scenario import bundle_intake, initial_stock, order_intake, sku_set
 from rmfs.scenario.loading import load_with_notes
 from rmfs.scenario.parameters import SkuFile
-from rmfs.scenario.rawsimo import read_xitem, read_xsett, xsett
 
 
 def noted(notes: list[str], text: str) -> bool:

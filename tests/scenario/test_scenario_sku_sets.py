@@ -12,9 +12,9 @@ from scenario_tools import SIGNIFICANT
 from scipy import integrate, stats
 
 from rmfs.errors import InputError
+from rmfs.rawsimo.scenario import read_xgenc
 from rmfs.scenario import SkuSet, read_sku_set, sku_set, write_sku_set
 from rmfs.scenario.parameters import GeneratedAffinity, GeneratedSkus, SkuFile
-from rmfs.scenario.rawsimo import read_xgenc
 from rmfs.scenario.skus import Affinity
 from rmfs.scenario.skus.drawing import draw_affinity
 from rmfs.scenario.skus.picture import draw_popularity, save_picture

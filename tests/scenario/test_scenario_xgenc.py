@@ -9,10 +9,10 @@ import pytest
 from scipy import stats
 
 from rmfs.errors import InputError
+from rmfs.rawsimo.scenario import read_xgenc
 from rmfs.scenario import OrderSource, load, sku_set
 from rmfs.scenario.counts import NormalCount
 from rmfs.scenario.parameters import Orders, SkuFile
-from rmfs.scenario.rawsimo import read_xgenc
 
 ONE = NormalCount(mean=1.0, sd=0.0, min=1, max=1)
 TWO = NormalCount(mean=2.0, sd=0.0, min=2, max=2)

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from rmfs import xml
 from rmfs.errors import InputError
-from rmfs.scenario.rawsimo import read_xgenc, read_xitem, read_xsett
-from rmfs.xml import Unknown, read_root
+from rmfs.rawsimo import xml
+from rmfs.rawsimo.scenario import read_xgenc, read_xitem, read_xsett
+from rmfs.rawsimo.xml import Unknown, read_root
 
 LAUGHS = "".join(f'<!ENTITY a{i} "{f"&a{i - 1};" * 10 if i else "ha"}">' for i in range(12))
 BROKEN: dict[str, tuple[str | bytes, str]] = {

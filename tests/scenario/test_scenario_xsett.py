@@ -10,10 +10,10 @@ from rawsimo_files import xsett as xsett_file
 from scenario_tools import DAY_US, SITE, FakeState, drive
 
 from rmfs.errors import InputError
+from rmfs.rawsimo.scenario import read_xsett
+from rmfs.rawsimo.scenario.arrivals import down_periods, steps
 from rmfs.scenario import Scenario, bundle_intake, order_intake, sku_set
 from rmfs.scenario.loading import load_with_notes
-from rmfs.scenario.rawsimo import read_xsett
-from rmfs.scenario.rawsimo.arrivals import down_periods, steps
 
 
 def pairs(tag: str, values: dict[object, object]) -> str:

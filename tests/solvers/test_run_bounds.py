@@ -13,9 +13,9 @@ import rmfs
 from rmfs import layout as layouts
 from rmfs.measure.bound import BoundExceededWarning, units_per_h_bound, warn_if_exceeded
 from rmfs.simulation.simulation import Simulation
+from rmfs.solvers.models.run_bound import Throughput, solve, violations
+from rmfs.solvers.run_bound import run_bound
 from rmfs.traffic import Traffic
-from solvers.models.run_bound import Throughput, solve, violations
-from solvers.run_bound import run_bound
 
 HOUR_S = 3600.0
 

@@ -2,8 +2,8 @@
 
 import json
 
-from experiments.traffic import fuzz
 from rmfs.cli import main
+from rmfs.experiments.traffic import fuzz
 
 
 def test_ten_seconds(tmp_path, capsys):

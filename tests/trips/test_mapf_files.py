@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from experiments.traffic.duel import all_planners
 from rmfs.cli import main
+from rmfs.experiments.traffic.duel import all_planners
 
 FOLDER = Path(__file__).resolve().parents[2] / "../shared/reference/instances/mapf"
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import rmfs
-from experiments.viewer.chromium import chromium, open_page
+from rmfs.experiments.viewer.chromium import chromium, open_page
 from rmfs.measure import RunFolder, load_run, write_run
 
 WARMUP_S, END_S = 60.0, 660.0

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from experiments.viewer import chromium
+from rmfs.experiments.viewer import chromium
 
 PROGRAM = chromium.installed()
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from in_browser import needs_browser, show, state
 
-from experiments.viewer.chromium import open_page
+from rmfs.experiments.viewer.chromium import open_page
 from rmfs.measure import RunFolder
 from rmfs.measure.checker import motion
 from rmfs.measure.checker.trace import Kinematics, read

@@ -10,7 +10,7 @@ import pytest
 from in_browser import needs_browser, show, state
 
 import rmfs
-from experiments.viewer.chromium import served
+from rmfs.experiments.viewer.chromium import served
 from rmfs.layout import colours
 from rmfs.measure import RunFolder, load_run, write_run
 from rmfs.view.answers import replay_server

@@ -27,8 +27,8 @@ SECONDS_PER_UNIT = {
     "min_cost_flow": 1.74e-6,
     "rounding": 2.89e-5,
 }
-"""Seconds of a unit of work of each back end, as measured by `python -m experiments.calibrate` on
-an AMD EPYC on 2026-11-21 (results/published/seconds-per-unit.md)."""
+"""Seconds of a unit of work of each back end, as measured by `python -m
+rmfs.experiments.calibrate` on an AMD EPYC on 2026-11-21 (results/published/seconds-per-unit.md)."""
 
 SECONDS_PER_CALL = {
     "cp_sat": 0.0115,

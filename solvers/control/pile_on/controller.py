@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rmfs.control.poa import PickOrderAssignment
 from rmfs.control.pps.lexicographic import Lexicographic
 from rmfs.control.problems import Problem, Trigger
-from solvers.control.pile_on import snapshot
-from solvers.control.pile_on.parameters import PileOnParameters
-from solvers.control.pile_on.plan import Plan
-from solvers.control.pile_on.question import by_rule
+from rmfs.solvers.control.pile_on import snapshot
+from rmfs.solvers.control.pile_on.parameters import PileOnParameters
+from rmfs.solvers.control.pile_on.plan import Plan
+from rmfs.solvers.control.pile_on.question import by_rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Ask, Call
     from rmfs.control.decisions import AssignLines, AssignOrder
     from rmfs.control.view import View
+    from rmfs.solvers.control.pile_on.question import Question
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation, ReplenishmentStation
-    from solvers.control.pile_on.question import Question
 
     Decision = Ask[Question] | AssignOrder | AssignLines
 
@@ -46,7 +46,7 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     decides: ClassVar[frozenset[Problem]] = frozenset({Problem.PPS})
     subscriptions = frozenset({Trigger.POD_AT_STATION, Trigger.ROBOT_FREE})
     hears = frozenset({Trigger.POD_AT_STATION})
-    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.pile_on.question",)
+    optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.pile_on.question",)
 
     def __init__(self, parameters: PileOnParameters, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)

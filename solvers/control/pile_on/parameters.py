@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 import pydantic
 
-from solvers.control.parameters import SearchParameters
-from solvers.models.pile_on import Pruning, Weights
+from rmfs.solvers.control.parameters import SearchParameters
+from rmfs.solvers.models.pile_on import Pruning, Weights
 
 NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 Count = Annotated[int, pydantic.Field(ge=1)]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rmfs.control.asks import Answer
-from solvers.models.pile_on import (
+from rmfs.solvers.models.pile_on import (
     Assignment,
     Candidates,
     PileOn,
@@ -23,7 +23,7 @@ from solvers.models.pile_on import (
     prices,
     prune,
 )
-from solvers.models.solution import Limits, Solution
+from rmfs.solvers.models.solution import Limits, Solution
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.control.asks import Ask
-from solvers.control.pile_on.plan import Item
-from solvers.control.pile_on.question import Question, solve
-from solvers.models.pile_on import Candidates, PileOn, everything
-from solvers.models.pile_on.draft import Draft
+from rmfs.solvers.control.pile_on.plan import Item
+from rmfs.solvers.control.pile_on.question import Question, solve
+from rmfs.solvers.models.pile_on import Candidates, PileOn, everything
+from rmfs.solvers.models.pile_on.draft import Draft
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rmfs.control.view import View
+    from rmfs.solvers.control.pile_on.parameters import JointParameters
+    from rmfs.solvers.control.pile_on.plan import Plan
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation
-    from solvers.control.pile_on.parameters import JointParameters
-    from solvers.control.pile_on.plan import Plan
 
 UNREACHABLE_S = 1e5
 """Time that stands for no way at all."""

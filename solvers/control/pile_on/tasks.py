@@ -21,10 +21,10 @@ from rmfs.control.problems import Problem, Trigger
 from rmfs.control.ta import WORK, TaskAllocation
 from rmfs.control.ta.rest import RestPlaces, RestRule
 from rmfs.control.ta.stations import keeper_of
-from solvers.control.pile_on import snapshot
-from solvers.control.pile_on.parameters import JointParameters
-from solvers.control.pile_on.plan import Plan
-from solvers.control.pile_on.question import by_rule
+from rmfs.solvers.control.pile_on import snapshot
+from rmfs.solvers.control.pile_on.parameters import JointParameters
+from rmfs.solvers.control.pile_on.plan import Plan
+from rmfs.solvers.control.pile_on.question import by_rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     from rmfs.control.decisions import TaskDecision
     from rmfs.control.ta import Consult
     from rmfs.control.view import View
+    from rmfs.solvers.control.pile_on.question import Question
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation, ReplenishmentStation
-    from solvers.control.pile_on.question import Question
 
     Decision = Ask[Question] | AssignOrder | AssignLines | TaskDecision
 
@@ -100,7 +100,7 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
         Trigger.POD_AT_STATION,
     }
     hears = frozenset({Trigger.NEW_ORDER, Trigger.POD_AT_STATION, Trigger.ROBOT_FREE})
-    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.pile_on.question",)
+    optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.pile_on.question",)
 
     def __init__(
         self, parameters: PileOnTasksParameters, view: View, rng: np.random.Generator

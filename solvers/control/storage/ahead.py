@@ -11,9 +11,9 @@ import numpy as np
 from rmfs.control.problems import Trigger
 from rmfs.control.psa import PodStorageAssignment
 from rmfs.control.psa.nearest import Nearest
-from solvers.control.foresight import Foresight
-from solvers.control.storage.parameters import StorageParameters
-from solvers.control.storage.ways import Ways
+from rmfs.solvers.control.foresight import Foresight
+from rmfs.solvers.control.storage.parameters import StorageParameters
+from rmfs.solvers.control.storage.ways import Ways
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import pydantic
 
-from solvers.control.parameters import BufferParameters
+from rmfs.solvers.control.parameters import BufferParameters
 
 Positive = Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)]
 

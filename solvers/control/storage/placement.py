@@ -10,11 +10,11 @@ import pydantic
 from numpy.typing import NDArray
 
 from rmfs.control.asks import Answer, Ask
-from solvers.control.answers import answer
-from solvers.control.storage.ahead import Ahead
-from solvers.control.storage.parameters import StorageParameters
-from solvers.models.storage import placement
-from solvers.models.storage.placement import Placement
+from rmfs.solvers.control.answers import answer
+from rmfs.solvers.control.storage.ahead import Ahead
+from rmfs.solvers.control.storage.parameters import StorageParameters
+from rmfs.solvers.models.storage import placement
+from rmfs.solvers.models.storage.placement import Placement
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -74,7 +74,7 @@ class PlacementControl(Ahead[PlacementParameters]):
     """
 
     parameters_model = PlacementParameters
-    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.storage.placement",)
+    optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.storage.placement",)
 
     def question(self, robots: Sequence[Robot]) -> Ask[Question]:
         """State the assignment, with the places that can matter."""

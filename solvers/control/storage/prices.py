@@ -14,13 +14,13 @@ from rmfs.control.asks import Answer, Ask
 from rmfs.control.problems import Trigger
 from rmfs.control.psa import PodStorageAssignment
 from rmfs.control.psa.nearest import Nearest
-from solvers.control.answers import answer
-from solvers.control.foresight import Foresight
-from solvers.control.storage.bands import bands, means
-from solvers.control.storage.parameters import Positive, StorageParameters
-from solvers.control.storage.ways import Ways
-from solvers.models.storage import zones
-from solvers.models.storage.zones import Prices, Zones, expected_stay_h, place_values
+from rmfs.solvers.control.answers import answer
+from rmfs.solvers.control.foresight import Foresight
+from rmfs.solvers.control.storage.bands import bands, means
+from rmfs.solvers.control.storage.parameters import Positive, StorageParameters
+from rmfs.solvers.control.storage.ways import Ways
+from rmfs.solvers.models.storage import zones
+from rmfs.solvers.models.storage.zones import Prices, Zones, expected_stay_h, place_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -73,7 +73,7 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
 
     parameters_model = PricesParameters
     subscriptions = frozenset({Trigger.START})
-    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.storage.prices",)
+    optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.storage.prices",)
 
     def __init__(self, parameters: PricesParameters, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)

@@ -9,14 +9,14 @@ import numpy as np
 import pydantic
 
 from rmfs.control.asks import Answer, Ask
-from solvers.control.answers import answer
-from solvers.control.parameters import SearchParameters
-from solvers.control.storage.ahead import Ahead
-from solvers.control.storage.bands import bands, means
-from solvers.control.storage.parameters import Positive, StorageParameters
-from solvers.models.solution import Limits
-from solvers.models.storage.stays import Stays, solve_by_cp_sat, solve_greedily
-from solvers.models.storage.zones import expected_stay_h
+from rmfs.solvers.control.answers import answer
+from rmfs.solvers.control.parameters import SearchParameters
+from rmfs.solvers.control.storage.ahead import Ahead
+from rmfs.solvers.control.storage.bands import bands, means
+from rmfs.solvers.control.storage.parameters import Positive, StorageParameters
+from rmfs.solvers.models.solution import Limits
+from rmfs.solvers.models.storage.stays import Stays, solve_by_cp_sat, solve_greedily
+from rmfs.solvers.models.storage.zones import expected_stay_h
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -75,7 +75,7 @@ class StaysControl(Ahead[StaysParameters]):
     """
 
     parameters_model = StaysParameters
-    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.storage.stays",)
+    optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.storage.stays",)
 
     def __init__(self, parameters: StaysParameters, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)

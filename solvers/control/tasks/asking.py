@@ -12,7 +12,7 @@ from rmfs.control.decisions import Park, Rest, TaskDecision
 from rmfs.control.ta import TaskAllocation
 from rmfs.control.ta.rest import RestPlaces, RestRule
 from rmfs.control.ta.stations import bring, keeper_of
-from solvers.control.parameters import BufferParameters
+from rmfs.solvers.control.parameters import BufferParameters
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -12,10 +12,10 @@ from rmfs.control.asks import Answer, Ask
 from rmfs.control.decisions import Park
 from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
 from rmfs.control.ta.stations import bring, keeper_of
-from solvers.control.answers import answer
-from solvers.control.tasks.asking import Asking, NotNegative, TaskParameters
-from solvers.models.tasks import balance, matching
-from solvers.models.tasks.balance import Balance
+from rmfs.solvers.control.answers import answer
+from rmfs.solvers.control.tasks.asking import Asking, NotNegative, TaskParameters
+from rmfs.solvers.models.tasks import balance, matching
+from rmfs.solvers.models.tasks.balance import Balance
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -89,7 +89,7 @@ class DispatchControl(Asking[DispatchParameters]):
     """
 
     parameters_model = DispatchParameters
-    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.tasks.dispatch",)
+    optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.tasks.dispatch",)
 
     def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Question]:
         """State the flow."""

@@ -13,14 +13,14 @@ from rmfs.control.decisions import Park
 from rmfs.control.problems import Problem
 from rmfs.control.psa.nearest import Nearest
 from rmfs.control.ta.stations import bring, keeper_of
+from rmfs.solvers.control.answers import answer
+from rmfs.solvers.control.parameters import SearchParameters
+from rmfs.solvers.control.tasks.asking import Asking, NotNegative, TaskParameters
+from rmfs.solvers.control.tasks.jobs import Job, Worth, jobs
+from rmfs.solvers.models.solution import Limits
+from rmfs.solvers.models.tasks import sequence
+from rmfs.solvers.models.tasks.sequence import Sequence as Routing
 from rmfs.world.tasks import TaskKind
-from solvers.control.answers import answer
-from solvers.control.parameters import SearchParameters
-from solvers.control.tasks.asking import Asking, NotNegative, TaskParameters
-from solvers.control.tasks.jobs import Job, Worth, jobs
-from solvers.models.solution import Limits
-from solvers.models.tasks import sequence
-from solvers.models.tasks.sequence import Sequence as Routing
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -133,7 +133,7 @@ class RoutesControl(Asking[RoutesParameters]):
 
     parameters_model = RoutesParameters
     decides: ClassVar[frozenset[Problem]] = frozenset({Problem.PPS, Problem.PSA})
-    optimisers: ClassVar[tuple[str, ...]] = ("solvers.control.tasks.routes",)
+    optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.tasks.routes",)
 
     def __init__(self, parameters: RoutesParameters, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)

@@ -8,4 +8,4 @@ to their end, so that no limit is needed and their work is a function of the siz
 optimality is proven by potentials computed here (duality), whatever a solver did.
 """
 
-from solvers.models.backends.outcome import Outcome as Outcome
+from rmfs.solvers.models.backends.outcome import Outcome as Outcome

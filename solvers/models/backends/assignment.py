@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from solvers.models.backends.flow import Network, min_cost_flow
-from solvers.models.solution import Solution, Status
+from rmfs.solvers.models.backends.flow import Network, min_cost_flow
+from rmfs.solvers.models.solution import Solution, Status
 
 Solver = Literal["scipy", "min_cost_flow"]
 """Shortest augmenting paths on real costs (SciPy), or cost scaling on whole ones (OR-Tools)."""

@@ -10,11 +10,11 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends import highs
-from solvers.models.backends.outcome import Outcome
-from solvers.models.checks import require
-from solvers.models.program import LinearProgram
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.backends import highs
+from rmfs.solvers.models.backends.outcome import Outcome
+from rmfs.solvers.models.checks import require
+from rmfs.solvers.models.program import LinearProgram
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 V = TypeVar("V")
 

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
-from solvers.models.backends.outcome import Relaxation as Relaxation
-from solvers.models.backends.safe_bound import safe_bound
-from solvers.models.checks import require
-from solvers.models.program import LinearProgram
-from solvers.models.solution import NO_LIMITS, Limits, WallGuardError
+from rmfs.solvers.models.backends.outcome import Relaxation as Relaxation
+from rmfs.solvers.models.backends.safe_bound import safe_bound
+from rmfs.solvers.models.checks import require
+from rmfs.solvers.models.program import LinearProgram
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, WallGuardError
 
 NAME = "clarabel"
 _DEFAULT_ITERATIONS = 200

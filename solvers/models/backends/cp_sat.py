@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from ortools.sat.python import cp_model
 from ortools.sat.python.cp_model_helper import CpSolverStatus
 
-from solvers.models.backends.outcome import Outcome, trivial
-from solvers.models.checks import require
-from solvers.models.program import LinearProgram
-from solvers.models.solution import NO_LIMITS, Limits, Status, WallGuardError
+from rmfs.solvers.models.backends.outcome import Outcome, trivial
+from rmfs.solvers.models.checks import require
+from rmfs.solvers.models.program import LinearProgram
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Status, WallGuardError
 
 NAME = "cp_sat"
 RESOLUTION = 1024

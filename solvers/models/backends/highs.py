@@ -15,10 +15,10 @@ import highspy  # type: ignore[import-untyped]
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends.outcome import NUMERICAL_TOLERANCE, Outcome, Relaxation, trivial
-from solvers.models.backends.safe_bound import safe_bound
-from solvers.models.program import LinearProgram
-from solvers.models.solution import NO_LIMITS, Limits, Status, WallGuardError
+from rmfs.solvers.models.backends.outcome import NUMERICAL_TOLERANCE, Outcome, Relaxation, trivial
+from rmfs.solvers.models.backends.safe_bound import safe_bound
+from rmfs.solvers.models.program import LinearProgram
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Status, WallGuardError
 
 NAME = "highs"
 _INTEGER_LIMIT = 2**31 - 1

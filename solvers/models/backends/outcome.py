@@ -10,8 +10,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.program import LinearProgram
-from solvers.models.solution import Solution, Status
+from rmfs.solvers.models.program import LinearProgram
+from rmfs.solvers.models.solution import Solution, Status
 
 V = TypeVar("V")
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.program import LinearProgram
+from rmfs.solvers.models.program import LinearProgram
 
 _UNIT = float(np.finfo(np.float64).eps)
 

@@ -9,15 +9,15 @@
 All take a `PileOn` and give a `Solution[Assignment]`.
 """
 
-from solvers.models.pile_on.attribution import Picks as Picks
-from solvers.models.pile_on.attribution import attribute as attribute
-from solvers.models.pile_on.candidates import Candidates as Candidates
-from solvers.models.pile_on.candidates import Pruning as Pruning
-from solvers.models.pile_on.candidates import everything as everything
-from solvers.models.pile_on.candidates import prune as prune
-from solvers.models.pile_on.data import PileOn as PileOn
-from solvers.models.pile_on.values import Assignment as Assignment
-from solvers.models.pile_on.values import objective as objective
-from solvers.models.pile_on.values import violations as violations
-from solvers.models.pile_on.variant import Variant as Variant
-from solvers.models.pile_on.variant import Weights as Weights
+from rmfs.solvers.models.pile_on.attribution import Picks as Picks
+from rmfs.solvers.models.pile_on.attribution import attribute as attribute
+from rmfs.solvers.models.pile_on.candidates import Candidates as Candidates
+from rmfs.solvers.models.pile_on.candidates import Pruning as Pruning
+from rmfs.solvers.models.pile_on.candidates import everything as everything
+from rmfs.solvers.models.pile_on.candidates import prune as prune
+from rmfs.solvers.models.pile_on.data import PileOn as PileOn
+from rmfs.solvers.models.pile_on.values import Assignment as Assignment
+from rmfs.solvers.models.pile_on.values import objective as objective
+from rmfs.solvers.models.pile_on.values import violations as violations
+from rmfs.solvers.models.pile_on.variant import Variant as Variant
+from rmfs.solvers.models.pile_on.variant import Weights as Weights

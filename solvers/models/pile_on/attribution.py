@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.models.pile_on.data import Integers, PileOn
-from solvers.models.pile_on.values import Assignment, uncovered
+from rmfs.solvers.models.pile_on.data import Integers, PileOn
+from rmfs.solvers.models.pile_on.values import Assignment, uncovered
 
 
 @dataclass(frozen=True)

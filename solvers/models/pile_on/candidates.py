@@ -15,9 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.models.checks import flags, integers
-from solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
-from solvers.models.pile_on.values import Assignment
+from rmfs.solvers.models.checks import flags, integers
+from rmfs.solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
+from rmfs.solvers.models.pile_on.values import Assignment
 
 
 @dataclass(frozen=True)

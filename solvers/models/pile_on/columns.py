@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.models.pile_on.candidates import Candidates
-from solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
-from solvers.models.pile_on.values import Assignment, complete, uncovered
-from solvers.models.pile_on.variant import Variant
-from solvers.models.program import ProgramBuilder
+from rmfs.solvers.models.pile_on.candidates import Candidates
+from rmfs.solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
+from rmfs.solvers.models.pile_on.values import Assignment, complete, uncovered
+from rmfs.solvers.models.pile_on.variant import Variant
+from rmfs.solvers.models.program import ProgramBuilder
 
 NONE = np.zeros(0, dtype=np.int64)
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from functools import partial
 
-from solvers.models.backends import cp_sat
-from solvers.models.pile_on.candidates import Candidates
-from solvers.models.pile_on.data import PileOn
-from solvers.models.pile_on.exact import solve_with
-from solvers.models.pile_on.values import Assignment
-from solvers.models.solution import NO_LIMITS, Limits, Solution
+from rmfs.solvers.models.backends import cp_sat
+from rmfs.solvers.models.pile_on.candidates import Candidates
+from rmfs.solvers.models.pile_on.data import PileOn
+from rmfs.solvers.models.pile_on.exact import solve_with
+from rmfs.solvers.models.pile_on.values import Assignment
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
 
 
 def solve(

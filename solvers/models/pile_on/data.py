@@ -18,8 +18,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import flags, integers, reals, require
-from solvers.models.pile_on.variant import Variant, Weights
+from rmfs.solvers.models.checks import flags, integers, reals, require
+from rmfs.solvers.models.pile_on.variant import Variant, Weights
 
 Integers = NDArray[np.int64]
 Floats = NDArray[np.float64]

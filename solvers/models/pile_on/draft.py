@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from solvers.models.pile_on.candidates import Candidates
-from solvers.models.pile_on.columns import every
-from solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
-from solvers.models.pile_on.values import Assignment
+from rmfs.solvers.models.pile_on.candidates import Candidates
+from rmfs.solvers.models.pile_on.columns import every
+from rmfs.solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
+from rmfs.solvers.models.pile_on.values import Assignment
 
 
 @dataclass(frozen=True)

@@ -6,13 +6,13 @@ import math
 import time
 from dataclasses import replace
 
-from solvers.models.backends.backend import Backend, at_least
-from solvers.models.checks import require
-from solvers.models.pile_on.candidates import Candidates, everything
-from solvers.models.pile_on.data import PileOn
-from solvers.models.pile_on.program import formulate
-from solvers.models.pile_on.values import Assignment, nothing, objective, violations
-from solvers.models.solution import Limits, Solution, Status
+from rmfs.solvers.models.backends.backend import Backend, at_least
+from rmfs.solvers.models.checks import require
+from rmfs.solvers.models.pile_on.candidates import Candidates, everything
+from rmfs.solvers.models.pile_on.data import PileOn
+from rmfs.solvers.models.pile_on.program import formulate
+from rmfs.solvers.models.pile_on.values import Assignment, nothing, objective, violations
+from rmfs.solvers.models.solution import Limits, Solution, Status
 
 
 def solve_with(

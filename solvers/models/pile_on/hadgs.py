@@ -18,13 +18,13 @@ import time
 
 import numpy as np
 
-from solvers.models.pile_on.candidates import Candidates, everything
-from solvers.models.pile_on.columns import every
-from solvers.models.pile_on.data import Floats, Integers, PileOn
-from solvers.models.pile_on.draft import Call, Draft, decision, drop_idle
-from solvers.models.pile_on.partial import cover_rest
-from solvers.models.pile_on.values import Assignment, objective
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.pile_on.candidates import Candidates, everything
+from rmfs.solvers.models.pile_on.columns import every
+from rmfs.solvers.models.pile_on.data import Floats, Integers, PileOn
+from rmfs.solvers.models.pile_on.draft import Call, Draft, decision, drop_idle
+from rmfs.solvers.models.pile_on.partial import cover_rest
+from rmfs.solvers.models.pile_on.values import Assignment, objective
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 NAME = "hadgs"
 SETS = 10

@@ -9,12 +9,12 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
-from solvers.models.pile_on import greedy, neighbourhood, prices
-from solvers.models.pile_on.candidates import Pruning, everything, prune
-from solvers.models.pile_on.data import PileOn
-from solvers.models.pile_on.restrict import compact
-from solvers.models.pile_on.values import Assignment, objective
-from solvers.models.solution import Limits, Solution, Status
+from rmfs.solvers.models.pile_on import greedy, neighbourhood, prices
+from rmfs.solvers.models.pile_on.candidates import Pruning, everything, prune
+from rmfs.solvers.models.pile_on.data import PileOn
+from rmfs.solvers.models.pile_on.restrict import compact
+from rmfs.solvers.models.pile_on.values import Assignment, objective
+from rmfs.solvers.models.solution import Limits, Solution, Status
 
 NAME = "joint"
 DEFAULT_LIMITS = Limits(deterministic_s=0.05)

@@ -13,13 +13,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from solvers.models.pile_on import cp_sat
-from solvers.models.pile_on.candidates import Candidates, everything
-from solvers.models.pile_on.data import Integers, PileOn
-from solvers.models.pile_on.draft import assign_robots
-from solvers.models.pile_on.restrict import compact, part
-from solvers.models.pile_on.values import Assignment, nothing, objective, violations
-from solvers.models.solution import Limits, Solution, Status
+from rmfs.solvers.models.pile_on import cp_sat
+from rmfs.solvers.models.pile_on.candidates import Candidates, everything
+from rmfs.solvers.models.pile_on.data import Integers, PileOn
+from rmfs.solvers.models.pile_on.draft import assign_robots
+from rmfs.solvers.models.pile_on.restrict import compact, part
+from rmfs.solvers.models.pile_on.values import Assignment, nothing, objective, violations
+from rmfs.solvers.models.solution import Limits, Solution, Status
 
 NAME = "neighbourhood"
 WIDTH = 2

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from solvers.models.pile_on.data import Integers, PileOn
-from solvers.models.pile_on.values import Assignment, called_supply, demand
-from solvers.models.pile_on.variant import Variant
+from rmfs.solvers.models.pile_on.data import Integers, PileOn
+from rmfs.solvers.models.pile_on.values import Assignment, called_supply, demand
+from rmfs.solvers.models.pile_on.variant import Variant
 
 
 def cover_rest(data: PileOn, values: Assignment) -> Assignment:

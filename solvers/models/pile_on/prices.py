@@ -27,9 +27,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from solvers.models.pile_on.candidates import fetch_estimate
-from solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
-from solvers.models.pile_on.variant import Variant
+from rmfs.solvers.models.pile_on.candidates import fetch_estimate
+from rmfs.solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
+from rmfs.solvers.models.pile_on.variant import Variant
 
 ITERATIONS = 40
 """Subgradient steps by default."""

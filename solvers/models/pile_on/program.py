@@ -35,12 +35,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.models.pile_on.candidates import Candidates
-from solvers.models.pile_on.columns import Columns, add_columns, decode, encode
-from solvers.models.pile_on.data import Floats, Integers, PileOn
-from solvers.models.pile_on.values import Assignment
-from solvers.models.pile_on.variant import Variant
-from solvers.models.program import LinearProgram, ProgramBuilder
+from rmfs.solvers.models.pile_on.candidates import Candidates
+from rmfs.solvers.models.pile_on.columns import Columns, add_columns, decode, encode
+from rmfs.solvers.models.pile_on.data import Floats, Integers, PileOn
+from rmfs.solvers.models.pile_on.values import Assignment
+from rmfs.solvers.models.pile_on.variant import Variant
+from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
 
 
 @dataclass(frozen=True)

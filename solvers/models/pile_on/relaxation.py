@@ -8,11 +8,11 @@ without candidates) is as good and much faster; the benchmark compares them.
 
 from __future__ import annotations
 
-from solvers.models.backends.clarabel import LinearRelaxation, Relaxation
-from solvers.models.pile_on.candidates import everything
-from solvers.models.pile_on.data import PileOn
-from solvers.models.pile_on.program import formulate
-from solvers.models.solution import NO_LIMITS, Limits
+from rmfs.solvers.models.backends.clarabel import LinearRelaxation, Relaxation
+from rmfs.solvers.models.pile_on.candidates import everything
+from rmfs.solvers.models.pile_on.data import PileOn
+from rmfs.solvers.models.pile_on.program import formulate
+from rmfs.solvers.models.solution import NO_LIMITS, Limits
 
 
 class PileOnRelaxation:

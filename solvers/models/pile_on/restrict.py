@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solvers.models.pile_on.candidates import Candidates
-from solvers.models.pile_on.data import Integers, PileOn
-from solvers.models.pile_on.values import Assignment
+from rmfs.solvers.models.pile_on.candidates import Candidates
+from rmfs.solvers.models.pile_on.data import Integers, PileOn
+from rmfs.solvers.models.pile_on.values import Assignment
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.models.checks import integers
-from solvers.models.pile_on.data import Floats, Integers, PileOn
-from solvers.models.pile_on.variant import Variant, Weights
+from rmfs.solvers.models.checks import integers
+from rmfs.solvers.models.pile_on.data import Floats, Integers, PileOn
+from rmfs.solvers.models.pile_on.variant import Variant, Weights
 
 
 @dataclass(frozen=True)

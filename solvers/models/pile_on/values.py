@@ -21,8 +21,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.models.pile_on.data import Flags, Integers, PileOn
-from solvers.models.pile_on.variant import Variant
+from rmfs.solvers.models.pile_on.data import Flags, Integers, PileOn
+from rmfs.solvers.models.pile_on.variant import Variant
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from enum import Enum
 
-from solvers.models.checks import number
+from rmfs.solvers.models.checks import number
 
 
 class Variant(Enum):

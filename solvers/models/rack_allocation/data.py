@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import integers
+from rmfs.solvers.models.checks import integers
 
 NONE = -1
 """The station of an order, or of a pod, that is not used."""

@@ -9,17 +9,17 @@ import math
 from dataclasses import replace
 from functools import partial
 
-from solvers.models.backends import cp_sat, highs
-from solvers.models.backends.backend import Backend, relax, solve_by
-from solvers.models.rack_allocation.data import (
+from rmfs.solvers.models.backends import cp_sat, highs
+from rmfs.solvers.models.backends.backend import Backend, relax, solve_by
+from rmfs.solvers.models.rack_allocation.data import (
     Allocation,
     RackAllocation,
     objective,
     pods_needed,
     violations,
 )
-from solvers.models.rack_allocation.program import formulate, together
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.rack_allocation.program import formulate, together
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 _TOLERANCE = 1e-4
 """What a bound may be above a whole number by rounding."""

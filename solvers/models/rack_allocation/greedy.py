@@ -8,7 +8,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.rack_allocation.data import (
+from rmfs.solvers.models.rack_allocation.data import (
     NONE,
     Allocation,
     RackAllocation,
@@ -16,7 +16,7 @@ from solvers.models.rack_allocation.data import (
     pods_needed,
     violations,
 )
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 
 def solve(

@@ -14,9 +14,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends.backend import Formulation
-from solvers.models.program import LinearProgram, ProgramBuilder
-from solvers.models.rack_allocation.data import NONE, Allocation, RackAllocation
+from rmfs.solvers.models.backends.backend import Formulation
+from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
+from rmfs.solvers.models.rack_allocation.data import NONE, Allocation, RackAllocation
 
 
 def formulate(data: RackAllocation) -> Formulation[Allocation]:

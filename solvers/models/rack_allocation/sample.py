@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solvers.models.rack_allocation.data import RackAllocation
+from rmfs.solvers.models.rack_allocation.data import RackAllocation
 
 
 def site(orders: int, pods: int, skus: int, stations: int, slots: int, seed: int) -> RackAllocation:

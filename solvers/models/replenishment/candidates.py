@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.replenishment.data import Replenishment
+from rmfs.solvers.models.replenishment.data import Replenishment
 
 
 def best_pods(data: Replenishment, *, pods: int, stations: int) -> Replenishment:

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solvers.models.checks import costs, reals
+from rmfs.solvers.models.checks import costs, reals
 
 LEFT = -1
 """The pod of a bundle that is left for later, and the station of a pod that is not brought."""

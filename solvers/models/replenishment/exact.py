@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from solvers.models.backends import cp_sat, highs
-from solvers.models.backends.backend import Backend, solve_by, with_relaxed_bound
-from solvers.models.replenishment.data import Replenishment, Stocking, objective, violations
-from solvers.models.replenishment.program import formulate
-from solvers.models.solution import NO_LIMITS, Limits, Solution
+from rmfs.solvers.models.backends import cp_sat, highs
+from rmfs.solvers.models.backends.backend import Backend, solve_by, with_relaxed_bound
+from rmfs.solvers.models.replenishment.data import Replenishment, Stocking, objective, violations
+from rmfs.solvers.models.replenishment.program import formulate
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
 
 
 def solve_by_cp_sat(

@@ -9,15 +9,15 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.replenishment.data import (
+from rmfs.solvers.models.replenishment.data import (
     LEFT,
     Replenishment,
     Stocking,
     objective,
     violations,
 )
-from solvers.models.replenishment.polish import polished
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.replenishment.polish import polished
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 
 def solve(

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from solvers.models.replenishment.data import LEFT, Replenishment, Stocking
+from rmfs.solvers.models.replenishment.data import LEFT, Replenishment, Stocking
 
 _GAIN_S = 1e-9
 """A move must gain more than rounding could feign."""

@@ -19,9 +19,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends.backend import Formulation
-from solvers.models.program import LinearProgram, ProgramBuilder
-from solvers.models.replenishment.data import LEFT, PARTS, Replenishment, Stocking
+from rmfs.solvers.models.backends.backend import Formulation
+from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
+from rmfs.solvers.models.replenishment.data import LEFT, PARTS, Replenishment, Stocking
 
 
 @dataclass(frozen=True)

@@ -13,12 +13,12 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends.backend import relax
-from solvers.models.replenishment.data import Replenishment, Stocking, objective, violations
-from solvers.models.replenishment.greedy import Filling
-from solvers.models.replenishment.polish import polished
-from solvers.models.replenishment.program import Columns, program
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.backends.backend import relax
+from rmfs.solvers.models.replenishment.data import Replenishment, Stocking, objective, violations
+from rmfs.solvers.models.replenishment.greedy import Filling
+from rmfs.solvers.models.replenishment.polish import polished
+from rmfs.solvers.models.replenishment.program import Columns, program
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 _SOME = 1e-6
 """Fractions below this are noise."""

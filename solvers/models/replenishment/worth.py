@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import pdtr, pdtrc
 
-from solvers.models.checks import integers, number, reals, require
+from rmfs.solvers.models.checks import integers, number, reals, require
 
 
 def bundle_worth_s(

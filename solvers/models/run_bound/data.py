@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import integers, number, reals, require
+from rmfs.solvers.models.checks import integers, number, reals, require
 
 
 @dataclass(frozen=True)

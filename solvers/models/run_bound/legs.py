@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import costs, number
+from rmfs.solvers.models.checks import costs, number
 
 
 class Legs(NamedTuple):

@@ -48,10 +48,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from solvers.models.backends.safe_bound import safe_bound
-from solvers.models.program import LinearProgram, ProgramBuilder
-from solvers.models.run_bound.data import RunBound, Throughput, objective
-from solvers.models.solution import NO_LIMITS, Limits, Sense, Solution, Status
+from rmfs.solvers.models.backends.safe_bound import safe_bound
+from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
+from rmfs.solvers.models.run_bound.data import RunBound, Throughput, objective
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Sense, Solution, Status
 
 _ENDLESS = 2**31 - 1
 

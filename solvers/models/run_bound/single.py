@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from solvers.models.run_bound.data import RunBound
+from rmfs.solvers.models.run_bound.data import RunBound
 
 
 def single_bounds(data: RunBound) -> dict[str, float]:

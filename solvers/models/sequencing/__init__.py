@@ -6,8 +6,8 @@
 All take a `Sequencing` and give a `Solution[Plan]`.
 """
 
-from solvers.models.sequencing.data import Plan as Plan
-from solvers.models.sequencing.data import Sequencing as Sequencing
-from solvers.models.sequencing.data import finish as finish
-from solvers.models.sequencing.data import objective as objective
-from solvers.models.sequencing.data import violations as violations
+from rmfs.solvers.models.sequencing.data import Plan as Plan
+from rmfs.solvers.models.sequencing.data import Sequencing as Sequencing
+from rmfs.solvers.models.sequencing.data import finish as finish
+from rmfs.solvers.models.sequencing.data import objective as objective
+from rmfs.solvers.models.sequencing.data import violations as violations

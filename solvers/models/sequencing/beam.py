@@ -17,11 +17,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.sequencing import local_search
-from solvers.models.sequencing.bounds import visits_bound
-from solvers.models.sequencing.data import Flags, Integers, Plan, Sequencing, objective
-from solvers.models.sequencing.sets import useful_pods
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.sequencing import local_search
+from rmfs.solvers.models.sequencing.bounds import visits_bound
+from rmfs.solvers.models.sequencing.data import Flags, Integers, Plan, Sequencing, objective
+from rmfs.solvers.models.sequencing.sets import useful_pods
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 NAME = "beam"
 WIDTH = 20

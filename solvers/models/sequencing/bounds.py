@@ -10,9 +10,9 @@ import math
 
 import numpy as np
 
-from solvers.models.backends import highs
-from solvers.models.program import LinearProgram, ProgramBuilder
-from solvers.models.sequencing.data import Sequencing
+from rmfs.solvers.models.backends import highs
+from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
+from rmfs.solvers.models.sequencing.data import Sequencing
 
 
 def covering(data: Sequencing) -> LinearProgram:

@@ -26,12 +26,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solvers.models.backends import cp_sat
-from solvers.models.checks import require
-from solvers.models.program import LinearProgram, ProgramBuilder
-from solvers.models.sequencing import beam
-from solvers.models.sequencing.bounds import visits_bound
-from solvers.models.sequencing.data import (
+from rmfs.solvers.models.backends import cp_sat
+from rmfs.solvers.models.checks import require
+from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
+from rmfs.solvers.models.sequencing import beam
+from rmfs.solvers.models.sequencing.bounds import visits_bound
+from rmfs.solvers.models.sequencing.data import (
     Flags,
     Integers,
     Plan,
@@ -40,9 +40,9 @@ from solvers.models.sequencing.data import (
     objective,
     violations,
 )
-from solvers.models.sequencing.local_search import merged
-from solvers.models.sequencing.sets import useful_pods
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.sequencing.local_search import merged
+from rmfs.solvers.models.sequencing.sets import useful_pods
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 NAME = "cp_sat"
 

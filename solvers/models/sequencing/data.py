@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import flags, integers, require
+from rmfs.solvers.models.checks import flags, integers, require
 
 Flags = NDArray[np.bool_]
 Integers = NDArray[np.int64]

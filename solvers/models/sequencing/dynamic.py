@@ -19,9 +19,9 @@ from itertools import combinations
 
 import numpy as np
 
-from solvers.models.sequencing.data import Plan, Sequencing, objective
-from solvers.models.sequencing.sets import Sets, reduce
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.sequencing.data import Plan, Sequencing, objective
+from rmfs.solvers.models.sequencing.sets import Sets, reduce
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 NAME = "dynamic"
 State = tuple[tuple[int, ...], int]

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from solvers.models.sequencing.data import NEVER, Integers, Plan, Sequencing, violations
-from solvers.models.sequencing.sets import useful_pods
+from rmfs.solvers.models.sequencing.data import NEVER, Integers, Plan, Sequencing, violations
+from rmfs.solvers.models.sequencing.sets import useful_pods
 
 MOVES = 400
 """Moves tried in all, unless limited otherwise."""

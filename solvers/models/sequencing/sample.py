@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solvers.models.sequencing.data import Sequencing
+from rmfs.solvers.models.sequencing.data import Sequencing
 
 
 def station(orders: int, pods: int, skus: int, capacity: int, seed: int) -> Sequencing:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.models.sequencing.data import Integers, Sequencing
+from rmfs.solvers.models.sequencing.data import Integers, Sequencing
 
 
 @dataclass(frozen=True)

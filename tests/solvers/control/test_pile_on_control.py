@@ -11,7 +11,7 @@ from rmfs import simulate
 from rmfs.control.asks import Ask, Call
 from rmfs.control.decisions import AssignLines, AssignOrder, BringForBundles, BringForPicks, Rest
 from rmfs.control.problems import Problem
-from solvers.control.pile_on import PileOnControl, PileOnTasks
+from rmfs.solvers.control.pile_on import PileOnControl, PileOnTasks
 
 
 def decisions(situation: Situation, control: PileOnControl, *, answer: bool = True) -> list[Any]:

@@ -10,11 +10,11 @@ from doubles import Situation, small_layout
 
 from rmfs.control.asks import Ask, Call
 from rmfs.control.problems import Problem
-from solvers.control.storage.bands import bands, means
-from solvers.control.storage.placement import PlacementControl, worth_looking_at
-from solvers.control.storage.prices import PricesControl
-from solvers.control.storage.stays import StaysControl
-from solvers.models.storage import placement
+from rmfs.solvers.control.storage.bands import bands, means
+from rmfs.solvers.control.storage.placement import PlacementControl, worth_looking_at
+from rmfs.solvers.control.storage.prices import PricesControl
+from rmfs.solvers.control.storage.stays import StaysControl
+from rmfs.solvers.models.storage import placement
 
 ASKS_AHEAD = [PlacementControl, StaysControl]
 

@@ -19,10 +19,10 @@ from rmfs.control.decisions import (
 from rmfs.control.pps.lexicographic import Lexicographic
 from rmfs.control.problems import Problem
 from rmfs.control.psa.nearest import Nearest
-from solvers.control.stocking import StockingControl
-from solvers.control.tasks.dispatch import DispatchControl
-from solvers.control.tasks.jobs import Worth, jobs
-from solvers.control.tasks.routes import RoutesControl
+from rmfs.solvers.control.stocking import StockingControl
+from rmfs.solvers.control.tasks.dispatch import DispatchControl
+from rmfs.solvers.control.tasks.jobs import Worth, jobs
+from rmfs.solvers.control.tasks.routes import RoutesControl
 
 
 class Advice:

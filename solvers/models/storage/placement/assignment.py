@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends.assignment import Solver, solve_by_assignment
-from solvers.models.solution import NO_LIMITS, Limits, Solution
-from solvers.models.storage.placement.data import Placement, objective
+from rmfs.solvers.models.backends.assignment import Solver, solve_by_assignment
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
+from rmfs.solvers.models.storage.placement.data import Placement, objective
 
 
 def solve(

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import costs, reals
+from rmfs.solvers.models.checks import costs, reals
 
 
 @dataclass(frozen=True)

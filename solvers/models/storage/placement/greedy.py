@@ -8,8 +8,8 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
-from solvers.models.storage.placement.data import Placement, objective
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.storage.placement.data import Placement, objective
 
 
 def solve(

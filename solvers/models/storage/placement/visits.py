@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solvers.models.checks import integers, number, reals, require
+from rmfs.solvers.models.checks import integers, number, reals, require
 
 
 def expected_visits(

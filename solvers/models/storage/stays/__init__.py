@@ -1,13 +1,13 @@
 """Pods whose next visits are known: which zone of places each stays in, and when."""
 
-from solvers.models.storage.stays.data import Stays as Stays
-from solvers.models.storage.stays.data import objective as objective
-from solvers.models.storage.stays.data import violations as violations
-from solvers.models.storage.stays.exact import solve_by_cp_sat as solve_by_cp_sat
-from solvers.models.storage.stays.exact import solve_by_highs as solve_by_highs
-from solvers.models.storage.stays.greedy import solve as solve_greedily
-from solvers.models.storage.stays.places import places as places
-from solvers.models.storage.stays.two_zones import solve as solve_by_flow
+from rmfs.solvers.models.storage.stays.data import Stays as Stays
+from rmfs.solvers.models.storage.stays.data import objective as objective
+from rmfs.solvers.models.storage.stays.data import violations as violations
+from rmfs.solvers.models.storage.stays.exact import solve_by_cp_sat as solve_by_cp_sat
+from rmfs.solvers.models.storage.stays.exact import solve_by_highs as solve_by_highs
+from rmfs.solvers.models.storage.stays.greedy import solve as solve_greedily
+from rmfs.solvers.models.storage.stays.places import places as places
+from rmfs.solvers.models.storage.stays.two_zones import solve as solve_by_flow
 
 __all__ = [
     "Stays",

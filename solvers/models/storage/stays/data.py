@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import costs, integers, reals, require
+from rmfs.solvers.models.checks import costs, integers, reals, require
 
 
 @dataclass(frozen=True)

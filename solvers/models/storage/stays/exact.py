@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends import cp_sat, highs
-from solvers.models.backends.backend import Backend, solve_by
-from solvers.models.solution import NO_LIMITS, Limits, Solution
-from solvers.models.storage.stays.data import Stays, objective, violations
-from solvers.models.storage.stays.program import formulate
+from rmfs.solvers.models.backends import cp_sat, highs
+from rmfs.solvers.models.backends.backend import Backend, solve_by
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
+from rmfs.solvers.models.storage.stays.data import Stays, objective, violations
+from rmfs.solvers.models.storage.stays.program import formulate
 
 
 def solve_by_cp_sat(

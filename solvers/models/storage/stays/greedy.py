@@ -9,8 +9,8 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
-from solvers.models.storage.stays.data import Stays, objective
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.storage.stays.data import Stays, objective
 
 
 def solve(

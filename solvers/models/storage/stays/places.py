@@ -7,8 +7,8 @@ import heapq
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import require
-from solvers.models.storage.stays.data import Stays, violations
+from rmfs.solvers.models.checks import require
+from rmfs.solvers.models.storage.stays.data import Stays, violations
 
 
 def places(data: Stays, zone: NDArray[np.int64]) -> NDArray[np.int64]:

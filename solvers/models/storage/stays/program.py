@@ -15,9 +15,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends.backend import Formulation
-from solvers.models.program import LinearProgram, ProgramBuilder
-from solvers.models.storage.stays.data import Stays
+from rmfs.solvers.models.backends.backend import Formulation
+from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
+from rmfs.solvers.models.storage.stays.data import Stays
 
 
 def program(data: Stays, *, whole: bool) -> LinearProgram:

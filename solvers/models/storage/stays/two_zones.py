@@ -16,10 +16,10 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends.flow import Network, min_cost_flow
-from solvers.models.checks import require
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
-from solvers.models.storage.stays.data import Stays, objective
+from rmfs.solvers.models.backends.flow import Network, min_cost_flow
+from rmfs.solvers.models.checks import require
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.storage.stays.data import Stays, objective
 
 
 def solve(

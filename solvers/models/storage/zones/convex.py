@@ -19,10 +19,10 @@ from cvxpy.atoms.affine.sum import sum as total
 from cvxpy.atoms.sum_squares import sum_squares
 from numpy.typing import NDArray
 
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status, WallGuardError
-from solvers.models.storage.zones.data import ZonePlan, Zones, objective
-from solvers.models.storage.zones.prices import price_bound
-from solvers.models.storage.zones.repair import repaired
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status, WallGuardError
+from rmfs.solvers.models.storage.zones.data import ZonePlan, Zones, objective
+from rmfs.solvers.models.storage.zones.prices import price_bound
+from rmfs.solvers.models.storage.zones.repair import repaired
 
 EXACT = 1e-6
 """Gap at which an interior-point solution counts as optimal, relative or, below 1, in s/h."""

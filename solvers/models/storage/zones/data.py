@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import reals
+from rmfs.solvers.models.checks import reals
 
 _TOLERANCE = 1e-9
 """Relative error allowed where pods are counted."""

@@ -8,9 +8,9 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
-from solvers.models.storage.zones.data import ZonePlan, Zones, objective, traffic_per_h
-from solvers.models.storage.zones.prices import price_bound
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.storage.zones.data import ZonePlan, Zones, objective, traffic_per_h
+from rmfs.solvers.models.storage.zones.prices import price_bound
 
 _PORTIONS = 16
 """Parts in which a class is put down, so that congestion is felt on the way."""

@@ -28,7 +28,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.storage.zones.data import ZonePlan, Zones, traffic_per_h
+from rmfs.solvers.models.storage.zones.data import ZonePlan, Zones, traffic_per_h
 
 _TINY = 2.0**-46
 """Relative error of the dual value: a few thousand roundings."""

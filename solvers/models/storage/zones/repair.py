@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.storage.zones.data import Zones
+from rmfs.solvers.models.storage.zones.data import Zones
 
 
 def repaired(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -19,11 +19,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import costs, integers, number, reals
-from solvers.models.tasks.matching import Matching
-from solvers.models.tasks.matching import objective as matching_objective
-from solvers.models.tasks.matching import violations as matching_violations
-from solvers.models.tasks.matching.data import LEFT
+from rmfs.solvers.models.checks import costs, integers, number, reals
+from rmfs.solvers.models.tasks.matching import Matching
+from rmfs.solvers.models.tasks.matching import objective as matching_objective
+from rmfs.solvers.models.tasks.matching import violations as matching_violations
+from rmfs.solvers.models.tasks.matching.data import LEFT
 
 
 @dataclass(frozen=True)

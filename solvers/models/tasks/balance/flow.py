@@ -15,10 +15,10 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends.flow import Network, min_cost_flow
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
-from solvers.models.tasks.balance.data import Balance, objective
-from solvers.models.tasks.matching.data import LEFT
+from rmfs.solvers.models.backends.flow import Network, min_cost_flow
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.tasks.balance.data import Balance, objective
+from rmfs.solvers.models.tasks.matching.data import LEFT
 
 
 def solve(

@@ -8,9 +8,9 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
-from solvers.models.tasks.balance.data import Balance, objective, violations
-from solvers.models.tasks.matching.data import LEFT
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.tasks.balance.data import Balance, objective, violations
+from rmfs.solvers.models.tasks.matching.data import LEFT
 
 
 def solve(

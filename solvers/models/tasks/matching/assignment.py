@@ -7,9 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends.assignment import Solver, solve_by_assignment
-from solvers.models.solution import NO_LIMITS, Limits, Solution
-from solvers.models.tasks.matching.data import LEFT, Matching, objective
+from rmfs.solvers.models.backends.assignment import Solver, solve_by_assignment
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
+from rmfs.solvers.models.tasks.matching.data import LEFT, Matching, objective
 
 
 def solve(

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import costs
+from rmfs.solvers.models.checks import costs
 
 LEFT = -1
 """The robot of a task that is left for later."""

@@ -19,9 +19,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends.assignment import assign
-from solvers.models.tasks.sequence.candidates import shortest_over_places
-from solvers.models.tasks.sequence.data import SLACK_S, Sequence
+from rmfs.solvers.models.backends.assignment import assign
+from rmfs.solvers.models.tasks.sequence.candidates import shortest_over_places
+from rmfs.solvers.models.tasks.sequence.data import SLACK_S, Sequence
 
 _ROUNDING = 2.0**-40
 

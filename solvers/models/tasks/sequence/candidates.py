@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.tasks.sequence.data import NONE, Routes, Sequence
+from rmfs.solvers.models.tasks.sequence.data import NONE, Routes, Sequence
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 from ortools.sat.python import cp_model
 
-from solvers.models.tasks.sequence.candidates import Ways
-from solvers.models.tasks.sequence.data import NONE, TICKS_PER_S, Routes, Sequence
-from solvers.models.tasks.sequence.schedule import arrivals_s
+from rmfs.solvers.models.tasks.sequence.candidates import Ways
+from rmfs.solvers.models.tasks.sequence.data import NONE, TICKS_PER_S, Routes, Sequence
+from rmfs.solvers.models.tasks.sequence.schedule import arrivals_s
 
 _DEPOT = 0
 

@@ -8,14 +8,14 @@ from time import perf_counter
 import numpy as np
 from ortools.sat.python import cp_model
 
-from solvers.models.backends.cp_sat import check_guard, configure
-from solvers.models.checks import require
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
-from solvers.models.tasks.sequence.bound import relaxed_bound
-from solvers.models.tasks.sequence.candidates import Ways, every_way
-from solvers.models.tasks.sequence.circuit import Circuit
-from solvers.models.tasks.sequence.data import NONE, TICKS_PER_S, Routes, Sequence
-from solvers.models.tasks.sequence.schedule import objective, violations
+from rmfs.solvers.models.backends.cp_sat import check_guard, configure
+from rmfs.solvers.models.checks import require
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.tasks.sequence.bound import relaxed_bound
+from rmfs.solvers.models.tasks.sequence.candidates import Ways, every_way
+from rmfs.solvers.models.tasks.sequence.circuit import Circuit
+from rmfs.solvers.models.tasks.sequence.data import NONE, TICKS_PER_S, Routes, Sequence
+from rmfs.solvers.models.tasks.sequence.schedule import objective, violations
 
 _STATUS = {
     cp_model.OPTIMAL: Status.OPTIMAL,

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.checks import costs, flags, integers, reals
+from rmfs.solvers.models.checks import costs, flags, integers, reals
 
 NONE = -1
 """The place of a pod that is not moved."""

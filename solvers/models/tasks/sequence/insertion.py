@@ -14,12 +14,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.backends.assignment import assign
-from solvers.models.checks import require
-from solvers.models.solution import NO_LIMITS, Limits, Solution, Status
-from solvers.models.tasks.sequence.bound import relaxed_bound
-from solvers.models.tasks.sequence.data import NONE, Routes, Sequence
-from solvers.models.tasks.sequence.schedule import (
+from rmfs.solvers.models.backends.assignment import assign
+from rmfs.solvers.models.checks import require
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.tasks.sequence.bound import relaxed_bound
+from rmfs.solvers.models.tasks.sequence.data import NONE, Routes, Sequence
+from rmfs.solvers.models.tasks.sequence.schedule import (
     approach_s,
     follow,
     lateness_s,

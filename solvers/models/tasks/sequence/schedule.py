@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.models.tasks.sequence.data import NONE, SLACK_S, Routes, Sequence
+from rmfs.solvers.models.tasks.sequence.data import NONE, SLACK_S, Routes, Sequence
 
 
 def approach_s(data: Sequence, robot: int, place: int, task: int) -> float:

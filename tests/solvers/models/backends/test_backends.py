@@ -5,10 +5,10 @@ from itertools import product
 import numpy as np
 import pytest
 
-from solvers.models import Limits, ModelError, Status, WallGuardError
-from solvers.models.backends import clarabel, cp_sat, highs
-from solvers.models.backends.safe_bound import safe_bound
-from solvers.models.program import LinearProgram, ProgramBuilder
+from rmfs.solvers.models import Limits, ModelError, Status, WallGuardError
+from rmfs.solvers.models.backends import clarabel, cp_sat, highs
+from rmfs.solvers.models.backends.safe_bound import safe_bound
+from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
 
 BACKENDS = {"cp_sat": cp_sat.solve, "highs": highs.solve}
 

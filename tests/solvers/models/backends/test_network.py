@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solvers.models import ModelError
-from solvers.models.backends.assignment import assign, assignment_bound, greedy_assign
-from solvers.models.backends.flow import Network, flow_bound, min_cost_flow
-from solvers.models.checks import costs
+from rmfs.solvers.models import ModelError
+from rmfs.solvers.models.backends.assignment import assign, assignment_bound, greedy_assign
+from rmfs.solvers.models.backends.flow import Network, flow_bound, min_cost_flow
+from rmfs.solvers.models.checks import costs
 
 
 def random_network(seed: int) -> Network:

@@ -10,9 +10,9 @@ from itertools import permutations, product
 
 import numpy as np
 
-from solvers.models.pile_on.data import PileOn
-from solvers.models.pile_on.sample import Size, snapshot
-from solvers.models.pile_on.variant import Variant, Weights
+from rmfs.solvers.models.pile_on.data import PileOn
+from rmfs.solvers.models.pile_on.sample import Size, snapshot
+from rmfs.solvers.models.pile_on.variant import Variant, Weights
 
 
 def tiny(seed: int, variant: Variant, *, fractions: bool = False) -> PileOn:

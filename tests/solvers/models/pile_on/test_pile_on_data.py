@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.models import Limits, ModelError, Status
-from solvers.models.pile_on import (
+from rmfs.solvers.models import Limits, ModelError, Status
+from rmfs.solvers.models.pile_on import (
     PileOn,
     Pruning,
     Variant,
@@ -20,7 +20,7 @@ from solvers.models.pile_on import (
     objective,
     violations,
 )
-from solvers.models.pile_on.values import nothing
+from rmfs.solvers.models.pile_on.values import nothing
 
 SOLVERS = [cp_sat, highs, greedy, hadgs, neighbourhood, joint]
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from pile_on_oracle import optimum, small_site, tiny
 
-from solvers.models import Limits, Status
-from solvers.models.pile_on import cp_sat, greedy, hadgs, highs, joint, neighbourhood, prices
-from solvers.models.pile_on.values import nothing, objective, violations
-from solvers.models.pile_on.variant import Variant
+from rmfs.solvers.models import Limits, Status
+from rmfs.solvers.models.pile_on import cp_sat, greedy, hadgs, highs, joint, neighbourhood, prices
+from rmfs.solvers.models.pile_on.values import nothing, objective, violations
+from rmfs.solvers.models.pile_on.variant import Variant
 
 CASES = 40
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from pile_on_oracle import optimum, small_site, tiny
 
-from solvers.models import Limits
-from solvers.models.pile_on import (
+from rmfs.solvers.models import Limits
+from rmfs.solvers.models.pile_on import (
     PileOn,
     Pruning,
     Variant,
@@ -24,11 +24,11 @@ from solvers.models.pile_on import (
     prune,
     violations,
 )
-from solvers.models.pile_on.program import formulate
-from solvers.models.pile_on.relaxation import PileOnRelaxation, bound
-from solvers.models.pile_on.restrict import compact, part
-from solvers.models.pile_on.sample import Size, snapshot
-from solvers.models.pile_on.values import called_supply, demand, uncovered
+from rmfs.solvers.models.pile_on.program import formulate
+from rmfs.solvers.models.pile_on.relaxation import PileOnRelaxation, bound
+from rmfs.solvers.models.pile_on.restrict import compact, part
+from rmfs.solvers.models.pile_on.sample import Size, snapshot
+from rmfs.solvers.models.pile_on.values import called_supply, demand, uncovered
 
 
 def test_columns_say_the_same_as_the_objective() -> None:

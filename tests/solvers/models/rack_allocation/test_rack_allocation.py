@@ -8,8 +8,8 @@ from math import inf
 import numpy as np
 import pytest
 
-from solvers.models import Limits, ModelError, Status
-from solvers.models.rack_allocation import (
+from rmfs.solvers.models import Limits, ModelError, Status
+from rmfs.solvers.models.rack_allocation import (
     Allocation,
     RackAllocation,
     objective,
@@ -18,7 +18,7 @@ from solvers.models.rack_allocation import (
     solve_greedily,
     violations,
 )
-from solvers.models.rack_allocation.sample import site
+from rmfs.solvers.models.rack_allocation.sample import site
 
 EXACT = {"cp_sat": solve_by_cp_sat, "highs": solve_by_highs}
 

@@ -6,8 +6,8 @@ from math import inf, isinf
 import numpy as np
 import pytest
 
-from solvers.models import Limits, ModelError, Status
-from solvers.models.replenishment import (
+from rmfs.solvers.models import Limits, ModelError, Status
+from rmfs.solvers.models.replenishment import (
     Replenishment,
     Stocking,
     best_pods,
@@ -18,7 +18,7 @@ from solvers.models.replenishment import (
     solve_greedily,
     violations,
 )
-from solvers.models.replenishment.polish import polished
+from rmfs.solvers.models.replenishment.polish import polished
 
 BACKENDS = {"cp_sat": solve_by_cp_sat, "highs": solve_by_highs}
 RULES = {"greedy": solve_greedily, "rounding": solve_by_rounding}

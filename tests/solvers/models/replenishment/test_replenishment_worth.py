@@ -5,9 +5,9 @@ from math import exp
 import numpy as np
 import pytest
 
-from solvers.models import ModelError
-from solvers.models.replenishment import bundle_worth_s
-from solvers.models.replenishment.worth import expected_served
+from rmfs.solvers.models import ModelError
+from rmfs.solvers.models.replenishment import bundle_worth_s
+from rmfs.solvers.models.replenishment.worth import expected_served
 
 
 def test_units_served_are_the_expectation_summed_term_by_term() -> None:

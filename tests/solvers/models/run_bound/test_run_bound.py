@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from warehouse_double import Log, Plant, operate
 
-from solvers.models import Limits, ModelError, Status
-from solvers.models.run_bound import (
+from rmfs.solvers.models import Limits, ModelError, Status
+from rmfs.solvers.models.run_bound import (
     Orders,
     PickStations,
     Refill,

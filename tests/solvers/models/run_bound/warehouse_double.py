@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from solvers.models.run_bound import Throughput
+from rmfs.solvers.models.run_bound import Throughput
 
 
 @dataclass

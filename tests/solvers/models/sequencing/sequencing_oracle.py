@@ -10,7 +10,7 @@ from collections import deque
 
 import numpy as np
 
-from solvers.models.sequencing import Sequencing
+from rmfs.solvers.models.sequencing import Sequencing
 
 
 def fewest_visits(data: Sequencing) -> float:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from solvers.models import ModelError, Status
-from solvers.models.sequencing import Plan, Sequencing, beam, cp_sat, dynamic, violations
+from rmfs.solvers.models import ModelError, Status
+from rmfs.solvers.models.sequencing import Plan, Sequencing, beam, cp_sat, dynamic, violations
 
 METHODS = [dynamic, cp_sat, beam]
 

@@ -4,10 +4,18 @@ import numpy as np
 import pytest
 from sequencing_oracle import fewest_visits, tiny
 
-from solvers.models import Limits, Status
-from solvers.models.sequencing import Plan, Sequencing, beam, cp_sat, dynamic, objective, violations
-from solvers.models.sequencing.bounds import visits_bound
-from solvers.models.sequencing.sample import station
+from rmfs.solvers.models import Limits, Status
+from rmfs.solvers.models.sequencing import (
+    Plan,
+    Sequencing,
+    beam,
+    cp_sat,
+    dynamic,
+    objective,
+    violations,
+)
+from rmfs.solvers.models.sequencing.bounds import visits_bound
+from rmfs.solvers.models.sequencing.sample import station
 
 
 @pytest.mark.parametrize(("method", "cases"), [(dynamic, 400), (cp_sat, 150)])

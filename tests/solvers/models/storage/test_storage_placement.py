@@ -7,8 +7,8 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from solvers.models import ModelError, Status
-from solvers.models.storage.placement import (
+from rmfs.solvers.models import ModelError, Status
+from rmfs.solvers.models.storage.placement import (
     Placement,
     expected_visits,
     objective,

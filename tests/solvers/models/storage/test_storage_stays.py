@@ -7,8 +7,8 @@ from math import inf, isinf
 import numpy as np
 import pytest
 
-from solvers.models import Limits, ModelError, Solution, Status
-from solvers.models.storage.stays import (
+from rmfs.solvers.models import Limits, ModelError, Solution, Status
+from rmfs.solvers.models.storage.stays import (
     Stays,
     objective,
     places,

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from solvers.models import Limits, ModelError, Status
-from solvers.models.storage.zones import (
+from rmfs.solvers.models import Limits, ModelError, Status
+from rmfs.solvers.models.storage.zones import (
     Prices,
     ZonePlan,
     Zones,
@@ -20,7 +20,7 @@ from solvers.models.storage.zones import (
     solve_greedily,
     violations,
 )
-from solvers.models.storage.zones.prices import expected_stay_h
+from rmfs.solvers.models.storage.zones.prices import expected_stay_h
 
 SHAPES = list(product((1, 2, 4), (1, 2, 5)))
 """Few shapes, as each is compiled once."""

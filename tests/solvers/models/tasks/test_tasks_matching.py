@@ -7,10 +7,10 @@ from math import inf, isinf
 import numpy as np
 import pytest
 
-from solvers.models import ModelError, Status
-from solvers.models.tasks import balance, matching
-from solvers.models.tasks.balance import Balance
-from solvers.models.tasks.matching import Matching
+from rmfs.solvers.models import ModelError, Status
+from rmfs.solvers.models.tasks import balance, matching
+from rmfs.solvers.models.tasks.balance import Balance
+from rmfs.solvers.models.tasks.matching import Matching
 
 
 def random_matching(seed: int) -> Matching:

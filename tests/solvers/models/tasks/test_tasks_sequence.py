@@ -6,8 +6,8 @@ from math import inf, isinf
 import numpy as np
 import pytest
 
-from solvers.models import Limits, ModelError, Status
-from solvers.models.tasks.sequence import (
+from rmfs.solvers.models import Limits, ModelError, Status
+from rmfs.solvers.models.tasks.sequence import (
     Routes,
     Sequence,
     arrivals_s,

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 from rmfs.layout.explicit import build
 from rmfs.layout.explicit.schema import FORMAT
-from rmfs.layout.rawsimo import bodies, stations, waypoints
-from rmfs.layout.rawsimo.instance import Instance
-from rmfs.xml import read_root
+from rmfs.rawsimo.layout import bodies, stations, waypoints
+from rmfs.rawsimo.layout.instance import Instance
+from rmfs.rawsimo.xml import read_root
 
 if TYPE_CHECKING:
     from pathlib import Path

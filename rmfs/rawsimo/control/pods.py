@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.control.rawsimo.elements import (
+from rmfs.rawsimo.control.elements import (
     METRICS,
     Element,
     Number,
@@ -19,7 +19,7 @@ from rmfs.control.rawsimo.elements import (
 
 if TYPE_CHECKING:
     from rmfs.config import Table
-    from rmfs.scenario.rawsimo.settings import Settings
+    from rmfs.rawsimo.scenario.settings import Settings
 
 _BUFFER: dict[str, Element] = {
     "BufferThreshold": Number("buffer_threshold", 0.8),

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.layout.rawsimo.fields import NOBODY, Fields
+from rmfs.rawsimo.layout.fields import NOBODY, Fields
 
 if TYPE_CHECKING:
     from rmfs.config import Table
-    from rmfs.layout.rawsimo.instance import Instance
+    from rmfs.rawsimo.layout.instance import Instance
 
 Occupants = dict[tuple[str, int], int]
 """The waypoint that names a pod or station (by kind and position)."""

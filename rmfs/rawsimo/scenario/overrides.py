@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rmfs.scenario.rawsimo.settings import Settings
+    from rmfs.rawsimo.scenario.settings import Settings
 
 _NUMBERS = {
     "OverrideBotPodTransferTime": "pod_transfer_s",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.control.rawsimo.elements import (
+from rmfs.rawsimo.control.elements import (
     METRICS,
     Element,
     Number,
@@ -18,7 +18,7 @@ from rmfs.control.rawsimo.elements import (
 
 if TYPE_CHECKING:
     from rmfs.config import Table
-    from rmfs.scenario.rawsimo.settings import Settings
+    from rmfs.rawsimo.scenario.settings import Settings
 
 _TIES = {"EarliestDueTime": "due-time", "FCFS": "first-come", "Random": "random"}
 _BUSY = {"LeastBusy": "least-busy", "MostBusy": "most-busy", "Random": "random"}

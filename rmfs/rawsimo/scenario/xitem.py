@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rmfs.rawsimo.xml import Unknown, read_root
 from rmfs.scenario.problems import Problems
 from rmfs.scenario.skus.content import SkuFileContent
 from rmfs.scenario.streams.rows import BundleRows, OrderRows
-from rmfs.xml import Unknown, read_root
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rmfs.scenario.rawsimo.arrivals import Arrivals
-from rmfs.scenario.rawsimo.search import find_beside
+from rmfs.rawsimo.scenario.arrivals import Arrivals
+from rmfs.rawsimo.scenario.search import find_beside
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
     from rmfs.config import Table
-    from rmfs.scenario.rawsimo.settings import Settings
+    from rmfs.rawsimo.scenario.settings import Settings
 
 _PARTS = ("Mean", "StdDev", "Min", "Max")
 _NORMAL_OF_LINES = [f"OrderPositionCount{part}" for part in _PARTS]

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rmfs.config import Table
-    from rmfs.scenario.rawsimo.settings import Settings
+    from rmfs.rawsimo.scenario.settings import Settings
 
 _DAY_S = 86400.0
 

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from rmfs.scenario.rawsimo.inventory import Inventory
-from rmfs.scenario.rawsimo.overrides import layout_overrides
-from rmfs.scenario.rawsimo.settings import Settings
-from rmfs.xml import read_root
+from rmfs.rawsimo.scenario.inventory import Inventory
+from rmfs.rawsimo.scenario.overrides import layout_overrides
+from rmfs.rawsimo.scenario.settings import Settings
+from rmfs.rawsimo.xml import read_root
 
 if TYPE_CHECKING:
     from pathlib import Path

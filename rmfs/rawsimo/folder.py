@@ -19,9 +19,9 @@ from rmfs.control.toml import to_toml
 from rmfs.errors import InputError
 from rmfs.files import replacing_folder, write_text
 from rmfs.layout.checks import IMPOSSIBLE
-from rmfs.layout.importing import import_layout
+from rmfs.rawsimo.layout.writing import import_layout
+from rmfs.rawsimo.scenario import read_xgenc, read_xitem
 from rmfs.scenario.parameters import SkuFile
-from rmfs.scenario.rawsimo import read_xgenc, read_xitem
 from rmfs.scenario.skus import write_sku_set
 from rmfs.scenario.sources import sku_set
 from rmfs.scenario.streams import write_stream

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.layout.rawsimo.fields import Fields, slashed
+from rmfs.rawsimo.layout.fields import Fields, slashed
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
     from rmfs.config import Table
-    from rmfs.layout.rawsimo.instance import Instance
-    from rmfs.layout.rawsimo.waypoints import Occupants
+    from rmfs.rawsimo.layout.instance import Instance
+    from rmfs.rawsimo.layout.waypoints import Occupants
 
 
 def pick_stations(instance: Instance, occupants: Occupants) -> list[Table]:

@@ -10,8 +10,8 @@ from scipy.spatial import KDTree
 
 if TYPE_CHECKING:
     from rmfs.config import Table
-    from rmfs.layout.rawsimo.instance import Instance
-    from rmfs.layout.rawsimo.waypoints import Occupants
+    from rmfs.rawsimo.layout.instance import Instance
+    from rmfs.rawsimo.layout.waypoints import Occupants
 
 _ROBOT_KIND = {
     "Radius": "radius_m",

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, TypeVar
 
 from rmfs.errors import InputError
-from rmfs.xml import SCHEMA_NAMESPACE
+from rmfs.rawsimo.xml import SCHEMA_NAMESPACE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.errors import InputError
+from rmfs.rawsimo.xml import read_root
 from rmfs.scenario.skus.affinity import Affinity
 from rmfs.scenario.skus.content import SkuFileContent
-from rmfs.xml import read_root
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rmfs.config import Table, validate
 from rmfs.layout.parameters import LayoutParameters
 from rmfs.layout.problems import stop_if_any
-from rmfs.xml import Unknown, read_root
+from rmfs.rawsimo.xml import Unknown, read_root
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from rmfs.errors import InputError
 from rmfs.files import write_text
 from rmfs.layout.explicit import save_json
-from rmfs.layout.rawsimo.xinst import read_xinst
-from rmfs.layout.rawsimo.xlayo import read_xlayo
 from rmfs.layout.toml import to_toml
+from rmfs.rawsimo.layout.xinst import read_xinst
+from rmfs.rawsimo.layout.xlayo import read_xlayo
 
 if TYPE_CHECKING:
     from pathlib import Path

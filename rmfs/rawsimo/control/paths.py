@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.control.rawsimo.elements import Number, Rule, Switch, Whole, Word, translated
+from rmfs.rawsimo.control.elements import Number, Rule, Switch, Whole, Word, translated
 
 if TYPE_CHECKING:
     from rmfs.config import Table
-    from rmfs.scenario.rawsimo.settings import Settings
+    from rmfs.rawsimo.scenario.settings import Settings
 
 _BY_CLOCK = "limits count work here, so that results repeat"
 _EVERYWHERE = {

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.layout.rawsimo.fields import Fields, Problems
-from rmfs.xml import Unknown
+from rmfs.rawsimo.layout.fields import Fields, Problems
+from rmfs.rawsimo.xml import Unknown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

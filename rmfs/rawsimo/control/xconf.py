@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from rmfs.control.rawsimo import orders, others, paths, pods, tasks
-from rmfs.scenario.rawsimo.settings import Settings
-from rmfs.xml import read_root
+from rmfs.rawsimo.control import orders, others, paths, pods, tasks
+from rmfs.rawsimo.scenario.settings import Settings
+from rmfs.rawsimo.xml import read_root
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
