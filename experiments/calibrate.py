@@ -2,8 +2,10 @@
 
 `python -m rmfs.experiments.calibrate` collects the questions that controllers ask in short runs,
 answers each again three times, and takes the least processor time (which other programs disturb
-little). Per back end, seconds of a call and seconds per unit of work are fitted to that by least
-squares, neither below zero. It writes `results/published/seconds-per-unit.md` and .csv, and prints the key
+little).
+
+Per back end, seconds of a call and seconds per unit of work are fitted to that by least squares,
+neither below zero. It writes `results/published/seconds-per-unit.md` and .csv, and prints the key
 `pacing.seconds_per_unit` for one's own runs. The defaults in `rmfs/simulation/pacing/computed.py`
 are those of the published table.
 """
