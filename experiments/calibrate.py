@@ -25,7 +25,7 @@ from scipy.optimize import nnls
 
 from rmfs import simulate
 from rmfs.files import write_text
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -23,7 +23,7 @@ import rmfs
 from rmfs.control import registry
 from rmfs.control.problems import Problem
 from rmfs.files import write_text
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

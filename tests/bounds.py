@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 from rmfs.solvers.models.run_bound import Throughput, solve, violations
 from rmfs.solvers.run_bound import run_bound
 

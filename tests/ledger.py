@@ -6,7 +6,7 @@ from collections import Counter
 
 import numpy as np
 
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 from rmfs.world import verify
 
 

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Any
 from rmfs import control, instances
 from rmfs import layout as layouts
 from rmfs import scenario as scenarios
+from rmfs.digest import digest as digest_of
 from rmfs.errors import InputError
 from rmfs.measure.provenance import KINDS
-from rmfs.measure.provenance import digest as digest_of
 from rmfs.simulation.pacing import pacing_settings
 
 if TYPE_CHECKING:

@@ -12,9 +12,10 @@ import sys
 from pathlib import Path
 
 from rmfs import layout as layouts
+from rmfs.digest import digest
 from rmfs.experiments.papers.study import PUBLISHED, command
 from rmfs.files import write_text
-from rmfs.measure.provenance import commit, digest
+from rmfs.measure.provenance import commit
 
 LAYOUT = "default"
 OVERRIDES: list[tuple[list[str], object]] = [

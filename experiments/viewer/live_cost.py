@@ -176,7 +176,7 @@ def tell(given: str) -> None:
     _simulated(replace(case, simulated_s=WARM_S))
     names = {name: told[name] for name in ("layout", "scenario", "controllers")}
     live = LiveRun(names, title="cost")
-    kept: dict[str, Any] = {"events": live.events, "observers": [live]}
+    kept: dict[str, Any] = {"events": live.events, "driver": live.drive}
     with ExitStack() as stack:
         if how in (How.ASKED, How.DRAWN):
             print(stack.enter_context(served(live_server(live))), flush=True)

@@ -110,7 +110,7 @@ def run(
                     await_page=await_page,
                 )
             )
-            watching = {"events": watcher.events, "observers": [watcher]}
+            watching = {"events": watcher.events, "driver": watcher.drive}
         folder = stack.enter_context(reserved(target))
         done = simulated(
             inputs,

@@ -2,13 +2,13 @@
 
 Rules come from three places: the tables below (by reference only: nothing of `solvers` is imported
 here); entry points of other distributions in the group
-`rmfs.controllers`, named `PROBLEM.NAME`; and `module:Class` written in a controllers file.
+`rmfs.controllers`, named `PROBLEM.NAME`; and `module:Class` or `path/to/file.py:Class` written in a
+controllers file.
 """
 
 from __future__ import annotations
 
 import difflib
-import importlib
 from functools import cache
 from importlib.metadata import entry_points
 from typing import Any
@@ -16,6 +16,7 @@ from typing import Any
 from rmfs.control.base import Controller
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
+from rmfs.references import is_reference, resolve
 
 GROUP = "rmfs.controllers"
 """Entry-point group of third-party controllers."""
@@ -144,7 +145,7 @@ def find(problem: Problem, name: str) -> type[Controller[Any]]:
     Parameters
     ----------
     name
-        A registered name, or `module:Class`.
+        A registered name, `module:Class` or `path/to/file.py:Class`.
 
     Raises
     ------
@@ -153,7 +154,7 @@ def find(problem: Problem, name: str) -> type[Controller[Any]]:
     """
     shipped = _BUILT_IN[problem] | _SOLVER_BACKED.get(problem, {})
     reference = shipped.get(name) or _installed(problem).get(name)
-    if reference is None and ":" in name:
+    if reference is None and is_reference(name):
         reference = name
     if reference is None:
         known = names(problem)
@@ -164,13 +165,7 @@ def find(problem: Problem, name: str) -> type[Controller[Any]]:
 
 
 def _load(problem: Problem, reference: str) -> type[Controller[Any]]:
-    module, _, name = reference.partition(":")
-    try:
-        found = getattr(importlib.import_module(module), name)
-    except (ImportError, AttributeError) as error:
-        raise InputError(f"{reference}: cannot be loaded ({error})") from None
-    if not (isinstance(found, type) and issubclass(found, Controller)):
-        raise InputError(f"{reference}: not a controller (subclass of rmfs.control.Controller)")
+    found = resolve(reference, Controller, "controller")
     if found.problem is not problem:
         raise InputError(f"{reference}: solves {found.problem}, not {problem}")
     return found

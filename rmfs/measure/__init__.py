@@ -12,8 +12,8 @@ from rmfs.measure.events import EventLog as EventLog
 from rmfs.measure.folder import RunFolder as RunFolder
 from rmfs.measure.folder import load_run as load_run
 from rmfs.measure.folder import write_run as write_run
-from rmfs.measure.observer import Observer as Observer
 from rmfs.measure.recorder import Recorder as Recorder
+from rmfs.observer import Observer as Observer
 
 if TYPE_CHECKING:
     import pandas as pd

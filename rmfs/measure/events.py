@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rmfs.simulation.simulation import Simulation
+    from rmfs.observer import Observed
     from rmfs.world.orders import Bundle, Order
 
 
@@ -80,7 +80,6 @@ class EventLog(Observer):
         self._numbers: dict[str, int] = {}
         # 72 bytes an event, quick to write, and nothing for the collector to walk
         self._rows = bytearray()
-        self._write = self._rows.extend
 
     def __len__(self) -> int:
         """Return the number of events."""
@@ -91,19 +90,17 @@ class EventLog(Observer):
         rows = np.frombuffer(self._rows[known * ROW.size :], np.int64).reshape(-1, len(COLUMNS))
         return dict(zip(COLUMNS, rows.T, strict=True))
 
-    def run_started(self, simulation: Simulation) -> None:
+    def run_started(self, run: Observed) -> None:
         """Write down the stock."""
-        world = simulation.world
-        contained = world.inventory.contained
-        self._world = world
+        contained = run.world.inventory.contained
         for sku, pod in np.argwhere(contained).tolist():
             units = contained.item(sku, pod)
-            self._write(_row(0, Happening.STOCK, -1, pod, -1, -1, sku, units, -1))
+            self._rows.extend(_row(0, Happening.STOCK, -1, pod, -1, -1, sku, units, -1))
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
         """A robot has a task."""
         now_us, detail = round(time_s * 1e6), self._detail(kind)
-        self._write(_row(now_us, Happening.TASK, robot, -1, station, -1, -1, 0, detail))
+        self._rows.extend(_row(now_us, Happening.TASK, robot, -1, station, -1, -1, 0, detail))
 
     def order_created(self, order: Order) -> None:
         """An order arrived."""
@@ -129,7 +126,7 @@ class EventLog(Observer):
     ) -> None:
         """A unit left a pod."""
         now_us, picked = round(time_s * 1e6), Happening.UNIT_PICKED
-        self._write(_row(now_us, picked, robot, pod, station, order.index, sku, 1, -1))
+        self._rows.extend(_row(now_us, picked, robot, pod, station, order.index, sku, 1, -1))
 
     def bundle_created(self, bundle: Bundle) -> None:
         """A bundle arrived."""
@@ -146,33 +143,33 @@ class EventLog(Observer):
     def visit_started(self, time_s: float, station: int, pod: int, robot: int) -> None:
         """A pod is at a station."""
         now_us = round(time_s * 1e6)
-        self._write(_row(now_us, Happening.VISIT_STARTED, robot, pod, station, -1, -1, 0, -1))
+        self._rows.extend(_row(now_us, Happening.VISIT_STARTED, robot, pod, station, -1, -1, 0, -1))
 
     def visit_ended(self, time_s: float, station: int, pod: int, robot: int) -> None:
         """A pod leaves a station."""
         now_us = round(time_s * 1e6)
-        self._write(_row(now_us, Happening.VISIT_ENDED, robot, pod, station, -1, -1, 0, -1))
+        self._rows.extend(_row(now_us, Happening.VISIT_ENDED, robot, pod, station, -1, -1, 0, -1))
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
         """A station was switched."""
         now_us, switched = round(time_s * 1e6), Happening.STATION_SWITCHED
-        self._write(_row(now_us, switched, -1, -1, station, -1, -1, int(active), -1))
+        self._rows.extend(_row(now_us, switched, -1, -1, station, -1, -1, int(active), -1))
 
     def controller_exchanged(self, time_s: float, problem: str, name: str) -> None:
         """A controller was exchanged."""
         detail = self._detail(f"{problem}={name}")
         now_us, exchanged = round(time_s * 1e6), Happening.CONTROLLER_EXCHANGED
-        self._write(_row(now_us, exchanged, -1, -1, -1, -1, -1, 0, detail))
+        self._rows.extend(_row(now_us, exchanged, -1, -1, -1, -1, -1, 0, detail))
 
     def _add_order(self, time_s: float, kind: Happening, order: Order) -> None:
         units = sum([line.units for line in order.lines])
         now_us = round(time_s * 1e6)
-        self._write(_row(now_us, kind, -1, -1, order.station, order.index, -1, units, -1))
+        self._rows.extend(_row(now_us, kind, -1, -1, order.station, order.index, -1, units, -1))
 
     def _add_bundle(self, time_s: float, kind: Happening, bundle: Bundle, robot: int = -1) -> None:
         now_us, units = round(time_s * 1e6), bundle.units
         whom = (robot, bundle.pod, bundle.station, bundle.index, bundle.sku)
-        self._write(_row(now_us, kind, *whom, units, -1))
+        self._rows.extend(_row(now_us, kind, *whom, units, -1))
 
     def _detail(self, text: str) -> int:
         number = self._numbers.get(text)

@@ -28,9 +28,24 @@ class Log:
     """
 
     def __init__(self, **columns: str) -> None:
+        self._types = columns
         self._dtype = np.dtype([(name, f"<{kind}") for name, kind in columns.items()])
         self._pack = Struct("<" + "".join(_CODES[kind] for kind in columns.values())).pack
         self._rows = bytearray()
+
+    def __getstate__(self) -> tuple[dict[str, str], bytes]:
+        return self._types, bytes(self._rows)
+
+    def __setstate__(self, state: tuple[dict[str, str], bytes]) -> None:
+        types, rows = state
+        self.__init__(**types)  # type: ignore[misc]
+        self._rows[:] = rows
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Log:
+        # once through the memory: a fork copies what a run has written down so far
+        copied = Log(**self._types)
+        copied._rows[:] = self._rows
+        return copied
 
     def __len__(self) -> int:
         return len(self._rows) // self._dtype.itemsize

@@ -7,15 +7,14 @@ import hashlib
 import os
 import platform
 import subprocess
-from dataclasses import asdict, fields, is_dataclass
+from dataclasses import asdict
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rmfs import foreign, instances
 from rmfs.config import apply_overrides, read_toml, validate
+from rmfs.digest import digest
 from rmfs.errors import InputError
 from rmfs.layout.loading import split_factors
 from rmfs.layout.parameters import LayoutParameters
@@ -133,33 +132,6 @@ def layout_parameters(
     own, _ = split_factors([(keys[1:], value) for keys, value in overrides if keys[0] == "layout"])
     parameters = validate(LayoutParameters, apply_overrides(table, own), str(path))
     return parameters.model_dump(mode="json")
-
-
-def digest(value: object) -> str:
-    """Return a hash of a dataclass of arrays, numbers, texts and their collections."""
-    state = hashlib.sha256()
-    _feed(state, value)
-    return state.hexdigest()
-
-
-def _feed(state: hashlib._Hash, value: object) -> None:
-    if isinstance(value, np.ndarray):
-        state.update(f"{value.dtype.kind}{value.shape}".encode())
-        state.update(np.ascontiguousarray(value).astype(value.dtype.newbyteorder("<")).tobytes())
-    elif is_dataclass(value) and not isinstance(value, type):
-        for one in fields(value):
-            state.update(one.name.encode())
-            _feed(state, getattr(value, one.name))
-    elif isinstance(value, dict):
-        for key in sorted(value):
-            _feed(state, key)
-            _feed(state, value[key])
-    elif isinstance(value, tuple | list):
-        state.update(f"({len(value)}".encode())
-        for item in value:
-            _feed(state, item)
-    else:
-        state.update(f"{type(value).__name__}:{value!r};".encode())
 
 
 def _size(layout: Layout) -> dict[str, Any]:

@@ -12,18 +12,16 @@ from typing import TYPE_CHECKING
 
 from rmfs.control.solutions import to_text
 from rmfs.measure.log import Log
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from typing import Any
 
     from numpy.typing import NDArray
 
     from rmfs.control.asks import Call
     from rmfs.layout.model import Layout
-    from rmfs.simulation.simulation import Simulation
-    from rmfs.traffic import Traffic
+    from rmfs.observer import MotionCounts, Observed, Troubles
     from rmfs.world.orders import Bundle, Order
     from rmfs.world.world import World
 
@@ -82,7 +80,7 @@ class Recorder(Observer):
     def __init__(self) -> None:
         self.layout: Layout
         self.world: World
-        self.traffic: Traffic
+        self.traffic: MotionCounts
         self.start_s = 0.0
         self.end_s = nan
         self.units = Log(
@@ -120,19 +118,18 @@ class Recorder(Observer):
         self.counters: dict[str, float] = {}
         self._at_station: dict[int, tuple[float, int, int]] = {}
         self._before = {"order_redraws": 0, "orders_short": 0}
-        self._disturbed: Callable[[float, float], tuple[int, float]]
+        self._disturbances: Troubles
 
     @property
     def duration_s(self) -> float:
         """Length of the measured time."""
         return self.end_s - self.start_s
 
-    def run_started(self, simulation: Simulation) -> None:
+    def run_started(self, run: Observed) -> None:
         """Keep hold of the world and the traffic."""
-        self.layout, self.world = simulation.layout, simulation.world
-        self.traffic = simulation.traffic
-        self._disturbed = simulation.disturbances.within
-        self.stored_space_start = simulation.world.inventory.stored_space
+        self.layout, self.world, self.traffic = run.layout, run.world, run.traffic
+        self._disturbances = run.disturbances
+        self.stored_space_start = run.world.inventory.stored_space
 
     def warmup_ended(self, time_s: float) -> None:
         """Begin to measure."""
@@ -151,7 +148,7 @@ class Recorder(Observer):
         self.trips = self.traffic.trips()
         self.edges = self.traffic.edges()
         self.counters = self.traffic.counters()
-        number_of, seconds = self._disturbed(self.start_s, time_s)
+        number_of, seconds = self._disturbances.within(self.start_s, time_s)
         self.counters |= {"disturbances": number_of, "disturbed_s": seconds}
         for name, number in self._order_counts().items():
             self.counters[name] = number - self._before[name]

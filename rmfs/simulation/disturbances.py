@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from rmfs.errors import InputError
-from rmfs.measure.checker import Slow
 from rmfs.random import Stream, generator
 from rmfs.scenario.intake.rates import exponential_us
 
@@ -80,11 +79,11 @@ class DisturbanceSource:
         self.begun: list[Disturbance] = []
 
     @property
-    def slow(self) -> list[Slow]:
-        """When which robots were slow, as the checker wants to know it."""
+    def slow(self) -> list[tuple[int, int, int, float]]:
+        """When which robots were slow: robot, from when to when (us), share of the top speed."""
         share = self._given.slow.speed_share if self._given.slow is not None else 1.0
         slow = (one for one in self.begun if one.kind == "slow")
-        return [Slow(one.element, one.from_us, one.to_us, share) for one in slow]
+        return [(one.element, one.from_us, one.to_us, share) for one in slow]
 
     def within(self, start_s: float, end_s: float) -> tuple[int, float]:
         """Return how many were going on in a stretch of time, and their seconds in it."""

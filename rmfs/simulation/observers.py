@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -27,16 +27,19 @@ class Observers(Observer):
             if len(listeners) == 1:
                 setattr(self, name, listeners[0])
             elif listeners:
-                setattr(self, name, _to_all(listeners))
+                setattr(self, name, _ToAll(listeners))
 
 
 def _callbacks() -> list[str]:
     return [name for name in vars(Observer) if not name.startswith("_")]
 
 
-def _to_all(listeners: list[Callable[..., None]]) -> Callable[..., None]:
-    def call(*arguments: object, **named: object) -> None:
-        for listener in listeners:
-            listener(*arguments, **named)
+class _ToAll:
+    """Calls several listeners; no closure, so that a copy calls the listeners' copies."""
 
-    return call
+    def __init__(self, listeners: list[Callable[..., None]]) -> None:
+        self._listeners = listeners
+
+    def __call__(self, *arguments: object, **named: object) -> None:
+        for listener in self._listeners:
+            listener(*arguments, **named)

@@ -12,10 +12,10 @@ from rmfs import measure
 from rmfs.control.pp import planner_settings
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
-from rmfs.measure.checker import check
+from rmfs.measure.checker import Slow, check
 from rmfs.measure.provenance import MARK
 from rmfs.simulation.inputs import Overrides, load_inputs, name_of
-from rmfs.simulation.pacing import pacing_settings
+from rmfs.simulation.pacing import Replay, ReplayPacing, pacing_settings
 from rmfs.simulation.simulation import Simulation
 from rmfs.traffic import Traffic
 
@@ -31,12 +31,14 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
     from rmfs.measure import EventLog, Recorder
     from rmfs.measure.checker import CheckReport
-    from rmfs.measure.observer import Observer
+    from rmfs.observer import Observer
     from rmfs.scenario import Scenario, StreamRecorder
     from rmfs.simulation.disturbances import DisturbanceSource
-    from rmfs.simulation.pacing import PacingSettings
+    from rmfs.simulation.pacing import Paced, PacingSettings
     from rmfs.simulation.statistics import DecisionStatistics
     from rmfs.world import World
+
+    Driver = Callable[[Simulation, Callable[[float, float], None] | None], None]
 
 
 @dataclass
@@ -113,7 +115,8 @@ class Run:
     def check(self) -> CheckReport:
         """Have the independent checker prove the motion safe; the trace must be recorded."""
         until_us = round(self.end_s * 1e6)
-        return check(self.layout, self.trace, until_us=until_us, slow=self.disturbances.slow)
+        slow = [Slow(*one) for one in self.disturbances.slow]
+        return check(self.layout, self.trace, until_us=until_us, slow=slow)
 
     @property
     def trace(self) -> dict[str, NDArray[Any]]:
@@ -129,6 +132,7 @@ def simulate(
     seed: int = 0,
     overrides: Sequence[tuple[list[str], Any]] = (),
     observers: Sequence[Observer] = (),
+    driver: Driver = Simulation.run,
     pacing: str = "instant",
     trace: bool = False,
     events: EventLog | None = None,
@@ -151,6 +155,9 @@ def simulate(
         from files.
     observers
         Told of everything that happens, besides the recorder of the usual measures.
+    driver
+        Takes the simulation from its first event to its last: for who lets a run wait for somebody.
+        By default it goes on without a stop.
     pacing
         What the thinking of optimisers costs in simulated time: `instant` for nothing, `wall`,
         `work`, `fixed=SECONDS` or `replay=RUN_DIR` (docs: optimisers in the loop).
@@ -199,12 +206,12 @@ def simulate(
         rules,
         seed=seed,
         observers=[recorder, *([events] if events is not None else []), *observers],
-        pacing=pace,
+        pacing=_with_answers(pace),
         traffic=traffic,
         streams=streams,
     )
     begun = time.perf_counter()
-    simulation.run(progress)
+    driver(simulation, progress)
     wall_s = time.perf_counter() - begun
     return Run(
         layout=plan,
@@ -228,6 +235,14 @@ def simulate(
         events=events,
         interventions=list(simulation.interventions),
     )
+
+
+def _with_answers(pacing: PacingSettings) -> Paced:
+    """Read the answers of a run that is to be replayed."""
+    if not isinstance(pacing, ReplayPacing):
+        return pacing
+    answers = measure.load_run(pacing.run).table("answers").to_dict("records")
+    return Replay(pacing, answers)  # type: ignore[arg-type]
 
 
 def _marks(simulation: Simulation) -> str:

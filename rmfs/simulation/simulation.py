@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from rmfs.control.problems import Trigger
 from rmfs.control.travel import Travel
 from rmfs.control.view import View
+from rmfs.observer import Observed
 from rmfs.scenario import initial_stock, sku_set
 from rmfs.simulation.agenda import Agenda
 from rmfs.simulation.dispatch import Dispatch
@@ -30,9 +31,9 @@ if TYPE_CHECKING:
     from rmfs.control.choices import Choice
     from rmfs.control.settings import ControllerSettings
     from rmfs.layout.model import Layout
-    from rmfs.measure.observer import Observer
+    from rmfs.observer import Observer
     from rmfs.scenario import Scenario, StreamRecorder
-    from rmfs.simulation.pacing import PacingSettings
+    from rmfs.simulation.pacing import Paced
 
 SAMPLE_S = 60.0
 """Time between two samples."""
@@ -88,7 +89,7 @@ class Simulation:
         *,
         seed: int = 0,
         observers: Sequence[Observer] = (),
-        pacing: PacingSettings | None = None,
+        pacing: Paced | None = None,
         traffic: Traffic | None = None,
         streams: StreamRecorder | None = None,
     ) -> None:
@@ -234,7 +235,8 @@ class Simulation:
     # --- what happens at fixed times --------------------------------------------------------
 
     def _begin(self, progress: Callable[[float, float], None] | None) -> None:
-        self.observers.run_started(self)
+        observed = Observed(self.layout, self.scenario, self.world, self.traffic, self.disturbances)
+        self.observers.run_started(observed)
         self.disturbances.begin()
         self.supply.top_up()
         self.phase.signal(Trigger.START)

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control.asks import Call
-from rmfs.measure.provenance import digest
+from rmfs.digest import digest
 
 if TYPE_CHECKING:
     from rmfs.control.asks import Ask

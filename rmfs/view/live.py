@@ -17,14 +17,13 @@ from rmfs.control.choices import check_together, choose
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
 from rmfs.measure.events import EventLog
-from rmfs.measure.observer import Observer
 from rmfs.view import scene
 from rmfs.view.container import pack
 from rmfs.view.forms import refuse_foreign
 from rmfs.view.pace import Pace
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
 
@@ -64,7 +63,7 @@ class _News:
     header: dict[str, Any] = field(default_factory=dict)
 
 
-class LiveRun(Observer):
+class LiveRun:
     """Follows a run for pages, and passes on what they want of it.
 
     Parameters
@@ -99,15 +98,15 @@ class LiveRun(Observer):
 
     # --- the run's thread -----------------------------------------------------------------------
 
-    def run_started(self, simulation: Simulation) -> None:
-        """Ask to be asked how far the run may go."""
+    def drive(
+        self, simulation: Simulation, progress: Callable[[float, float], None] | None = None
+    ) -> None:
+        """Let a run go on as the pages want it; what is asked at its end is answered."""
         with self._meeting:
             self._simulation = simulation
             self._brake(on=True)
             self._meeting.notify_all()
-
-    def run_ended(self, time_s: float) -> None:
-        """Answer what is still asked; from now on nothing changes."""
+        simulation.run(progress)
         self.close("the run has ended")
 
     def limit_us(self, now_us: int) -> int:

@@ -11,7 +11,7 @@ from scenario_tools import SITE
 
 import rmfs
 from rmfs.measure.dictionary import reproducible
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 from rmfs.scenario import StreamRecorder, export_stream, load, sku_set, write_stream
 from rmfs.scenario.clock import nearest_us
 from rmfs.simulation import supply

@@ -8,7 +8,7 @@ from doubles import FreeTraffic, quiet_scenario, rules, small_layout
 from ledger import Ledger
 
 from rmfs.control.problems import Trigger
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 from rmfs.simulation.pacing import PacingSettings
 from rmfs.simulation.simulation import Simulation
 from rmfs.world import Bundle, Order

@@ -21,7 +21,7 @@ from rmfs.control.decisions import Exchange
 from rmfs.control.mm import MethodManagement
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 from rmfs.world import verify
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from rmfs import layout, scenario
 from rmfs.control import registry
 from rmfs.control.problems import Problem
 from rmfs.control.settings import DEFAULTS, settings
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 from rmfs.simulation.simulation import Simulation
 
 DUMMY = {"name": "dummy"}

@@ -7,7 +7,7 @@ from ledger import Ledger
 
 from rmfs import control, layout, scenario, simulate
 from rmfs.errors import InputError
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 from rmfs.simulation.simulation import Simulation
 
 
@@ -25,6 +25,8 @@ def run(
     simulation = Simulation(
         plan, work, control.load(controllers), seed=seed, observers=[ledger, *observers]
     )
+    for watch in observers:
+        watch.simulation = simulation
     simulation.run()
     return simulation, ledger
 
@@ -63,9 +65,8 @@ def test_the_same_seed_gives_the_same_events() -> None:
 class IdleWatch(Observer):
     """Checks every minute that no robot rests although PPS would find a pod for its station."""
 
-    def run_started(self, simulation) -> None:
-        self.simulation = simulation
-        self.checked = 0
+    simulation: Simulation
+    checked = 0
 
     def sampled(self, time_s) -> None:
         view, panel = self.simulation.view, self.simulation.panel

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hand_made import HandMade
 
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 
 
 class Levels(Observer):

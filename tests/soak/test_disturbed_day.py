@@ -5,7 +5,7 @@ from ledger import Ledger
 
 import rmfs
 from rmfs.measure import tables
-from rmfs.measure.observer import Observer
+from rmfs.observer import Observer
 from rmfs.world import verify
 
 DAY_S = 86_400.0

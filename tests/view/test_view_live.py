@@ -45,7 +45,7 @@ class Watched:
             seed=4,
             overrides=SETTINGS,
             events=self.live.events,
-            observers=[self.live],
+            driver=self.live.drive,
         )
 
     def start(self) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 from rmfs.simulation.pacing.computed import Fixed, Instant, Work
 from rmfs.simulation.pacing.errors import OptimiserError as OptimiserError
 from rmfs.simulation.pacing.errors import ReplayError as ReplayError
-from rmfs.simulation.pacing.replay import Replay
+from rmfs.simulation.pacing.replay import Replay as Replay
 from rmfs.simulation.pacing.settings import FixedPacing as FixedPacing
 from rmfs.simulation.pacing.settings import InstantPacing as InstantPacing
 from rmfs.simulation.pacing.settings import PacingSettings as PacingSettings
@@ -58,7 +58,11 @@ class Pacing(Protocol):
         ...
 
 
-def pacing_of(settings: PacingSettings, seed: int) -> Pacing:
+Paced = InstantPacing | WallPacing | WorkPacing | FixedPacing | Replay
+"""A mode with its parameters; for a replay the answers that were read from its run."""
+
+
+def pacing_of(settings: Paced, seed: int) -> Pacing:
     """Make the pacing of a run.
 
     Parameters
@@ -67,11 +71,6 @@ def pacing_of(settings: PacingSettings, seed: int) -> Pacing:
         Mode and parameters.
     seed
         The run's seed.
-
-    Raises
-    ------
-    InputError
-        If a run to be replayed cannot be read.
     """
     match settings:
         case InstantPacing():
@@ -82,5 +81,5 @@ def pacing_of(settings: PacingSettings, seed: int) -> Pacing:
             return Work(settings)
         case FixedPacing():
             return Fixed(settings, seed)
-        case ReplayPacing():
-            return Replay(settings)
+        case Replay():
+            return settings

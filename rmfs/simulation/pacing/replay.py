@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 from rmfs.control.asks import Answer, Outcome
 from rmfs.control.solutions import from_text
-from rmfs.measure.folder import load_run
 from rmfs.simulation.agenda import NEVER_US
 from rmfs.simulation.pacing.errors import ReplayError
 
@@ -24,18 +23,13 @@ class Replay:
     ----------
     settings
         The run to be replayed.
-
-    Raises
-    ------
-    InputError
-        If its folder cannot be read.
+    answers
+        The rows of its table `answers`.
     """
 
-    def __init__(self, settings: ReplayPacing) -> None:
+    def __init__(self, settings: ReplayPacing, answers: list[dict[str, Any]]) -> None:
         self._run = settings.run
-        self._rows: list[dict[str, Any]] = (
-            load_run(settings.run).table("answers").to_dict("records")  # type: ignore[assignment]
-        )
+        self._rows = answers
 
     def begin(self, modules: Iterable[str], give: Callable[[Call, int], None]) -> None:
         """Remember whom to give answers to."""

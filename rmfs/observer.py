@@ -1,4 +1,4 @@
-"""What a run tells its observers.
+"""What a run tells those who observe it: the one way in which the kernel says what happened.
 
 The simulation calls these methods as things happen; each does nothing here. A measure overrides
 the few it needs, so that the simulation never asks what is being measured.
@@ -6,18 +6,80 @@ the few it needs, so that the simulation never asks what is being measured.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+from rmfs.control.travel import TravelTimes
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from rmfs.control.asks import Call
-    from rmfs.simulation.simulation import Simulation
+    from rmfs.layout.model import Layout
+    from rmfs.scenario import Scenario
+    from rmfs.world import World
     from rmfs.world.orders import Bundle, Order
+
+
+class MotionCounts(TravelTimes, Protocol):
+    """The part of traffic that counts motion, from the end of the warm-up on."""
+
+    def motion(self) -> dict[str, NDArray[Any]]:
+        """Distances and times of each robot."""
+        ...
+
+    def heat(self) -> dict[str, NDArray[Any]]:
+        """Visits and waiting at each waypoint."""
+        ...
+
+    def trips(self) -> dict[str, NDArray[Any]]:
+        """Trips that ended."""
+        ...
+
+    def edges(self) -> dict[str, NDArray[Any]]:
+        """Passages of each edge that was used."""
+        ...
+
+    def counters(self) -> dict[str, float]:
+        """Counts of path planning, and its wall time."""
+        ...
+
+
+class Troubles(Protocol):
+    """What knows the disturbances of a run."""
+
+    def within(self, start_s: float, end_s: float) -> tuple[int, float]:
+        """Return how many were going on in a stretch of time, and their seconds in it."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Observed:
+    """What is to be seen of a run: to be looked at, never to be changed.
+
+    Attributes
+    ----------
+    layout, scenario
+        What is simulated.
+    world
+        Pods, orders, stations and robots, as they are at any moment; `world.now_s` is the time.
+    traffic
+        What counts motion and knows travel times.
+    disturbances
+        What goes wrong.
+    """
+
+    layout: Layout
+    scenario: Scenario
+    world: World
+    traffic: MotionCounts
+    disturbances: Troubles
 
 
 class Observer:
     """Callbacks of a run; times are simulated seconds, entities are named by their index."""
 
-    def run_started(self, simulation: Simulation) -> None:
+    def run_started(self, run: Observed) -> None:
         """The world is built and stocked; nothing has happened yet."""
 
     def run_ended(self, time_s: float) -> None:

@@ -1,0 +1,35 @@
+"""A hash of a value: of its content, not of how it lies in memory."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import fields, is_dataclass
+
+import numpy as np
+
+
+def digest(value: object) -> str:
+    """Return a hash of a dataclass of arrays, numbers, texts and their collections."""
+    state = hashlib.sha256()
+    _feed(state, value)
+    return state.hexdigest()
+
+
+def _feed(state: hashlib._Hash, value: object) -> None:
+    if isinstance(value, np.ndarray):
+        state.update(f"{value.dtype.kind}{value.shape}".encode())
+        state.update(np.ascontiguousarray(value).astype(value.dtype.newbyteorder("<")).tobytes())
+    elif is_dataclass(value) and not isinstance(value, type):
+        for one in fields(value):
+            state.update(one.name.encode())
+            _feed(state, getattr(value, one.name))
+    elif isinstance(value, dict):
+        for key in sorted(value):
+            _feed(state, key)
+            _feed(state, value[key])
+    elif isinstance(value, tuple | list):
+        state.update(f"({len(value)}".encode())
+        for item in value:
+            _feed(state, item)
+    else:
+        state.update(f"{type(value).__name__}:{value!r};".encode())

@@ -1,0 +1,205 @@
+"""Classes that users write: named by `module:Class` or `path/to/file.py:Class`, or given as such.
+
+Modules are looked for where Python looks, and then in the working directory. A file is imported
+under a name of its own that holds its path (`file:/home/me/rules%2Epy`), so that two files of one
+name do not meet, and what is pickled finds its class again in another process.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import inspect
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+from urllib.parse import quote, unquote
+
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from importlib.machinery import ModuleSpec
+    from types import ModuleType
+
+T = TypeVar("T")
+
+_FILE = "file:"
+_SUFFIX = ".py"
+
+
+def resolve(reference: str | type, base: type[T], what: str) -> type[T]:
+    """Return the class that a user means.
+
+    Parameters
+    ----------
+    reference
+        The class itself, `module:Class`, or `path/to/file.py:Class`.
+    base
+        What it must be derived from.
+    what
+        What it is, in words, for errors: "measure".
+
+    Raises
+    ------
+    InputError
+        If it cannot be found or imported, or is something else.
+    """
+    found = reference if isinstance(reference, type) else _imported(reference, what)
+    if isinstance(found, type) and issubclass(found, base):
+        return found
+    told = reference if isinstance(reference, str) else reference.__qualname__
+    raise InputError(
+        f"{told}: is no {what} (a class derived from {base.__module__}.{base.__qualname__})"
+    )
+
+
+def is_reference(text: str) -> bool:
+    """Whether a text is `module:Class` or `file.py:Class`, and not a plain name."""
+    return ":" in text
+
+
+def anchored(reference: str, folder: Path | None = None) -> str:
+    """Return a reference that is understood in every working directory.
+
+    Parameters
+    ----------
+    folder
+        Where a file is looked for first. Default: the working directory.
+
+    Returns
+    -------
+    str
+        `/absolute/file.py:Class` for a file; anything else as it was.
+    """
+    place, _, name = reference.rpartition(":")
+    if not place.endswith(_SUFFIX):
+        return reference
+    beside = (folder or Path()) / place
+    path = beside if beside.is_file() else Path(place)
+    return f"{path.absolute()}:{name}"
+
+
+def reference_of(found: type) -> str:
+    """Return the reference under which another process finds a class.
+
+    Raises
+    ------
+    InputError
+        If it was defined where nothing can be imported from: in a notebook, at a prompt, or within
+        a function.
+    """
+    module = found.__module__
+    if module.startswith(_FILE):
+        return f"{_path_of(module)}:{found.__qualname__}"
+    if "." in found.__qualname__:
+        raise InputError(f"{found.__qualname__}: must be a class of a module, not of a function")
+    if module != "__main__":
+        return f"{module}:{found.__qualname__}"
+    file = getattr(sys.modules[module], "__file__", None)
+    if file is None:
+        raise InputError(
+            f"{found.__qualname__}: was defined in a notebook or at a prompt, where worker "
+            "processes do not find it; write it into a file and import it from there"
+        )
+    return f"{Path(file).absolute()}:{found.__qualname__}"
+
+
+def source_file(found: type) -> Path | None:
+    """Return the file in which a class was written; nothing for one typed at a prompt."""
+    try:
+        return Path(inspect.getfile(found))
+    except (OSError, TypeError):
+        return None
+
+
+def _imported(reference: str, what: str) -> object:
+    place, _, name = reference.rpartition(":")
+    if not place or not name:
+        raise InputError(
+            f"{reference}: no {what} of that name; expected module:Class or path/to/file.py:Class"
+        )
+    module = _file(place, reference) if place.endswith(_SUFFIX) else _module(place, reference)
+    try:
+        found: object = getattr(module, name)
+    except AttributeError:
+        known = [
+            one
+            for one, value in vars(module).items()
+            if isinstance(value, type) and value.__module__ == module.__name__
+        ]
+        there = f"; its classes: {', '.join(known)}" if known else ""
+        raise InputError(f"{reference}: {place} has no class {name}{there}") from None
+    return found
+
+
+def _file(place: str, reference: str) -> ModuleType:
+    path = Path(place).absolute()
+    if not path.is_file():
+        raise InputError(f"{reference}: no file {path}")
+    return _import(_module_name(path), reference)
+
+
+def _module(name: str, reference: str) -> ModuleType:
+    here = str(Path.cwd())
+    if not _exists(name) and here not in sys.path:
+        # last: what is installed is not to be hidden by a file of the same name
+        sys.path.append(here)
+        importlib.invalidate_caches()
+    if not _exists(name):
+        raise InputError(
+            f"{reference}: no module {name}, neither installed nor in the working directory "
+            f"({here}); a file is named by its path: path/to/file.py:Class"
+        )
+    return _import(name, reference)
+
+
+def _exists(name: str) -> bool:
+    if name in sys.modules:
+        return True
+    try:
+        return importlib.util.find_spec(name) is not None
+    except (ModuleNotFoundError, ValueError):
+        return False
+    except Exception:  # its package is there, and fails: `_import` says how
+        return True
+
+
+def _import(name: str, reference: str) -> ModuleType:
+    try:
+        return importlib.import_module(name)
+    except Exception as error:  # whatever a user's file does when it is read
+        line = str(error).splitlines()[0] if str(error) else ""
+        raise InputError(
+            f"{reference}: cannot be loaded ({type(error).__name__}: {line})"
+        ) from error
+
+
+def _module_name(path: Path) -> str:
+    # a dot would stand between a package and its module
+    return _FILE + quote(str(path)).replace(".", "%2E")
+
+
+def _path_of(name: str) -> Path:
+    return Path(unquote(name.removeprefix(_FILE)))
+
+
+class _Files:
+    """Finds the modules that are files of users, also for who unpickles an object of theirs."""
+
+    @classmethod
+    def find_spec(
+        cls, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        if not name.startswith(_FILE):
+            return None
+        place = _path_of(name)
+        folder = str(place.parent)
+        if folder not in sys.path:
+            # what lies beside it is imported as if the file were run
+            sys.path.append(folder)
+        return importlib.util.spec_from_file_location(name, place)
+
+
+if not any(getattr(finder, "__name__", "") == _Files.__name__ for finder in sys.meta_path):
+    sys.meta_path.append(_Files)
