@@ -1,7 +1,7 @@
 """Classes that users write: named by `module:Class` or `path/to/file.py:Class`, or given as such.
 
 Modules are looked for where Python looks, and then in the working directory. A file is imported
-under a name of its own that holds its path (`file:/home/me/rules%2Epy`), so that two files of one
+under a name of its own that holds its path (`file:/mine/rules%2Epy`), so that two files of one
 name do not meet, and what is pickled finds its class again in another process.
 """
 
