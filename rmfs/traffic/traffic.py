@@ -2,29 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
-
-from rmfs.traffic._core import Core
-from rmfs.traffic.planner import Conversation
-from rmfs.traffic.settings import (
-    COST_TABLE_BYTES,
-    EXPANSION_BUDGET,
-    TIME_WINDOWS,
-    PlannerSettings,
-)
+from rmfs.traffic.core import Options, build, fork, from_bytes, to_bytes
+from rmfs.traffic.settings import COST_TABLE_BYTES, TIME_WINDOWS, PlannerSettings
 from rmfs.traffic.trace import joined_holds
 from rmfs.traffic.vocabulary import CutOff, PlannedMove
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from rmfs.layout.model import Layout
+    from rmfs.traffic._core import Core
 
 _BY_PURPOSE = ("visits", "waiting_s")
+
+_OWN = {"_layout", "_core", "_options", "_from_cache", "_to_cache", "advance", "command"}
 
 
 class Traffic:
@@ -59,57 +55,73 @@ class Traffic:
         planner: PlannerSettings = TIME_WINDOWS,
         slow_shares: Sequence[float] = (),
     ) -> None:
-        self._kind = layout.robot_kind
-        self._kinds = len(layout.robot_kinds)
+        options = Options(record_trace, cost_table_bytes, planner, tuple(slow_shares))
+        self._layout = layout
         self._from_cache: dict[tuple[int, int, bool], NDArray[np.float64]] = {}
         self._to_cache: dict[tuple[int, int, bool], NDArray[np.float64]] = {}
-        self._core = Core(
-            layout.x_m,
-            layout.y_m,
-            layout.tier.astype(np.int16),
-            layout.edge_start.astype(np.uint32),
-            layout.edge_target.astype(np.uint32),
-            layout.is_storage,
-            layout.is_queue,
-            [list(station.queue) for station in layout.stations],
-            [list(elevator.waypoints) for elevator in layout.elevators],
-            [
-                (a, b, _us(seconds))
-                for elevator in layout.elevators
-                for (a, b), seconds in elevator.travel_s.items()
-            ],
-            list(
-                zip(
-                    layout.robot_waypoint.tolist(),
-                    layout.robot_heading_rad.tolist(),
-                    layout.robot_kind.tolist(),
-                    strict=True,
-                )
-            ),
-            [
-                (
-                    kind.acceleration_m_s2,
-                    kind.deceleration_m_s2,
-                    kind.top_speed_m_s * share,
-                    _us(kind.full_turn_s),
-                    _us(kind.pod_transfer_s),
-                )
-                for share in (1.0, *slow_shares)
-                for kind in layout.robot_kinds
-            ],
-            (
-                planner.name,
-                planner.parameters,
-                planner.seed,
-                planner.code and Conversation(planner.code),
-            ),
-            EXPANSION_BUDGET,
-            cost_table_bytes,
-            record_trace,
-        )
+        self._core: Core
+        self._options: Options
         # the two calls of the hot path, without a frame in between
-        self.advance: Callable[[int], list[tuple[int, int, int, int]]] = self._core.advance
-        self.command = self._core.command
+        self.advance: Callable[[int], list[tuple[int, int, int, int]]]
+        self.command: Callable[[int, list[tuple[int, int]]], None]
+        self.__dict__.update(_of(build(layout, options), options))
+
+    def fork(self, memo: dict[int, Any] | None = None) -> Self:
+        """Copy the traffic: both go on independently, and bit for bit alike if told the same.
+
+        What never changes is shared, and what has been recorded so far; so a copy costs
+        milliseconds. A planner written in Python is copied deeply. `copy.deepcopy` does the same.
+
+        Parameters
+        ----------
+        memo
+            Of the deep copy of which this is a part.
+        """
+        copy = type(self).__new__(type(self))
+        core, options = fork(self._core, self._options, {} if memo is None else memo)
+        caches = {"_from_cache": dict(self._from_cache), "_to_cache": dict(self._to_cache)}
+        copy.__dict__.update({**self.__dict__, **caches, **_of(core, options)})
+        return copy
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        """Fork."""
+        return self.fork(memo)
+
+    def to_bytes(self) -> bytes:
+        """Save the traffic as it is, without the layout; a planner written in Python is pickled.
+
+        Raises
+        ------
+        ValueError
+            If the planner cannot be written down.
+        """
+        return to_bytes(self._core, self._options)
+
+    @classmethod
+    def from_bytes(cls, layout: Layout, saved: bytes) -> Self:
+        """Go on from what `to_bytes` has saved, on the same layout.
+
+        A planner written in Python is unpickled, which can run any code: only load what you trust.
+
+        Raises
+        ------
+        ValueError
+            If these are not such bytes, are damaged, or are those of another version or layout.
+        """
+        traffic = cls.__new__(cls)
+        traffic.__setstate__((layout, saved, {}))
+        return traffic
+
+    def __getstate__(self) -> tuple[Layout, bytes, dict[str, Any]]:
+        """For pickles: the layout, the bytes, and what a subclass has added."""
+        own = {name: self.__dict__[name] for name in self.__dict__.keys() - _OWN}
+        return self._layout, self.to_bytes(), own
+
+    def __setstate__(self, state: tuple[Layout, bytes, dict[str, Any]]) -> None:
+        """Go on from a pickle."""
+        self._layout, saved, added = state
+        self._from_cache, self._to_cache = {}, {}
+        self.__dict__.update({**_of(*from_bytes(self._layout, saved)), **added})
 
     @property
     def now_us(self) -> int:
@@ -135,7 +147,7 @@ class Traffic:
         -------
         Seconds, shape (N,); infinite where there is no way. Do not write into it.
         """
-        key = (waypoint, int(self._kind[robot]), loaded)
+        key = (waypoint, int(self._layout.robot_kind[robot]), loaded)
         if key not in self._to_cache:
             self._to_cache[key] = self._core.travel_times_to(*key)
         return self._to_cache[key]
@@ -147,7 +159,7 @@ class Traffic:
         -------
         Seconds, shape (N,); infinite where there is no way. Do not write into it.
         """
-        key = (waypoint, int(self._kind[robot]), loaded)
+        key = (waypoint, int(self._layout.robot_kind[robot]), loaded)
         if key not in self._from_cache:
             self._from_cache[key] = self._core.travel_times_from(*key)
         return self._from_cache[key]
@@ -227,7 +239,7 @@ class Traffic:
         Whether that was done; not if the robot is in motion, or somebody is already driving who
         would have to wait for it.
         """
-        kind = int(self._kind[robot]) + level * self._kinds
+        kind = int(self._layout.robot_kind[robot]) + level * len(self._layout.robot_kinds)
         return self._core.change_kind(robot, kind)
 
     def close(self, waypoints: Sequence[int]) -> list[int]:
@@ -378,5 +390,11 @@ class Traffic:
         return self._core.state_report()
 
 
-def _us(seconds: float) -> int:
-    return round(seconds * 1e6)
+def _of(core: Core, options: Options) -> dict[str, Any]:
+    """What of traffic is the core's."""
+    return {
+        "_core": core,
+        "_options": options,
+        "advance": core.advance,
+        "command": core.command,
+    }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from rmfs.demonstrator.server.clock import ROOM
 from rmfs.demonstrator.server.guide import TICK_US, Guide
@@ -56,6 +56,16 @@ class GuidedTraffic(Traffic):
         self._is_live = False
         self._advance_core = self.advance
         self.advance = self._advance_guided
+
+    def fork(self, memo: dict[int, Any] | None = None) -> NoReturn:
+        """Refuse: there is only one of each real robot.
+
+        Raises
+        ------
+        TypeError
+            Always.
+        """
+        raise TypeError("traffic with real robots cannot be copied")
 
     def _advance_guided(self, until_us: int) -> list[tuple[int, int, int, int]]:
         """Advance to the next event, as `Traffic.advance`, in step with the real robots."""

@@ -37,7 +37,7 @@ enum Arrival {
 }
 
 /// Resumable backward search from a goal, led towards a start if there is one.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Backward {
     queue: Buckets,
     headings: usize,

@@ -6,7 +6,7 @@ use crate::costs::UNREACHABLE;
 const BUCKET: u32 = 1 << 18;
 
 /// A queue of states in buckets of their total time; improving a state again is allowed.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Buckets {
     /// Least cost of each state, and in which search that was.
     best: Vec<(u32, u32)>,

@@ -7,6 +7,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::backward::{Backward, ROLLING};
 use crate::buckets::Buckets;
 use crate::kinematics::Kind;
@@ -20,7 +22,7 @@ pub const UNREACHABLE: u32 = u32::MAX;
 pub type Table = Arc<[u32]>;
 
 /// What is constant for one kind of robot on one network.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Model {
     /// Microseconds per metre at top speed.
     pub pace: f64,
@@ -158,11 +160,24 @@ impl Model {
     }
 }
 
+/// Whom a table is for: goal, kind of robot, and whether it is loaded.
+type Key = (u32, u8, bool);
+
+/// The tables a cache has, by when they were last used, and its counts: what it takes to have the
+/// same ones again.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Known {
+    keys: Vec<(u64, Key)>,
+    clock: u64,
+    computed: u64,
+}
+
 /// Models of all kinds, and full tables for the goals that are asked for again and again.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Cache {
     pub models: Vec<Model>,
-    tables: HashMap<(u32, u8, bool), (Table, u64)>,
+    /// With when they were last used; those not there are computed when they are asked for.
+    tables: HashMap<Key, (Option<Table>, u64)>,
     clock: u64,
     capacity: usize,
     pub computed: u64,
@@ -185,18 +200,33 @@ impl Cache {
     pub fn towards(&mut self, network: &Network, goal: u32, kind: u8, loaded: bool) -> Table {
         self.clock += 1;
         let clock = self.clock;
+        let model = &self.models[kind as usize];
         if let Some((table, used)) = self.tables.get_mut(&(goal, kind, loaded)) {
             *used = clock;
-            return Arc::clone(table);
+            let compute = || model.towards(network, goal, loaded).into();
+            return Arc::clone(table.get_or_insert_with(compute));
         }
         if self.tables.len() >= self.capacity {
             let oldest = self.tables.iter().min_by_key(|(_, (_, used))| *used).map(|(key, _)| *key);
             self.tables.remove(&oldest.expect("the cache is full"));
         }
-        let table: Table = self.models[kind as usize].towards(network, goal, loaded).into();
+        let table: Table = model.towards(network, goal, loaded).into();
         self.computed += 1;
-        self.tables.insert((goal, kind, loaded), (Arc::clone(&table), clock));
+        self.tables.insert((goal, kind, loaded), (Some(Arc::clone(&table)), clock));
         table
+    }
+
+    /// What it takes to have the same tables again.
+    pub fn known(&self) -> Known {
+        let mut keys: Vec<_> = self.tables.iter().map(|(key, (_, used))| (*used, *key)).collect();
+        keys.sort_unstable();
+        Known { keys, clock: self.clock, computed: self.computed }
+    }
+
+    /// Has the tables that another cache had.
+    pub fn remember(&mut self, known: Known) {
+        self.tables = known.keys.into_iter().map(|(used, key)| (key, (None, used))).collect();
+        (self.clock, self.computed) = (known.clock, known.computed);
     }
 
     /// Drops all tables: the network has changed.

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::network::Network;
 use crate::units::Us;
 
 /// How often robots drove an edge or rode an elevator.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Passages {
     pub all: u32,
     pub loaded: u32,
@@ -21,7 +23,7 @@ impl Passages {
 
 /// Counts since the last reset. What robots drive for is one of several *purposes*: the station
 /// they are bound for, storing a pod, or neither.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Heat {
     purposes: usize,
     /// By waypoint and purpose.

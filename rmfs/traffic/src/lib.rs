@@ -6,6 +6,7 @@ pub mod costs;
 pub mod fleet;
 pub mod heat;
 pub mod kinematics;
+pub mod log;
 pub mod network;
 pub mod planner;
 pub mod postpone;

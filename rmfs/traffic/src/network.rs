@@ -1,5 +1,8 @@
 //! The waypoint graph as the planner sees it: straight lines by heading, zones and shared resources.
 
+use serde::Serialize;
+
+use crate::kinematics::Kind;
 use crate::units::{MicroTurn, TURN, Us, heading_of};
 
 /// "No waypoint", "no zone".
@@ -9,7 +12,7 @@ pub const NONE: u32 = u32::MAX;
 const CLOSED: u32 = u32::MAX - 1;
 
 /// One directed way between tiers.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Lift {
     pub from: u32,
     pub to: u32,
@@ -36,7 +39,7 @@ pub struct Plan {
 }
 
 /// The immutable graph.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Network {
     pub nodes: usize,
     /// Distinct headings, ascending.
@@ -231,6 +234,25 @@ impl Network {
     /// Closes a waypoint, or opens it again.
     pub fn set_closed(&mut self, node: u32, closed: bool) {
         self.access[node as usize] = if closed { CLOSED } else { self.zone[node as usize] };
+    }
+
+    /// Waypoints that are closed.
+    pub fn closed(&self) -> Vec<u32> {
+        (0..self.nodes as u32).filter(|&node| self.is_closed(node)).collect()
+    }
+
+    /// A number that tells networks, and the kinds of robots on them, from others; what is closed
+    /// does not count.
+    pub fn fingerprint(&self, kinds: &[Kind]) -> u32 {
+        let numbers = |kind: &Kind| {
+            let Kind { acceleration, deceleration, top_speed, full_turn, pod_transfer } = *kind;
+            (acceleration, deceleration, top_speed, full_turn, pod_transfer)
+        };
+        let kinds: Vec<_> = kinds.iter().map(numbers).collect();
+        let places = (&self.x, &self.y, &self.storage, &self.zone, &self.resource, &self.stations);
+        let ways = (&self.headings, &self.next, &self.lifts_from);
+        let all = postcard::to_stdvec(&(places, ways, kinds)).expect("numbers can be written");
+        crc32fast::hash(&all)
     }
 
     /// Walks the straight line from `from` (exclusive) to `to` (inclusive) with the distance covered.

@@ -1,7 +1,9 @@
 //! A small seeded generator (SplitMix64), so that a run is the same everywhere.
 
+use serde::{Deserialize, Serialize};
+
 /// The state of the generator.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Random(u64);
 
 impl Random {

@@ -1,13 +1,16 @@
 //! What is remembered of the motion: totals per robot, heat, trips and the trace.
 
+use serde::{Deserialize, Serialize};
+
 use crate::heat::Heat;
 use crate::kinematics::Kind;
+use crate::log::Log;
 use crate::network::{NONE, Network};
 use crate::search::Move;
 use crate::units::{Us, floor_us};
 
 /// Kinds of pieces of motion in the trace.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[repr(i8)]
 pub enum Piece {
     Hold = 0,
@@ -27,7 +30,7 @@ pub enum Standing {
 }
 
 /// One piece of motion of one robot.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Row {
     pub robot: u32,
     pub start: Us,
@@ -41,7 +44,7 @@ pub struct Row {
 }
 
 /// Totals of one robot since the last reset.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Totals {
     pub distance: f64,
     pub loaded_distance: f64,
@@ -76,7 +79,7 @@ impl Totals {
 }
 
 /// One leg, from the decision to drive to the arrival (for a station: at the queue zone).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Trip {
     pub robot: u32,
     pub kind: TripKind,
@@ -90,7 +93,7 @@ pub struct Trip {
 }
 
 /// What a trip is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[repr(i8)]
 pub enum TripKind {
     ToPod = 0,
@@ -100,12 +103,12 @@ pub enum TripKind {
 }
 
 /// Everything recorded.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Record {
     pub totals: Vec<Totals>,
     pub heat: Heat,
-    pub trips: Vec<Trip>,
-    pub trace: Option<Vec<Row>>,
+    pub trips: Log<Trip>,
+    pub trace: Option<Log<Row>>,
     /// When totals, heat and trips begin.
     pub since: Us,
     /// Until when each robot's motion is recorded.
@@ -118,8 +121,8 @@ impl Record {
         Self {
             totals: vec![Totals::default(); robots],
             heat: Heat::new(network),
-            trips: Vec::new(),
-            trace: with_trace.then(Vec::new),
+            trips: Log::default(),
+            trace: with_trace.then(Log::default),
             since: 0,
             recorded: vec![0; robots],
         }

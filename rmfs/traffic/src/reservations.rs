@@ -1,9 +1,11 @@
 //! Who occupies what, when: sorted, disjoint time intervals per resource.
 
+use serde::{Deserialize, Serialize};
+
 use crate::units::{FOREVER, Us};
 
 /// A half-open occupation `[start, end)` by one robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Interval {
     pub start: Us,
     pub end: Us,
@@ -14,7 +16,7 @@ pub struct Interval {
 pub type Windows = Vec<(Us, Us)>;
 
 /// The reservation table.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Table {
     rows: Vec<Vec<Interval>>,
 }
@@ -77,9 +79,10 @@ impl Table {
         self.rows[resource as usize] = row;
     }
 
-    /// Empties the table.
-    pub fn clear(&mut self) {
+    /// Empties the table and gives it so many rows.
+    pub fn reset(&mut self, resources: usize) {
         self.rows.iter_mut().for_each(Vec::clear);
+        self.rows.resize_with(resources, Vec::new);
     }
 
     /// Removes every occupation of a resource by a robot.

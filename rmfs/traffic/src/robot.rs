@@ -2,13 +2,15 @@
 
 use std::collections::VecDeque;
 
+use serde::{Deserialize, Serialize};
+
 use crate::kinematics::Kind;
 use crate::network::{NONE, Network};
 use crate::search::Move;
 use crate::units::{FOREVER, Us, ceil_us, floor_us};
 
 /// What a robot is told to do, one after another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Step {
     /// Drive to a waypoint and stop there.
     Drive(u32),
@@ -27,7 +29,7 @@ impl Step {
 }
 
 /// What a robot is doing with the first step of its program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Phase {
     /// No program.
     Idle,
@@ -40,7 +42,7 @@ pub enum Phase {
 }
 
 /// An occupation in the reservation table that belongs to the robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Held {
     pub resource: u32,
     pub start: Us,
@@ -50,7 +52,7 @@ pub struct Held {
 }
 
 /// The state of one robot.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Robot {
     pub kind: u8,
     /// Where the robot rests, or where the first of `moves` began.

@@ -5,6 +5,8 @@
 //! that hinders nobody, and waits; if there is no such place either it still drives through, for a
 //! plan that others rely on is only given up for one that is as safe.
 
+use std::sync::Arc;
+
 use crate::robot::{Phase, Robot};
 use crate::search::Move;
 
@@ -58,9 +60,8 @@ impl Fleet {
             return Err(format!("no waypoint {waypoint}"));
         }
         self.settle_all();
-        for &waypoint in waypoints {
-            self.network.set_closed(waypoint, closed);
-        }
+        let network = Arc::make_mut(&mut self.network);
+        waypoints.iter().for_each(|&waypoint| network.set_closed(waypoint, closed));
         self.costs.forget();
         Ok(())
     }

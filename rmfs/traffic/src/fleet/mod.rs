@@ -15,6 +15,7 @@ mod progress;
 mod queues;
 mod regroup;
 mod rolling;
+mod saved;
 
 pub use closing::CutOff;
 pub use late::Shift;
@@ -22,10 +23,14 @@ pub use regroup::Rest;
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
+use std::sync::Arc;
 use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
 
 use crate::costs::Cache;
 use crate::kinematics::Kind;
+use crate::log::Log;
 use crate::network::Network;
 use crate::planner::{Planner, TimeWindows};
 use crate::record::Record;
@@ -37,7 +42,7 @@ use crate::units::Us;
 use rolling::Rolling;
 
 /// What happened to a robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[repr(i64)]
 pub enum EventKind {
     Arrived = 0,
@@ -52,7 +57,7 @@ pub enum EventKind {
 }
 
 /// An event with its time; `value` is a waypoint, pod or station.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Event {
     pub time: Us,
     pub kind: EventKind,
@@ -60,7 +65,7 @@ pub struct Event {
     pub value: u32,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 enum Due {
     TransferEnd,
     LegEnd,
@@ -72,7 +77,7 @@ enum Due {
 }
 
 /// What planning has cost so far.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Counters {
     pub plans: u64,
     pub failures: u64,
@@ -84,7 +89,7 @@ pub struct Counters {
     /// Wall time spent planning.
     pub planning: Duration,
     /// Wall time of each call of the planner, in nanoseconds.
-    pub calls: Vec<u64>,
+    pub calls: Log<u64>,
 }
 
 impl Counters {
@@ -96,7 +101,7 @@ impl Counters {
 }
 
 /// What a robot's current leg is, for the table of trips.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Leg {
     from: u32,
     start: Us,
@@ -107,9 +112,9 @@ struct Leg {
 }
 
 /// The traffic of one warehouse.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Fleet {
-    pub network: Network,
+    pub network: Arc<Network>,
     pub kinds: Vec<Kind>,
     pub robots: Vec<Robot>,
     pub now: Us,
@@ -175,7 +180,7 @@ impl Fleet {
             agenda: BinaryHeap::new(),
             outbox: Vec::new(),
             now: 0,
-            network,
+            network: Arc::new(network),
             kinds,
             budget,
         };

@@ -147,7 +147,7 @@ impl Fleet {
         self.settle_all();
         let recorded = self.record.trace.as_ref()?;
         let count = recorded.len();
-        let mut rows = recorded[known.min(count)..].to_vec();
+        let mut rows: Vec<Row> = recorded.since(known).cloned().collect();
         for (id, state) in self.robots.iter().enumerate() {
             let robot = id as u32;
             let kind = &self.kinds[state.kind as usize];

@@ -10,6 +10,8 @@ use std::cmp::Reverse;
 use std::collections::VecDeque;
 use std::time::Instant;
 
+use serde::{Deserialize, Serialize};
+
 use crate::network::NONE;
 use crate::planner::{Agent, Answer, Planner, Rhythm, Scene};
 use crate::robot::{Phase, Step, occupation};
@@ -21,13 +23,19 @@ use super::planning::time_in_zone;
 use super::{Due, EventKind, Fleet, Leg};
 
 /// A rolling planner and what it wants.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Rolling {
-    planner: Box<dyn Planner>,
+    pub planner: Box<dyn Planner>,
     period: Us,
     /// Runs that may be granted at once.
     runs: usize,
-    wishes: Vec<VecDeque<Move>>,
+    pub wishes: Wishes,
+}
+
+/// What a rolling planner wants of each robot, and when it is asked again.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Wishes {
+    ways: Vec<VecDeque<Move>>,
     needs_plan: Vec<bool>,
     /// Changes with every wish, so that departures of old ones are recognised.
     serial: Vec<u32>,
@@ -43,21 +51,30 @@ impl Rolling {
             planner,
             period,
             runs,
-            wishes: vec![VecDeque::new(); robots],
-            needs_plan: vec![false; robots],
-            serial: vec![0; robots],
-            last_call: -period,
-            call_due: false,
+            wishes: Wishes {
+                ways: vec![VecDeque::new(); robots],
+                needs_plan: vec![false; robots],
+                serial: vec![0; robots],
+                last_call: -period,
+                call_due: false,
+            },
         })
     }
 
     fn replace(&mut self, robot: u32, wish: Vec<Move>) {
-        self.wishes[robot as usize] = wish.into();
-        self.serial[robot as usize] += 1;
+        self.wishes.ways[robot as usize] = wish.into();
+        self.wishes.serial[robot as usize] += 1;
     }
 }
 
 impl Fleet {
+    /// Gives a rolling planner's work to another one of the same rhythm.
+    pub fn exchange_planner(&mut self, planner: Box<dyn Planner>) {
+        if let Some(rolling) = &mut self.rolling {
+            rolling.planner = planner;
+        }
+    }
+
     /// Starts a driving step: the robot waits for a plan, or for the end of what it still drives.
     pub(super) fn set_off_rolling(&mut self, robot: u32) {
         let begun = Instant::now();
@@ -126,7 +143,7 @@ impl Fleet {
         let kind = &self.kinds[state.kind as usize];
         let fits =
             |first: &&Move| first.from == state.anchor && first.heading_before == state.heading;
-        let Some(first) = rolling.wishes[robot as usize].front().filter(fits) else {
+        let Some(first) = rolling.wishes.ways[robot as usize].front().filter(fits) else {
             self.drop_wish(robot);
             return true;
         };
@@ -136,7 +153,7 @@ impl Fleet {
         );
         let due = first.start - turn;
         if due > self.now {
-            let serial = rolling.serial[robot as usize];
+            let serial = rolling.wishes.serial[robot as usize];
             self.agenda.push(Reverse((due, robot, Due::Depart, serial)));
             return true;
         }
@@ -159,7 +176,7 @@ impl Fleet {
     /// The time has come to turn for the first run of a wish.
     pub(super) fn departure_due(&mut self, robot: u32, serial: u32) {
         let rolling = self.rolling.as_ref().expect("a rolling planner");
-        if rolling.serial[robot as usize] == serial {
+        if rolling.wishes.serial[robot as usize] == serial {
             self.depart(robot);
         }
     }
@@ -167,7 +184,7 @@ impl Fleet {
     /// Grants the first runs of the wish, `late` by so much: as many as allowed that are free.
     fn is_granted(&mut self, robot: u32, late: Us) -> bool {
         let rolling = self.rolling.as_mut().expect("a rolling planner");
-        let wish = &mut rolling.wishes[robot as usize];
+        let wish = &mut rolling.wishes.ways[robot as usize];
         for step in wish.iter_mut() {
             step.start += late;
             step.end += late;
@@ -179,7 +196,7 @@ impl Fleet {
         for &last in ends.iter().rev() {
             if self.is_free(robot, &moves[..=last]) {
                 let rolling = self.rolling.as_mut().expect("a rolling planner");
-                rolling.wishes[robot as usize].drain(..=last);
+                rolling.wishes.ways[robot as usize].drain(..=last);
                 let moves = moves[..=last].to_vec();
                 self.grant(robot, moves);
                 return true;
@@ -241,9 +258,9 @@ impl Fleet {
 
     fn need_plan(&mut self, robot: u32) {
         let rolling = self.rolling.as_mut().expect("a rolling planner");
-        rolling.needs_plan[robot as usize] = true;
-        if !std::mem::replace(&mut rolling.call_due, true) {
-            let due = self.now.max(rolling.last_call + rolling.period);
+        rolling.wishes.needs_plan[robot as usize] = true;
+        if !std::mem::replace(&mut rolling.wishes.call_due, true) {
+            let due = self.now.max(rolling.wishes.last_call + rolling.period);
             self.agenda.push(Reverse((due, u32::MAX, Due::Call, 0)));
         }
     }
@@ -254,8 +271,8 @@ impl Fleet {
         let agents = self.agents();
         let Fleet { network, kinds, robots, table, pathfinder, costs, rolling, .. } = self;
         let rolling = rolling.as_mut().expect("a rolling planner");
-        rolling.call_due = false;
-        rolling.last_call = self.now;
+        rolling.wishes.call_due = false;
+        rolling.wishes.last_call = self.now;
         let mut scene = Scene { now: self.now, network, kinds, robots, table, pathfinder, costs };
         let answers = rolling.planner.plan(&mut scene, &agents);
         self.counters.called(begun.elapsed());
@@ -275,7 +292,7 @@ impl Fleet {
         match answer {
             Answer::Way(moves) => {
                 self.counters.replans += 1;
-                rolling.needs_plan[robot as usize] = false;
+                rolling.wishes.needs_plan[robot as usize] = false;
                 rolling.replace(robot, moves);
             }
             Answer::NoWay => {
@@ -283,7 +300,7 @@ impl Fleet {
                 self.need_plan(robot);
                 return false;
             }
-            Answer::Keep if rolling.needs_plan[robot as usize] => {
+            Answer::Keep if rolling.wishes.needs_plan[robot as usize] => {
                 self.need_plan(robot);
                 return false;
             }
@@ -311,7 +328,7 @@ impl Fleet {
             };
             let (start, heading, end) = state.destination();
             let needs_plan =
-                self.rolling.as_ref().expect("a rolling planner").needs_plan[robot as usize];
+                self.rolling.as_ref().expect("a rolling planner").wishes.needs_plan[robot as usize];
             agents.push(Agent {
                 robot,
                 kind: state.kind,

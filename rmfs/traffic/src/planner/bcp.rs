@@ -6,6 +6,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::reservations::{Interval, Table};
 use crate::search::Move;
 use crate::units::{FOREVER, Us};
@@ -15,7 +17,7 @@ use super::draft::Clash;
 use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
 
 /// The planner and its parameters.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Bcp {
     pub rhythm: Rhythm,
     /// Metres by which a clash makes a waypoint dearer; they count at top speed.
@@ -23,6 +25,7 @@ pub struct Bcp {
     /// Rounds per call.
     pub rounds: u32,
     pub deadlocks: Deadlocks,
+    #[serde(skip)]
     pub table: Table,
 }
 

@@ -8,6 +8,8 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::rc::Rc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::network::NONE;
 use crate::reservations::Table;
 use crate::robot::Held;
@@ -19,7 +21,7 @@ use super::deadlock::Deadlocks;
 use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
 
 /// The planner and its parameters.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Cbs {
     pub rhythm: Rhythm,
     /// Nodes of the constraint tree that may be expanded in a call.
@@ -27,6 +29,7 @@ pub struct Cbs {
     /// Labels that may be looked at for an agent.
     pub labels: u64,
     pub deadlocks: Deadlocks,
+    #[serde(skip)]
     pub table: Table,
 }
 

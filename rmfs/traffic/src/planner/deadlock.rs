@@ -3,6 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::random::Random;
 use crate::search::Move;
 use crate::units::Us;
@@ -10,7 +12,7 @@ use crate::units::Us;
 use super::{Agent, Answer, Scene};
 
 /// Since when agents have been standing where they are, on the way to where.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Deadlocks {
     /// How long a robot stands still until it hops.
     pub patience: Us,

@@ -30,7 +30,7 @@ pub fn to_go(scene: &Scene, agent: &Agent, times: &[u32]) -> u32 {
 /// Fills `table` with what cannot be changed: what agents still drive until they are ready, and all
 /// that other robots hold.
 pub fn block(scene: &Scene, agents: &[Agent], table: &mut Table) {
-    table.clear();
+    table.reset(scene.network.resources);
     let mut ready = vec![FOREVER; scene.robots.len()];
     for agent in agents {
         ready[agent.robot as usize] = agent.ready;

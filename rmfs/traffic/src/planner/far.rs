@@ -6,6 +6,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::network::NONE;
 use crate::search::Move;
 use crate::units::Us;
@@ -15,7 +17,7 @@ use super::draft::Clash;
 use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
 
 /// How a robot gets out of the way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Evasion {
     /// By a way around the waypoint that blocks it.
     Reroute,
@@ -24,7 +26,7 @@ pub enum Evasion {
 }
 
 /// The planner and its parameters.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Far {
     pub rhythm: Rhythm,
     pub evasion: Evasion,
@@ -39,7 +41,7 @@ pub struct Far {
 }
 
 /// What is remembered of a robot from call to call.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Memory {
     goal: u32,
     waits_for: u32,

@@ -17,12 +17,15 @@ mod partial;
 mod pas;
 mod pbs;
 mod pibt;
+mod resumable;
 mod settings;
 mod time_windows;
 mod whca_persistent;
 mod whca_volatile;
 
 use std::fmt::Debug;
+
+use serde::{Deserialize, Serialize};
 
 use crate::costs::Cache;
 use crate::kinematics::Kind;
@@ -32,6 +35,7 @@ use crate::robot::Robot;
 use crate::search::{Move, Pathfinder};
 use crate::units::Us;
 
+pub use resumable::Resumable;
 pub use settings::{Settings, build};
 pub use time_windows::TimeWindows;
 
@@ -65,7 +69,7 @@ pub struct Agent {
 }
 
 /// When a planner is asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Rhythm {
     /// Once for each leg, for one robot at a time.
     PerLeg,
@@ -92,7 +96,7 @@ impl Answer {
 }
 
 /// A method of path planning.
-pub trait Planner: Debug + Send + Sync {
+pub trait Planner: Resumable + Debug + Send + Sync {
     /// When it is asked.
     fn rhythm(&self) -> Rhythm;
 

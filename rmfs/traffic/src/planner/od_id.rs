@@ -7,6 +7,8 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
 
+use serde::{Deserialize, Serialize};
+
 use crate::reservations::Table;
 use crate::robot::Held;
 use crate::search::End;
@@ -17,7 +19,7 @@ use super::partial::Partial;
 use super::{Agent, Answer, Planner, Rhythm, Scene, conflicts, draft};
 
 /// The planner and its parameters.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct OdId {
     pub rhythm: Rhythm,
     pub window: Us,
@@ -31,6 +33,7 @@ pub struct OdId {
     /// Labels that may be looked at for an agent alone.
     pub labels: u64,
     pub deadlocks: Deadlocks,
+    #[serde(skip)]
     pub table: Table,
 }
 

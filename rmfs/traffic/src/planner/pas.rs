@@ -6,6 +6,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::reservations::{Interval, Table};
 use crate::robot::Held;
 use crate::search::Move;
@@ -16,7 +18,7 @@ use super::partial::Partial;
 use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
 
 /// The planner and its parameters.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Pas {
     pub rhythm: Rhythm,
     pub window: Us,
@@ -27,6 +29,7 @@ pub struct Pas {
     /// Decisions that may be taken for each agent of a call, on average.
     pub steps_per_agent: u64,
     pub deadlocks: Deadlocks,
+    #[serde(skip)]
     pub table: Table,
 }
 

@@ -6,6 +6,8 @@
 
 use std::rc::Rc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::reservations::Table;
 use crate::robot::Held;
 use crate::search::{End, Move};
@@ -16,7 +18,7 @@ use super::deadlock::Deadlocks;
 use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
 
 /// The planner and its parameters.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Pbs {
     pub rhythm: Rhythm,
     pub window: Us,
@@ -25,6 +27,7 @@ pub struct Pbs {
     /// Labels that may be looked at for an agent.
     pub labels: u64,
     pub deadlocks: Deadlocks,
+    #[serde(skip)]
     pub table: Table,
 }
 

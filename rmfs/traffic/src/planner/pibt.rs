@@ -10,6 +10,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::reservations::{Interval, Table};
 use crate::units::{FOREVER, Us};
 
@@ -18,7 +20,7 @@ use super::partial::Partial;
 use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
 
 /// The planner and its parameters.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Pibt {
     pub rhythm: Rhythm,
     /// How much longer than the best way the way over a run may take.
@@ -26,6 +28,7 @@ pub struct Pibt {
     /// Runs that a robot tries, the best first.
     pub choices: usize,
     pub deadlocks: Deadlocks,
+    #[serde(skip)]
     pub table: Table,
     /// Since when each robot has wanted to go where.
     pub since: BTreeMap<u32, (u32, Us)>,

@@ -1,5 +1,7 @@
 //! Prioritised planning over continuous time windows: first come, first served, and complete.
 
+use serde::{Deserialize, Serialize};
+
 use crate::network::Network;
 use crate::reservations::Table;
 use crate::search::{End, Guide, Move, Outcome, Pathfinder, Query};
@@ -8,7 +10,7 @@ use crate::units::{FOREVER, Us};
 use super::{Agent, Answer, Planner, Rhythm, Scene};
 
 /// Plans each leg once around the windows that others have reserved.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TimeWindows {
     /// Labels a search may look at before the robot waits until all planned motion is over.
     pub budget: u64,
@@ -23,7 +25,7 @@ type Effort = (Us, u64);
 
 /// Searches with few labels: at once; then from later and later departures, since waiting at the
 /// start is always free and the traffic ahead passes; without success with more labels.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Swift {
     pub first: Effort,
     /// Each search from a later departure.

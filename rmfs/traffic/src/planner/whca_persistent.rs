@@ -5,6 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::reservations::{Interval, Table};
 use crate::robot::Held;
 use crate::search::{End, Move};
@@ -14,13 +16,14 @@ use super::deadlock::Deadlocks;
 use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
 
 /// The planner and its parameters.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WhcaPersistent {
     pub rhythm: Rhythm,
     pub window: Us,
     /// Labels that may be looked at for an agent.
     pub labels: u64,
     pub deadlocks: Deadlocks,
+    #[serde(skip)]
     pub table: Table,
     /// What the ways of earlier calls occupy, by robot.
     pub reserved: BTreeMap<u32, Vec<Held>>,

@@ -6,6 +6,8 @@
 
 use std::cmp::Reverse;
 
+use serde::{Deserialize, Serialize};
+
 use crate::reservations::Table;
 use crate::search::{End, Move};
 use crate::units::Us;
@@ -14,7 +16,7 @@ use super::deadlock::Deadlocks;
 use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
 
 /// The planner and its parameters.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WhcaVolatile {
     pub rhythm: Rhythm,
     pub window: Us,
@@ -27,6 +29,7 @@ pub struct WhcaVolatile {
     /// Labels that may be looked at for an agent.
     pub labels: u64,
     pub deadlocks: Deadlocks,
+    #[serde(skip)]
     pub table: Table,
 }
 

@@ -9,13 +9,13 @@ use std::collections::HashMap;
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 
 use crate::costs;
 use crate::fleet::{CutOff, Event, Fleet, Rest, Shift};
 use crate::kinematics::Kind;
 use crate::network::{Lift, Network, Plan};
-use crate::planner::{Planner, Settings, build};
+use crate::planner::{Planner, Rhythm, Settings, build};
 use crate::robot::Step;
 use crate::units::{Us, from_radians, to_radians};
 
@@ -33,6 +33,16 @@ fn kind_of((acceleration, deceleration, top_speed, full_turn, pod_transfer): Kin
     Kind { acceleration, deceleration, top_speed, full_turn, pod_transfer }
 }
 
+/// The adapter of a planner written in Python.
+fn in_python_with(
+    code: Py<PyAny>,
+    rhythm: Rhythm,
+    network: &Network,
+    fault: &Fault,
+) -> Box<dyn Planner> {
+    Box::new(PlannerInPython::new(code, rhythm, network.resources, Fault::clone(fault)))
+}
+
 fn step_of((code, value): (u8, u32)) -> PyResult<Step> {
     match code {
         0 => Ok(Step::Drive(value)),
@@ -47,7 +57,8 @@ fn step_of((code, value): (u8, u32)) -> PyResult<Step> {
 #[pyclass]
 struct Core {
     fleet: Fleet,
-    /// What a planner written in Python has raised.
+    /// How often a planner written in Python is asked, if there is one, and what it has raised.
+    in_python: Option<Rhythm>,
     fault: Fault,
 }
 
@@ -113,16 +124,35 @@ impl Core {
         let (name, parameters, seed, code) = planner;
         let settings = Settings { name, parameters: parameters.into_iter().collect(), seed };
         let fault = Fault::default();
-        let planner: Result<Box<dyn Planner>, String> = match code {
-            None => build(&settings, &network),
-            Some(code) => settings.rhythm().map(|rhythm| -> Box<dyn Planner> {
-                let fault = Fault::clone(&fault);
-                Box::new(PlannerInPython::new(code, rhythm, network.resources, fault))
-            }),
+        let in_python = code.as_ref().map(|_| settings.rhythm()).transpose();
+        let in_python = in_python.map_err(PyValueError::new_err)?;
+        let planner = match (code, in_python) {
+            (Some(code), Some(rhythm)) => in_python_with(code, rhythm, &network, &fault),
+            _ => build(&settings, &network).map_err(PyValueError::new_err)?,
         };
-        let planner = planner.map_err(PyValueError::new_err)?;
         let fleet = Fleet::new(network, kinds, &robots, planner, budget, cost_bytes, with_trace);
-        fleet.map(|fleet| Self { fleet, fault }).map_err(PyValueError::new_err)
+        fleet.map(|fleet| Self { fleet, in_python, fault }).map_err(PyValueError::new_err)
+    }
+
+    /// An independent copy; a planner written in Python comes as a copy of its own.
+    fn fork(&self, code: Option<Py<PyAny>>) -> Self {
+        let mut fleet = self.fleet.clone();
+        let fault = Fault::default();
+        if let (Some(code), Some(rhythm)) = (code, self.in_python) {
+            fleet.exchange_planner(in_python_with(code, rhythm, &fleet.network, &fault));
+        }
+        Self { fleet, in_python: self.in_python, fault }
+    }
+
+    /// All that moves and all that is remembered of it, but for the network and the settings.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = self.fleet.to_bytes().map_err(PyValueError::new_err)?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Goes on from the bytes of another one, built in the same way.
+    fn restore(&mut self, bytes: &[u8]) -> PyResult<()> {
+        self.fleet.restore(bytes).map_err(PyValueError::new_err)
     }
 
     #[getter]
@@ -238,7 +268,7 @@ impl Core {
 
     /// Wall time of each call of the planner since the last reset, in nanoseconds.
     fn call_times<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        self.fleet.counters.calls.clone().into_pyarray(py).into_any()
+        self.fleet.counters.calls.iter().copied().collect::<Vec<u64>>().into_pyarray(py).into_any()
     }
 
     /// The moves of a robot's plan that have not ended: from, to, heading (radians), start, end and

@@ -10,7 +10,7 @@ use pyo3::exceptions::{PyStopIteration, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
-use crate::planner::{Agent, Answer, Planner, Rhythm, Scene, conflicts, draft};
+use crate::planner::{Agent, Answer, Planner, Resumable, Rhythm, Scene, conflicts, draft};
 use crate::reservations::Table;
 use crate::search::{End, Move};
 use crate::units::{Us, to_radians};
@@ -121,6 +121,23 @@ pub struct PlannerInPython {
 impl PlannerInPython {
     pub fn new(planner: Py<PyAny>, rhythm: Rhythm, resources: usize, fault: Fault) -> Self {
         Self { rhythm, planner, table: Table::new(resources), fault }
+    }
+}
+
+/// What it remembers is the matter of its object in Python, which [`super::Core`] copies and saves.
+impl Resumable for PlannerInPython {
+    fn boxed(&self) -> Box<dyn Planner> {
+        let planner = Python::attach(|py| self.planner.clone_ref(py));
+        let (table, fault) = (self.table.clone(), Arc::clone(&self.fault));
+        Box::new(Self { rhythm: self.rhythm, planner, table, fault })
+    }
+
+    fn remembered(&self) -> Result<Vec<u8>, String> {
+        Ok(Vec::new())
+    }
+
+    fn remember(&mut self, _: &[u8]) -> Result<(), String> {
+        Ok(())
     }
 }
 

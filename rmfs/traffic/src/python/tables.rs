@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::heat::{Heat, Passages};
+use crate::log::Log;
 use crate::network::Network;
 use crate::record::{Row, Totals, Trip};
 use crate::units::{Us, to_radians};
@@ -72,8 +73,9 @@ pub(super) fn edges<'py>(py: Python<'py>, edges: &[(u32, u32, Passages)]) -> Tab
 }
 
 /// Trips finished.
-pub(super) fn trips<'py>(py: Python<'py>, trips: &[Trip]) -> Table<'py> {
-    let columns = Columns::of(py, trips)
+pub(super) fn trips<'py>(py: Python<'py>, trips: &Log<Trip>) -> Table<'py> {
+    let rows: Vec<&Trip> = trips.iter().collect();
+    let columns = Columns::of(py, &rows)
         .column("robot", |trip| trip.robot)?
         .column("kind", |trip| trip.kind as i8)?
         .column("t0_us", |trip| trip.start)?

@@ -64,7 +64,7 @@ const HASTE: Us = 20_000_000;
 const STAY: u32 = 1 << 31;
 
 /// Reusable memory of searches, and what they have cost.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Pathfinder {
     labels: Vec<Label>,
     /// Labels by least total time, then by least time to go.

@@ -1,11 +1,13 @@
 //! What is asked of a search, and what it answers.
 
+use serde::{Deserialize, Serialize};
+
 use crate::costs::Model;
 use crate::kinematics::Kind;
 use crate::units::Us;
 
 /// One piece of a plan, from rest to rest.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Move {
     pub from: u32,
     pub to: u32,
@@ -37,7 +39,7 @@ pub enum End {
 }
 
 /// Of which labels the unhindered times are searched for, before they are looked at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Guide {
     /// Of all.
     Exact,

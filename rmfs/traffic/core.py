@@ -1,0 +1,134 @@
+"""The compiled core of one layout's traffic: built, copied, and saved as bytes."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from rmfs.traffic._core import Core
+from rmfs.traffic.planner import Conversation
+from rmfs.traffic.settings import EXPANSION_BUDGET, PlannerSettings
+
+if TYPE_CHECKING:
+    from typing import Any
+
+    from rmfs.layout.model import Layout
+
+_FORMAT = "rmfs-traffic"
+
+
+class Options(NamedTuple):
+    """How traffic is built; see `rmfs.traffic.Traffic`."""
+
+    record_trace: bool
+    cost_table_bytes: int
+    planner: PlannerSettings
+    slow_shares: tuple[float, ...]
+
+
+def build(layout: Layout, options: Options) -> Core:
+    """Build the core of a layout, at its start."""
+    planner = options.planner
+    return Core(
+        layout.x_m,
+        layout.y_m,
+        layout.tier.astype(np.int16),
+        layout.edge_start.astype(np.uint32),
+        layout.edge_target.astype(np.uint32),
+        layout.is_storage,
+        layout.is_queue,
+        [list(station.queue) for station in layout.stations],
+        [list(elevator.waypoints) for elevator in layout.elevators],
+        [
+            (a, b, _us(seconds))
+            for elevator in layout.elevators
+            for (a, b), seconds in elevator.travel_s.items()
+        ],
+        list(
+            zip(
+                layout.robot_waypoint.tolist(),
+                layout.robot_heading_rad.tolist(),
+                layout.robot_kind.tolist(),
+                strict=True,
+            )
+        ),
+        [
+            (
+                kind.acceleration_m_s2,
+                kind.deceleration_m_s2,
+                kind.top_speed_m_s * share,
+                _us(kind.full_turn_s),
+                _us(kind.pod_transfer_s),
+            )
+            for share in (1.0, *options.slow_shares)
+            for kind in layout.robot_kinds
+        ],
+        (planner.name, planner.parameters, planner.seed, _conversation(planner)),
+        EXPANSION_BUDGET,
+        options.cost_table_bytes,
+        options.record_trace,
+    )
+
+
+def fork(core: Core, options: Options, memo: dict[int, Any]) -> tuple[Core, Options]:
+    """Copy a core in the middle of a run; a planner written in Python is copied deeply."""
+    code = copy.deepcopy(options.planner.code, memo)
+    options = options._replace(planner=options.planner._replace(code=code))
+    return core.fork(_conversation(options.planner)), options
+
+
+def to_bytes(core: Core, options: Options) -> bytes:
+    """Save a core: a line of JSON, a pickled planner if it is written in Python, and the rest."""
+    planner = options.planner
+    code = b"" if planner.code is None else pickle.dumps(planner.code)
+    head = {
+        "format": _FORMAT,
+        "record_trace": options.record_trace,
+        "cost_table_bytes": options.cost_table_bytes,
+        "planner": [planner.name, planner.parameters, planner.seed],
+        "slow_shares": list(options.slow_shares),
+        "code_bytes": len(code),
+    }
+    return json.dumps(head).encode() + b"\n" + code + core.to_bytes()
+
+
+def from_bytes(layout: Layout, saved: bytes) -> tuple[Core, Options]:
+    """Build a core and let it go on from what `to_bytes` has saved.
+
+    Raises
+    ------
+    ValueError
+        If these are not such bytes, or those of another layout or version.
+    """
+    line, _, rest = saved.partition(b"\n")
+    try:
+        head = json.loads(line)
+        known = head["format"] == _FORMAT
+    except (ValueError, KeyError, TypeError):
+        known = False
+    if not known:
+        raise ValueError("these are not the bytes of saved traffic")
+    name, parameters, seed = head["planner"]
+    size = head["code_bytes"]
+    code = pickle.loads(rest[:size]) if size else None
+    options = Options(
+        head["record_trace"],
+        head["cost_table_bytes"],
+        PlannerSettings(name, parameters, seed, code),
+        tuple(head["slow_shares"]),
+    )
+    core = build(layout, options)
+    core.restore(rest[size:])
+    return core, options
+
+
+def _conversation(planner: PlannerSettings) -> Conversation | None:
+    return None if planner.code is None else Conversation(planner.code)
+
+
+def _us(seconds: float) -> int:
+    return round(seconds * 1e6)
