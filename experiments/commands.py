@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from rmfs.experiments.design.planning import Plan
+    from rmfs.experiments.figures.pareto import Goal
     from rmfs.experiments.store import Store
     from rmfs.experiments.tables import Table
 
@@ -26,6 +27,9 @@ app = typer.Typer(help="Experiments: many arms, many seeds, one table.", no_args
 RESULTS = Path("results")
 FAILED = 1
 """Exit code where runs failed."""
+
+INCOMPLETE = 3
+"""Exit code where a table or picture shows an experiment that lacks runs."""
 
 Design = Annotated[
     str, typer.Argument(metavar="DESIGN", help="A design file, or the name of a shipped design.")
@@ -45,6 +49,16 @@ Columns = Annotated[
     typer.Option("--column", "-c", help="Column of the footprint; may be repeated."),
 ]
 Confidence = Annotated[float, typer.Option(min=0.5, max=0.999, help="Of the intervals.")]
+Interactions = Annotated[
+    bool,
+    typer.Option("--interactions/--no-interactions", help="Show interactions of two factors, too."),
+]
+Lacking = Annotated[
+    bool,
+    typer.Option(
+        "--allow-incomplete", help="Exit with code 0 although runs are lacking; the note stays."
+    ),
+]
 Bootstrap = Annotated[
     bool, typer.Option("--bootstrap", help="BCa bootstrap intervals instead of Student's t.")
 ]
@@ -59,6 +73,7 @@ def plan(
     pilot: Annotated[bool, typer.Option(help="Try out short runs to estimate the time.")] = True,
 ) -> None:
     """Check a design: number of runs, time, and everything that is wrong with it."""
+    from rmfs.experiments.complete import may_grow
     from rmfs.experiments.design.stages import schedule
     from rmfs.experiments.results import assigned, failed_pairs
     from rmfs.experiments.running import cores
@@ -71,7 +86,7 @@ def plan(
     finished = store.finished(made.design.keep)
     keys = _keys(made, runs.runs)
     left = sum(key not in finished for key in keys)
-    at_least = "" if runs.complete or not _is_open(made) else " at least (stages may add some)"
+    at_least = "" if runs.complete or not may_grow(made) else " at least (stages may add some)"
     typer.echo(f"{made.design.name}: {made.design.description}".rstrip(": "))
     typer.echo(f"  hash     {made.hash}")
     for factor, short in made.short_names.items():
@@ -174,6 +189,7 @@ def table(
     anova: Annotated[
         bool, typer.Option("--anova", help="Analysis of variance of the factors instead.")
     ] = False,
+    interactions: Interactions = True,
     confidence: Confidence = 0.95,
     bootstrap: Bootstrap = False,
     file: Annotated[
@@ -184,63 +200,85 @@ def table(
         Path | None,
         typer.Option(help="Write the rows themselves (reproducible columns) to a .csv file."),
     ] = None,
+    allow_incomplete: Lacking = False,
 ) -> None:
-    """Show means with confidence intervals, paired differences, or an analysis of variance."""
+    """Show means with confidence intervals, paired differences, or an analysis of variance.
+
+    Exit code 3 if runs of the design are lacking: a note on the table says how many.
+    """
     from rmfs.experiments import tables
-    from rmfs.experiments.provenance import write
     from rmfs.experiments.results import to_csv
 
-    made, frame = _results(design, out)
+    made, frame, note = _results(design, out)
     chosen = list(columns or tables.COLUMNS)
     _require_columns(frame, chosen)
+    if anova:
+        shown = _anovas(made, frame, chosen, interactions=interactions)
+    else:
+        shown = [_table(made, frame, chosen, baseline, confidence, bootstrap=bootstrap)]
+    if file is not None and len(shown) > 1:
+        raise InputError("--anova: one column for one file")
+    shown = [one.noted(note) for one in shown]
     if rows is not None:
         to_csv(frame, rows)
         typer.echo(f"{rows}: {len(frame)} rows written")
-    shown = _tables(made, frame, chosen, baseline, confidence, anova=anova, bootstrap=bootstrap)
-    if file is None:
-        if rows is None:
-            console = open_console()
-            for one in shown:
-                console.print(one.rich())
-        return
-    if len(shown) > 1:
-        raise InputError("--anova: one column for one file")
-    shown[0].write(file)
+    if file is not None:
+        _write_table(shown[0], file, made, frame, chosen)
+    elif rows is None:
+        console = open_console()
+        for one in shown:
+            console.print(one.rich())
+    _tell_lacking(note, allowed=allow_incomplete)
+
+
+def _write_table(
+    shown: Table, file: Path, made: Plan, frame: pd.DataFrame, columns: list[str]
+) -> None:
+    from rmfs.experiments.provenance import write
+
+    shown.write(file)
     beside = write(
         file,
         frame,
         design=made.design.name,
         design_hash=made.hash,
-        columns=chosen,
-        caption=shown[0].caption,
+        columns=columns,
+        caption=shown.caption,
     )
     typer.echo(f"{file}: written, with {beside.name}")
 
 
-def _tables(
+def _anovas(
+    made: Plan, frame: pd.DataFrame, columns: list[str], *, interactions: bool
+) -> list[Table]:
+    from rmfs.experiments import tables
+    from rmfs.experiments.statistics import anova
+
+    named, factors = made.short_names, made.factors
+    return [
+        tables.effects(
+            anova(frame, column, factors, interactions=interactions, names=named), column
+        )
+        for column in columns
+    ]
+
+
+def _table(
     made: Plan,
     frame: pd.DataFrame,
     columns: list[str],
     baseline: str | None,
     confidence: float,
     *,
-    anova: bool,
     bootstrap: bool,
-) -> list[Table]:
+) -> Table:
     from rmfs.experiments import tables
-    from rmfs.experiments.statistics import anova as analysis
 
-    if anova:
-        named = made.short_names
-        return [
-            tables.effects(analysis(frame, column, made.factors).rename(index=named), column)
-            for column in columns
-        ]
     method: Any = "bootstrap" if bootstrap else "t"
     if baseline is not None:
         made.arm(baseline)
-        return [tables.differences(frame, columns, baseline, confidence=confidence, method=method)]
-    return [tables.means(frame, columns, confidence=confidence, method=method)]
+        return tables.differences(frame, columns, baseline, confidence=confidence, method=method)
+    return tables.means(frame, columns, confidence=confidence, method=method)
 
 
 @app.command()
@@ -250,30 +288,49 @@ def plot(
     kind: Annotated[
         str,
         typer.Option(
-            help="intervals (each seed of each arm), effects (of factors), pareto (two columns), "
-            "progression (over time; the design must keep series)."
+            help="intervals (each seed of each arm), effects (of factors, and of pairs of them), "
+            "interaction (of pairs of factors), pareto (two columns), progression (over time; the "
+            "design must keep series)."
         ),
     ] = "intervals",
     columns: Columns = None,
+    factors: Annotated[
+        list[str] | None,
+        typer.Option("--factor", help="interaction: a factor, at least two. [default: all]"),
+    ] = None,
+    interactions: Interactions = True,
+    goals: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--goal",
+            metavar="COLUMN=more|less",
+            help="pareto: what is better of a column. [default: as the data dictionary says]",
+        ),
+    ] = None,
     confidence: Confidence = 0.95,
     file: Annotated[
         Path | None,
         typer.Option("--file", "-f", help="A .png, .pdf or .svg file. [default: in the folder]"),
     ] = None,
+    allow_incomplete: Lacking = False,
 ) -> None:
-    """Draw a picture of the results."""
-    from rmfs.experiments.plotting import KINDS, draw
+    """Draw a picture of the results.
+
+    Exit code 3 if runs of the design are lacking: a note on the picture says how many.
+    """
+    from rmfs.experiments.plotting import KINDS, Wish, draw
     from rmfs.experiments.provenance import write
 
     if kind not in KINDS:
         raise InputError(f"--kind {kind}: no such picture; valid: {', '.join(KINDS)}")
-    made, frame = _results(design, out)
+    made, frame, note = _results(design, out)
     chosen = list(columns or KINDS[kind])
     if kind != "progression":
         _require_columns(frame, chosen)
     folder = _store(made, out).folder
     target = file if file is not None else folder / f"{kind}-{'-'.join(chosen)}.png"
-    draw(kind, made, frame, folder, chosen, target, confidence=confidence)
+    wish = Wish(confidence, interactions, tuple(factors or ()), _goals(goals or []), note)
+    draw(kind, made, frame, folder, chosen, target, wish)
     beside = write(
         target,
         frame,
@@ -282,8 +339,29 @@ def plot(
         columns=chosen,
         kind=kind,
         confidence=confidence,
+        **({"note": note} if note else {}),
     )
     typer.echo(f"{target}: written, with {beside.name}")
+    _tell_lacking(note, allowed=allow_incomplete)
+
+
+def _goals(given: list[str]) -> dict[str, Goal]:
+    """Read the goals of columns."""
+    found: dict[str, Goal] = {}
+    for text in given:
+        column, _, goal = text.partition("=")
+        if goal not in ("more", "less"):
+            raise InputError(f"--goal {text}: expected COLUMN=more or COLUMN=less")
+        found[column] = "more" if goal == "more" else "less"
+    return found
+
+
+def _tell_lacking(note: str, *, allowed: bool) -> None:
+    """Say on the terminal what an experiment lacks, and end with code 3 unless that is allowed."""
+    if note:
+        typer.echo(f"rmfs: {note}", err=True)
+        if not allowed:
+            raise typer.Exit(INCOMPLETE)
 
 
 def _planned(design: str) -> Plan:
@@ -306,8 +384,9 @@ def _store(made: Plan, out: Path | None) -> Store:
     return Store(out if out is not None else RESULTS / made.design.name)
 
 
-def _results(design: str, out: Path | None) -> tuple[Plan, pd.DataFrame]:
-    """Return the plan and the finished rows of an experiment."""
+def _results(design: str, out: Path | None) -> tuple[Plan, pd.DataFrame, str]:
+    """Return the plan and the finished rows of an experiment, and what it lacks."""
+    from rmfs.experiments.complete import lacking
     from rmfs.experiments.results import assigned
 
     made = _planned(design)
@@ -316,17 +395,12 @@ def _results(design: str, out: Path | None) -> tuple[Plan, pd.DataFrame]:
     frame = assigned(made, store)
     if frame.empty:
         raise InputError(f"{store.folder}: no finished runs yet; rmfs experiment run {design}")
-    return made, frame
+    return made, frame, lacking(made, store)
 
 
 def _keys(made: Plan, runs: Any) -> list[str]:
     arms = {arm.name: arm for arm in made.arms}
     return [made.job(arms[run.arm], run.replication).key for run in runs]
-
-
-def _is_open(made: Plan) -> bool:
-    """Whether stages decide on the way what is run."""
-    return any(stage.until or stage.select or stage.arms for stage in made.design.stages)
 
 
 def _require_columns(frame: pd.DataFrame, columns: list[str]) -> None:

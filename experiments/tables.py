@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import floor, isfinite, log10
 from typing import TYPE_CHECKING, Any, Literal, cast
 
@@ -53,6 +53,10 @@ class Table:
     frame: pd.DataFrame
     decimals: Mapping[tuple[str, str], int]
     caption: str
+
+    def noted(self, note: str) -> Table:
+        """Return the table with a note at the end of its caption; as it is if there is none."""
+        return replace(self, caption=f"{self.caption} Note: {note}.") if note else self
 
     def to(self, form: Format) -> str:
         """Return the table as text in one of the formats.
@@ -260,9 +264,11 @@ def effects(found: pd.DataFrame, column: str) -> Table:
     shown = [digits(made["sum_sq"] / 1000, made["sum_sq"]), 0, 2, 4, 3, 3, 3, 3, 3]
     made.columns = pd.MultiIndex.from_tuples([(name, "") for name in chosen])
     decimals = dict(zip(_columns(made), shown, strict=True))
+    told = found.attrs.get("interactions", "")
+    how = f"type II sums of squares; {told}" if told else "type II sums of squares"
     caption = (
-        f"Analysis of variance of {column} (type II sums of squares); low and high are the ends of "
-        "the 95% confidence interval of partial eta squared."
+        f"Analysis of variance of {column} ({how}); low and high are the ends of the 95% "
+        "confidence interval of partial eta squared."
     )
     return Table(made, decimals, caption)
 

@@ -12,6 +12,7 @@ from rmfs import config
 from rmfs.config import Model, Table
 from rmfs.errors import InputError
 from rmfs.measure.dictionary import FOOTPRINT, REAL, TABLES
+from rmfs.measure.goals import better_of
 
 SHIPPED = Path(__file__).resolve().parent.parent / "designs"
 """The folder of shipped designs."""
@@ -32,6 +33,16 @@ def _measure(name: str) -> str:
     return name
 
 
+def _goal(column: str, stated: Goal | None) -> Goal:
+    """Return the goal stated for a column, else that of the data dictionary."""
+    if stated is not None:
+        return stated
+    better = better_of(column)
+    if better == "neither":
+        raise ValueError(f'neither more nor less of {column} is better: add goal = "max" or "min"')
+    return "max" if better == "more" else "min"
+
+
 Measure = Annotated[str, pydantic.AfterValidator(_measure)]
 
 
@@ -46,7 +57,16 @@ class Best(Strict):
 
     best: int = Field(ge=1, description="how many arms")
     by: Measure = Field(description="column of the footprint whose means are compared")
-    goal: Goal = "max"
+    goal: Goal | None = Field(None, description="default: whether more or less of it is better")
+
+    @pydantic.model_validator(mode="after")
+    def _known_goal(self) -> Best:
+        self.better()
+        return self
+
+    def better(self) -> Goal:
+        """Return the goal."""
+        return _goal(self.by, self.goal)
 
 
 class Until(Strict):
@@ -64,12 +84,21 @@ class Select(Strict):
 
     procedure: Literal["kim-nelson"] = "kim-nelson"
     column: Measure
-    goal: Goal = "max"
+    goal: Goal | None = Field(None, description="default: whether more or less of it is better")
     indifference: float = Field(
         gt=0, description="smallest difference worth detecting, in units of the column"
     )
     error: Share = Field(0.05, description="probability of a wrong choice, at most")
     max_seeds: int = Field(200, ge=2, description="where the procedure stops in any case")
+
+    @pydantic.model_validator(mode="after")
+    def _known_goal(self) -> Select:
+        self.better()
+        return self
+
+    def better(self) -> Goal:
+        """Return the goal."""
+        return _goal(self.column, self.goal)
 
 
 class Stage(Strict):

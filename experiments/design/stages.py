@@ -185,7 +185,7 @@ def _select(
         first=len(seeds),
         indifference=rule.indifference,
         error=rule.error,
-        goal=rule.goal,
+        goal=rule.better(),
         most=rule.max_seeds,
     )
     for arm in sound:
@@ -207,7 +207,7 @@ def _best(rule: Best, arms: list[str], seeds: list[int], known: _Known) -> list[
         arm: pd.Series(known.values(arm, seeds, rule.by), dtype=float).mean() for arm in arms
     }
     order = pd.Series(means).sort_values(
-        ascending=rule.goal == "min", kind="stable", na_position="last"
+        ascending=rule.better() == "min", kind="stable", na_position="last"
     )
     chosen = set(order.dropna().index[: rule.best])
     return [arm for arm in arms if arm in chosen]

@@ -1,6 +1,7 @@
 """Figures: one function per figure, each draws into the axes it is given."""
 
 from rmfs.experiments.figures.effects import effects as effects
+from rmfs.experiments.figures.interaction import interaction as interaction
 from rmfs.experiments.figures.intervals import intervals as intervals
 from rmfs.experiments.figures.pareto import front as front
 from rmfs.experiments.figures.pareto import pareto as pareto

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.experiments.figures.style import COLOURS, axis_label
+from rmfs.experiments.figures.style import COLOURS, axis_label, levels
 from rmfs.experiments.statistics import interval
 
 if TYPE_CHECKING:
@@ -36,18 +36,16 @@ def effects(
         What the factors are called. Default as in the frame.
     """
     for number, (factor, ax) in enumerate(zip(factors, axes, strict=True)):
-        levels = list(dict.fromkeys(frame[factor]))
+        rows = levels(frame, factor)
         found = [
-            interval(
-                frame[frame[factor] == level].groupby("replication")[column].mean(), confidence
-            )
-            for level in levels
+            interval(mine.groupby("replication")[column].mean(), confidence)
+            for mine in rows.values()
         ]
         means = [one.mean for one in found]
         halves = [0.0 if one.half_width != one.half_width else one.half_width for one in found]
-        ax.errorbar(range(len(levels)), means, yerr=halves, fmt="o-", color=COLOURS[0], capsize=3)
+        ax.errorbar(range(len(rows)), means, yerr=halves, fmt="o-", color=COLOURS[0], capsize=3)
         ax.axhline(float(frame[column].mean()), color="0.6", linewidth=0.8, zorder=0)
-        ax.set_xticks(range(len(levels)), [str(level) for level in levels], rotation=45, ha="right")
-        ax.set_xlim(-0.5, len(levels) - 0.5)
+        ax.set_xticks(range(len(rows)), list(rows), rotation=45, ha="right")
+        ax.set_xlim(-0.5, len(rows) - 0.5)
         ax.set_title(names[number] if names is not None else factor, fontsize=9)
     axes[0].set_ylabel(axis_label(column))

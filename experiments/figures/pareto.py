@@ -6,18 +6,23 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from rmfs.errors import InputError
 from rmfs.experiments.figures.style import COLOURS, axis_label
 from rmfs.experiments.statistics import per_arm
+from rmfs.measure.goals import better_of
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-Goal = Literal["max", "min"]
+Goal = Literal["more", "less"]
+
+ARROWS = {"more": ("→", "↑"), "less": ("←", "↓")}
+"""Where the better side of an axis is: of x and of y."""
 
 
-def front(x: pd.Series, y: pd.Series, x_goal: Goal = "min", y_goal: Goal = "max") -> list[str]:
+def front(x: pd.Series, y: pd.Series, x_goal: Goal, y_goal: Goal) -> list[str]:
     """Return the arms that no other one dominates, in the order of x.
 
     An arm dominates another if it is at least as good in both goals and better in one.
@@ -27,8 +32,8 @@ def front(x: pd.Series, y: pd.Series, x_goal: Goal = "min", y_goal: Goal = "max"
     x, y
         Means, indexed by arm.
     """
-    a = x.to_numpy(float) * (1 if x_goal == "max" else -1)
-    b = y.reindex(x.index).to_numpy(float) * (1 if y_goal == "max" else -1)
+    a = x.to_numpy(float) * (1 if x_goal == "more" else -1)
+    b = y.reindex(x.index).to_numpy(float) * (1 if y_goal == "more" else -1)
     no_worse = (a[:, None] >= a[None, :]) & (b[:, None] >= b[None, :])
     better = (a[:, None] > a[None, :]) | (b[:, None] > b[None, :])
     beaten = (no_worse & better).any(axis=0)
@@ -42,17 +47,28 @@ def pareto(
     y: str,
     ax: Axes,
     *,
-    x_goal: Goal = "min",
-    y_goal: Goal = "max",
+    x_goal: Goal | None = None,
+    y_goal: Goal | None = None,
     confidence: float = 0.95,
     by: str = "arm",
 ) -> list[str]:
     """Draw means of two columns with their intervals, and the front of the best compromises.
 
+    Parameters
+    ----------
+    x_goal, y_goal
+        Whether more or less of a column is better. Default as the data dictionary says.
+
     Returns
     -------
     The arms on the front.
+
+    Raises
+    ------
+    InputError
+        If neither more nor less of a column is better and no goal is given.
     """
+    goals = (goal_of(x, x_goal), goal_of(y, y_goal))
     across = per_arm(frame, x, confidence=confidence, by=by)
     upward = per_arm(frame, y, confidence=confidence, by=by)
     ax.errorbar(
@@ -66,7 +82,7 @@ def pareto(
         capsize=2,
         linewidth=1,
     )
-    best = front(across["mean"], upward["mean"], x_goal, y_goal)
+    best = front(across["mean"], upward["mean"], *goals)
     line = np.array([[across["mean"][arm], upward["mean"][arm]] for arm in best])
     ax.plot(line[:, 0], line[:, 1], "o-", color=COLOURS[1], markersize=5, zorder=3)
     for (x_mean, y_mean), arms in _at_same_place(best, line).items():
@@ -79,9 +95,28 @@ def pareto(
             fontsize=7,
         )
     ax.margins(x=0.15, y=0.1)
-    ax.set_xlabel(axis_label(x))
-    ax.set_ylabel(axis_label(y))
+    ax.set_xlabel(f"{axis_label(x)}, {goals[0]} is better {ARROWS[goals[0]][0]}")
+    ax.set_ylabel(f"{axis_label(y)}, {goals[1]} is better {ARROWS[goals[1]][1]}")
     return best
+
+
+def goal_of(column: str, stated: Goal | None = None) -> Goal:
+    """Return the goal stated for a column, else that of the data dictionary.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    if stated is not None:
+        return stated
+    better = better_of(column)
+    if better == "neither":
+        raise InputError(
+            f"column {column}: neither more nor less of it is better in itself; say which: "
+            f"--goal {column}=more or --goal {column}=less"
+        )
+    return better
 
 
 def _at_same_place(

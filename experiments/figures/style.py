@@ -5,6 +5,8 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+import pandas as pd
+
 from rmfs.errors import InputError
 from rmfs.files import replacing
 from rmfs.measure.dictionary import TABLES
@@ -44,8 +46,19 @@ def _words(column: str) -> str:
     return column.replace("_", " ")
 
 
+def levels(frame: pd.DataFrame, factor: str) -> dict[str, pd.DataFrame]:
+    """Return the rows of each level of a factor, in the order of their first appearance.
+
+    Where a parameter stays as it is in the file, the level is called "none".
+    """
+    text = frame[factor].astype(object).map(lambda level: "none" if pd.isna(level) else str(level))
+    return {str(level): frame[text == level] for level in text.unique()}
+
+
 @contextmanager
-def saving(path: Path, width: float = 7.0, height: float = 4.3, **layout: Any) -> Iterator[Figure]:
+def saving(
+    path: Path, width: float = 7.0, height: float = 4.3, *, note: str = "", **layout: Any
+) -> Iterator[Figure]:
     """Yield a figure and save it.
 
     Parameters
@@ -54,6 +67,8 @@ def saving(path: Path, width: float = 7.0, height: float = 4.3, **layout: Any) -
         A .png, .pdf or .svg file; the same content gives the same bytes.
     width, height
         Inches.
+    note
+        A line below everything. Default none.
 
     Raises
     ------
@@ -72,6 +87,8 @@ def saving(path: Path, width: float = 7.0, height: float = 4.3, **layout: Any) -
         figure = plt.figure(figsize=(width, height), layout="constrained", **layout)
         try:
             yield figure
+            if note:
+                figure.supxlabel(note, fontsize=8, color=COLOURS[1])
             # no date in the file: it would be another one each time
             metadata = {"png": {}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}[form]
             with replacing(path) as temporary:

@@ -72,7 +72,7 @@ def added(frame: pd.DataFrame, rule: str = RULE, column: str = UNITS) -> Table:
 def unbeaten(frame: pd.DataFrame, column: str = UNITS) -> Table:
     """Return the arms that no other arm beats in robots or units, the smallest fleet first."""
     robots = per_arm(frame, "robots")["mean"]
-    best = front(robots, per_arm(frame, column)["mean"])
+    best = front(robots, per_arm(frame, column)["mean"], "less", "more")
     chosen = frame.set_index("arm").loc[best].reset_index()
     table = means(chosen, ["robots", *(c for c in COLUMNS if c in frame)])
     caption = f"Arms that no other one beats, with fewer robots or more {column}. {table.caption}"

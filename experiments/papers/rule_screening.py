@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from rmfs.experiments.papers.study import command, done, parser
 from rmfs.experiments.plotting import draw
 from rmfs.experiments.statistics import anova, per_arm
+from rmfs.experiments.statistics.anova import POOLED, RESIDUAL, SEEDS
 from rmfs.experiments.tables import effects, means
 
 if TYPE_CHECKING:
@@ -26,7 +27,8 @@ BEST = 10
 
 def strongest(found: pd.DataFrame) -> str:
     """Return the factor that explains most, or say that none can be told from noise."""
-    factors = found.drop(index=[name for name in ("seeds", "residual") if name in found.index])
+    others = [name for name in (SEEDS, POOLED, RESIDUAL) if name in found.index]
+    factors = found.drop(index=others)
     first = factors.index[0]
     return str(first) if factors["p"][first] < 0.05 else "none"
 
@@ -35,7 +37,7 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     study = done(parser("rule-screening", __doc__).parse_args(arguments))
     plan, frame = study.plan, study.frame
-    found = anova(frame, COLUMN, plan.factors).rename(index=plan.short_names)
+    found = anova(frame, COLUMN, plan.factors, names=plan.short_names)
     study.publish(effects(found, COLUMN), "rule-screening-anova", [COLUMN])
     order = per_arm(frame, COLUMN)["mean"].sort_values(ascending=False, kind="stable").index
     best = frame.set_index("arm").loc[list(order[:BEST])].reset_index()

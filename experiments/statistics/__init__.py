@@ -4,6 +4,7 @@ Every function takes plain numbers or the frame that `experiments.load` returns.
 """
 
 from rmfs.experiments.statistics.anova import anova as anova
+from rmfs.experiments.statistics.anova import tell_apart as tell_apart
 from rmfs.experiments.statistics.intervals import Interval as Interval
 from rmfs.experiments.statistics.intervals import interval as interval
 from rmfs.experiments.statistics.intervals import per_arm as per_arm

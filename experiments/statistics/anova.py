@@ -1,19 +1,40 @@
-"""Analysis of variance: how much of the spread of a measure each factor explains."""
+"""Analysis of variance: how much of the spread of a measure each factor explains.
+
+Every effect is a comparison of two linear models by least squares, with the rank of each as its
+number of parameters: so combinations of levels that are left out cost degrees of freedom, and
+effects that the design cannot tell apart are noticed.
+"""
 
 from __future__ import annotations
 
 import itertools
+from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pandas as pd
-from scipy import optimize, stats
+from scipy import linalg, optimize, stats
 
 from rmfs.errors import InputError
 from rmfs.experiments.statistics.intervals import require
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+SEEDS, RESIDUAL, POOLED = "seeds", "residual", "interactions"
+"""Rows that are no effect of a factor or a pair of factors."""
+
+CROSS = " x "
+"""Between the names of two factors in the name of their interaction."""
+
+NEGLIGIBLE = 1e-9
+"""Share of a column, beyond the others, that is taken for rounding."""
+
+Effect = tuple[int, ...]
+"""Numbers of the factors that an effect is of."""
 
 
 def anova(
@@ -21,26 +42,36 @@ def anova(
     column: str,
     factors: Sequence[str],
     *,
-    interactions: bool = False,
+    interactions: bool = True,
     block: str | None = "replication",
     confidence: float = 0.95,
+    names: Mapping[str, str] | None = None,
 ) -> pd.DataFrame:
     """Return the analysis-of-variance table of categorical factors.
 
-    Sums of squares are of type II: each main effect after all other main effects, so that factors
-    of an unbalanced design (with excluded combinations) do not take credit for each other.
+    Sums of squares are of type II: each effect after all others that do not contain it, so that
+    factors of an unbalanced design (with excluded combinations) do not take credit for each other.
+
+    Interactions of two factors have a row each where the runs can tell all effects apart and at
+    least one degree of freedom is left for the residual. Where they cannot (a fraction of a grid),
+    all that differs between combinations of levels beyond the main effects is one row,
+    `interactions`, and the residual is the spread of equal combinations over the seeds. Where no
+    combination has been run twice, interactions are part of the residual. What was done is told
+    in `attrs["interactions"]` of the table.
 
     Parameters
     ----------
     factors
         Columns; factors with one level are left out.
     interactions
-        Whether to add all pairs of factors. Default not.
+        Whether to take interactions out of the residual. Default yes.
     block
         Column of the seeds, whose share of the spread is taken out of the residual (with common
         random numbers). Default `replication`.
     confidence
         Of the intervals of `partial_eta_sq`. Default 0.95.
+    names
+        What the table calls the factors. Default as in the frame.
 
     Returns
     -------
@@ -52,63 +83,232 @@ def anova(
     Raises
     ------
     InputError
-        If no factor varies, or there are too few runs for the model.
+        If no factor varies, there are too few runs for the model, or the main effects of two
+        factors are the same.
     """
-    from rmfs.experiments.extras import statsmodels
-
     require(frame, column, *factors)
-    varying = [factor for factor in factors if len(frame[factor].unique()) > 1]
+    known = frame[frame[column].notna()]
+    varying = varying_factors(known, factors)
     if not varying:
         raise InputError("analysis of variance: no factor has more than one level")
-    blocked = block is not None and block in frame and len(frame[block].unique()) > 1
-    data, terms = _data(frame, column, varying, block if blocked else None, interactions)
-    formula = "y ~ " + " + ".join(f"C({term})".replace(":", "):C(") for term in terms)
-    model = statsmodels("formula.api").ols(formula, data).fit()
-    if model.df_resid < 1:
-        raise InputError(
-            f"analysis of variance: {len(data)} runs are too few for {len(terms)} effects"
+    blocked = block is not None and block in known and len(known[block].unique()) > 1
+    mains, pairs = _effects(len(varying))
+    data = _Data(
+        known[column].to_numpy(dtype=float),
+        [_coded(known[factor]) for factor in varying],
+        _coded(known[block]) if blocked else None,
+        [*mains, *pairs],
+    )
+    called = [(names or {}).get(factor, factor) for factor in varying]
+    made, told = _table(data, called, mains, pairs if interactions else [])
+    found = _with_sizes(made, confidence)
+    found.attrs["interactions"] = told
+    return found
+
+
+def varying_factors(frame: pd.DataFrame, factors: Sequence[str]) -> list[str]:
+    """Return the factors that have more than one level in these runs."""
+    return [factor for factor in factors if len(frame[factor].unique()) > 1]
+
+
+def tell_apart(frame: pd.DataFrame, factors: Sequence[str]) -> bool:
+    """Whether the runs tell all main effects and interactions of two factors apart.
+
+    Parameters
+    ----------
+    factors
+        Columns; factors with one level are left out.
+    """
+    codes = [_coded(frame[factor]) for factor in varying_factors(frame, factors)]
+    mains, pairs = _effects(len(codes))
+    data = _Data(np.zeros(len(frame)), codes, None, [*mains, *pairs])
+    return bool(pairs) and _told_apart(data, mains, pairs)
+
+
+def _effects(factors: int) -> tuple[list[Effect], list[Effect]]:
+    """Return all main effects, and all pairs."""
+    numbers = range(factors)
+    return [(number,) for number in numbers], list(itertools.combinations(numbers, 2))
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Residual sum of squares and parameters of a linear model."""
+
+    rest: float
+    rank: int
+
+
+class _Data:
+    """Values, factors and blocks of an experiment, to which models are fitted.
+
+    Parameters
+    ----------
+    y
+        A value per run.
+    factors
+        Per factor the columns that tell its levels from the first one.
+    block
+        The same of the seeds.
+    effects
+        All that models may hold.
+    """
+
+    def __init__(
+        self,
+        y: NDArray[np.float64],
+        factors: list[NDArray[np.float64]],
+        block: NDArray[np.float64] | None,
+        effects: Sequence[Effect],
+    ) -> None:
+        self.y, self.factors, self.block = y, factors, block
+        self.runs = len(y)
+        parts = {effect: self._columns(effect) for effect in effects}
+        columns = [np.ones((self.runs, 1)), *parts.values()]
+        if block is not None:
+            columns.append(block)
+        ends = np.cumsum([part.shape[1] for part in columns])
+        places = [
+            np.arange(end - part.shape[1], end) for end, part in zip(ends, columns, strict=True)
+        ]
+        self._constant = places[0]
+        self._seeds = places[-1] if block is not None else places[0][:0]
+        self._places = dict(zip(effects, places[1:], strict=False))
+        # all models are columns of one matrix: reduced to a triangle once, they are small
+        basis, triangle = linalg.qr(np.hstack(columns), mode="economic")
+        self._triangle = np.asarray(triangle, dtype=np.float64)
+        about = y - y.mean()
+        self._turned = basis.T @ about
+        outside = about - basis @ self._turned
+        self._outside = float(outside @ outside)
+
+    def fit(self, effects: Sequence[Effect], *, seeds: bool = True) -> _Fit:
+        """Fit the model of these effects, and of the seeds if there are any."""
+        chosen = [self._constant, *(self._places[effect] for effect in effects)]
+        if seeds:
+            chosen.append(self._seeds)
+        found = _fitted(self._triangle[:, np.concatenate(chosen)], self._turned)
+        return _Fit(found.rest + self._outside, found.rank)
+
+    def fit_combinations(self) -> _Fit:
+        """Fit a mean for every combination of levels, beside the seeds."""
+        _, cell, count = np.unique(
+            np.hstack(self.factors), axis=0, return_inverse=True, return_counts=True
         )
-    raw = statsmodels("stats.anova").anova_lm(model, typ=2)
-    raw.index = pd.Index([*terms.values(), "residual"], name="effect")
-    return _with_sizes(raw, "seeds" if blocked else None, confidence)
+        cell = cell.ravel()
+
+        def within(values: NDArray[np.float64]) -> NDArray[np.float64]:
+            sums = np.zeros((len(count), values.shape[1]))
+            np.add.at(sums, cell, values)
+            return np.asarray(values - (sums / count[:, None])[cell])
+
+        y = within(self.y[:, None])[:, 0]
+        if self.block is None:
+            return _Fit(float(y @ y), len(count))
+        found = _fitted(within(self.block), y)
+        return _Fit(found.rest, found.rank + len(count))
+
+    def _columns(self, effect: Effect) -> NDArray[np.float64]:
+        made = self.factors[effect[0]]
+        for factor in effect[1:]:
+            made = (made[:, :, None] * self.factors[factor][:, None, :]).reshape(self.runs, -1)
+        return made
 
 
-def _data(
-    frame: pd.DataFrame, column: str, factors: Sequence[str], block: str | None, interactions: bool
-) -> tuple[pd.DataFrame, dict[str, str]]:
-    """Return the data under names that a formula can hold, and name the terms."""
-    safe = {factor: f"f{number}" for number, factor in enumerate(factors)}
-    data = pd.DataFrame({"y": frame[column].astype(float)})
-    for factor, name in safe.items():
-        # a missing level is a level: the parameter as it is in the file
-        data[name] = frame[factor].map(lambda level: "" if level is None else str(level))
-    terms = {name: factor for factor, name in safe.items()}
-    if interactions:
-        terms |= {
-            f"{safe[one]}:{safe[two]}": f"{one} x {two}"
-            for one, two in itertools.combinations(factors, 2)
-        }
-    if block is not None:
-        data["block"] = frame[block].astype(str)
-        terms["block"] = "seeds"
-    return data.dropna(), terms
+def _fitted(model: NDArray[np.float64], y: NDArray[np.float64]) -> _Fit:
+    """Return what a model leaves of y; a column that says nothing new is no parameter."""
+    basis, triangle, _ = linalg.qr(model, mode="economic", pivoting=True)
+    size = np.abs(np.diag(triangle))
+    basis = basis[:, size > NEGLIGIBLE * max(1.0, size[0])]
+    rest = y - basis @ (basis.T @ y)
+    return _Fit(float(rest @ rest), basis.shape[1])
 
 
-def _with_sizes(raw: pd.DataFrame, seeds: str | None, confidence: float) -> pd.DataFrame:
-    made = raw.rename(columns={"F": "f", "PR(>F)": "p"})[["sum_sq", "df", "f", "p"]]
-    rest, rest_df = float(made["sum_sq"]["residual"]), float(made["df"]["residual"])
+def _coded(values: pd.Series) -> NDArray[np.float64]:
+    # a missing level is a level: the parameter as it is in the file
+    text = values.astype(object).map(lambda level: "" if pd.isna(level) else str(level))
+    codes, levels = pd.factorize(text)
+    return np.equal.outer(codes, np.arange(1, len(levels))).astype(float)
+
+
+def _table(
+    data: _Data, names: Sequence[str], mains: list[Effect], pairs: list[Effect]
+) -> tuple[pd.DataFrame, str]:
+    """Return sums of squares and degrees of freedom, and what was done with interactions."""
+    alone = data.fit(mains)
+    for effect in mains:
+        if _between(data, effect, mains)[1] == 0:
+            raise InputError(
+                f"analysis of variance: the levels of {names[effect[0]]} cannot be told from those "
+                "of the other factors"
+            )
+    told, chosen, residual = "", mains, alone
+    rows: dict[str, tuple[float, int]] = {}
+    if pairs:
+        whole, cells = data.fit([*mains, *pairs]), data.fit_combinations()
+        if data.runs > whole.rank and _told_apart(data, mains, pairs):
+            chosen, residual = [*mains, *pairs], whole
+            told = "interactions of two factors have a row each"
+        elif data.runs > cells.rank > alone.rank:
+            rows[POOLED] = (alone.rest - cells.rest, cells.rank - alone.rank)
+            residual = cells
+            told = (
+                "these runs cannot tell the interactions of single pairs of factors apart: all "
+                "interactions are one row"
+            )
+        else:
+            told = "too few runs to tell interactions: they are in the residual"
+    elif len(names) > 1:
+        told = "interactions are in the residual"
+    if data.runs <= residual.rank:
+        raise InputError(
+            f"analysis of variance: {data.runs} runs are too few for {len(names)} factors"
+        )
+    for effect in chosen:
+        rows[CROSS.join(names[number] for number in effect)] = _between(data, effect, chosen)
+    if data.block is not None:
+        without = data.fit(chosen, seeds=False)
+        present = data.fit(chosen)
+        rows[SEEDS] = (max(0.0, without.rest - present.rest), present.rank - without.rank)
+    rows[RESIDUAL] = (residual.rest, data.runs - residual.rank)
+    made = pd.DataFrame.from_dict(rows, orient="index", columns=["sum_sq", "df"])
+    made.index.name = "effect"
+    return made, told
+
+
+def _between(data: _Data, effect: Effect, model: Sequence[Effect]) -> tuple[float, int]:
+    """Return what an effect explains after all others of a model that do not contain it."""
+    others = [other for other in model if not set(effect) <= set(other)]
+    without, present = data.fit(others), data.fit([*others, effect])
+    return max(0.0, without.rest - present.rest), present.rank - without.rank
+
+
+def _told_apart(data: _Data, mains: list[Effect], pairs: list[Effect]) -> bool:
+    """Whether no effect loses degrees of freedom to the interactions beside it."""
+    model = [*mains, *pairs]
+    return all(
+        _between(data, effect, model)[1] == _between(data, effect, [*mains, effect])[1] > 0
+        for effect in model
+    )
+
+
+def _with_sizes(raw: pd.DataFrame, confidence: float) -> pd.DataFrame:
+    made = raw.copy()
+    rest, rest_df = float(made["sum_sq"][RESIDUAL]), int(made["df"][RESIDUAL])
     total, mean_square = made["sum_sq"].sum(), rest / rest_df
+    effect = made.index != RESIDUAL
+    made["f"] = (made["sum_sq"] / made["df"] / mean_square).where(effect)
+    made["p"] = stats.f.sf(made["f"], made["df"], rest_df)
     made["eta_sq"] = made["sum_sq"] / total
-    made["partial_eta_sq"] = made["sum_sq"] / (made["sum_sq"] + rest)
-    made["omega_sq"] = (made["sum_sq"] - made["df"] * mean_square) / (total + mean_square)
-    made.loc["residual", ["partial_eta_sq", "omega_sq"]] = float("nan")
+    made["partial_eta_sq"] = (made["sum_sq"] / (made["sum_sq"] + rest)).where(effect)
+    omega_sq = (made["sum_sq"] - made["df"] * mean_square) / (total + mean_square)
+    made["omega_sq"] = omega_sq.where(effect)
     ends = [
         _partial_interval(f, df, rest_df, confidence)
         for f, df in zip(made["f"], made["df"], strict=True)
     ]
     made["partial_eta_sq_low"], made["partial_eta_sq_high"] = zip(*ends, strict=True)
-    made["df"] = made["df"].round().astype(int)
-    last = [name for name in (seeds, "residual") if name is not None]
+    last = [name for name in (SEEDS, RESIDUAL) if name in made.index]
     effects = made.drop(index=last).sort_values("sum_sq", ascending=False)
     return pd.concat([effects, made.loc[last]])
 

@@ -89,11 +89,53 @@ def test_failed_runs_end_in_exit_code_1(design, tmp_path, monkeypatch, capsys):
     assert "failed: robots=16,psa=random, seed 2: ValueError: a robot is lost" in out
 
 
+def test_tables_and_pictures_say_what_runs_are_lacking(design, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    path = str(design())
+    drive(
+        experiments.plan(path), Store(Path("results/tiny")), Inline(do=work_that_fails_for_random)
+    )
+    # a fourth seed has not been run at all
+    path = str(design(seeds=[1, 2, 3, 4]))
+    note = "incomplete: 10 of 16 runs are in, 2 failed"
+    assert main(["experiment", "table", path]) == 3
+    out = capsys.readouterr()
+    assert note in " ".join(out.out.split()) and out.err == f"rmfs: {note}\n"
+    for arguments in (["--file", "t.md"], ["--file", "t.tex"], ["--file", "t.html"]):
+        assert main(["experiment", "table", path, *arguments]) == 3
+        assert note in Path(arguments[1]).read_text()
+    assert main(["experiment", "table", path, "--anova", "--allow-incomplete"]) == 0
+    out = capsys.readouterr()
+    assert note in " ".join(out.out.split()) and note in out.err
+    assert main(["experiment", "plot", path, "-f", "p.svg"]) == 3
+    assert json.loads(Path("p.svg.provenance.json").read_text())["note"] == note
+    assert main(["experiment", "plot", path, "-f", "q.svg", "--allow-incomplete"]) == 0
+    assert main(["experiment", "table", str(design())]) == 3
+    assert "10 of 12 runs are in, 2 failed" in capsys.readouterr().err
+    design(seeds=[1])
+    assert main(["experiment", "table", path]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_arms_without_a_run_are_counted(design, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    path = design()
+    with pytest.raises(KeyboardInterrupt):
+        drive(experiments.plan(path), Store(Path("results/tiny")), Inline(after=1, slots=1))
+    assert main(["experiment", "plot", str(path), "-f", "p.png"]) == 3
+    assert "1 of 12 runs are in, 3 of 4 arms have none" in capsys.readouterr().err
+
+
 def test_tables_on_the_terminal_and_in_files(made, tmp_path, capsys):
     assert main(["experiment", "table", made]) == 0
     assert "robots=8,psa=nearest" in told(capsys)
     assert main(["experiment", "table", made, "--anova", "-c", "units_per_h"]) == 0
-    assert "Analysis of variance of units_per_h" in told(capsys)
+    out = told(capsys)
+    assert "Analysis of variance of units_per_h" in out and "robots x psa" in out
+    arguments = ["--anova", "--no-interactions", "-c", "units_per_h"]
+    assert main(["experiment", "table", made, *arguments]) == 0
+    out = told(capsys)
+    assert "interactions are in the residual" in out and "robots x psa" not in out
     arguments = ["--baseline", "robots=8,psa=nearest", "--file", "table.tex"]
     assert main(["experiment", "table", made, *arguments]) == 0
     assert told(capsys) == "table.tex: written, with table.tex.provenance.json\n"
@@ -107,6 +149,15 @@ def test_tables_on_the_terminal_and_in_files(made, tmp_path, capsys):
 def test_pictures(made, capsys):
     assert main(["experiment", "plot", made, "--kind", "pareto", "-f", "p.png"]) == 0
     assert Path("p.png").exists() and Path("p.png.provenance.json").exists()
+    columns = ["-c", "tasks_pick", "-c", "units_per_h"]
+    assert main(["experiment", "plot", made, "--kind", "pareto", *columns]) == 2
+    assert "--goal tasks_pick=more" in capsys.readouterr().err
+    columns += ["--goal", "tasks_pick=less", "-f", "q.png"]
+    assert main(["experiment", "plot", made, "--kind", "pareto", *columns]) == 0
+    arguments = ["--kind", "interaction", "--factor", "robots", "--factor", "psa"]
+    assert main(["experiment", "plot", made, *arguments, "-f", "i.svg"]) == 0
+    assert main(["experiment", "plot", made, "--kind", "effects", "-f", "e.svg"]) == 0
+    capsys.readouterr()
     assert main(["experiment", "plot", made]) == 0
     assert "results/tiny/intervals-units_per_h.png: written" in told(capsys)
 

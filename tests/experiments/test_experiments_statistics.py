@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import itertools
 import re
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from rmfs.experiments.statistics import (
     paired,
     per_arm,
     rates,
+    tell_apart,
     unpaired,
 )
 from rmfs.experiments.statistics.paired import holm
@@ -156,18 +158,114 @@ def test_anova_finds_the_factors_that_were_put_in():
         for flag in (True, None)
         for seed in range(4)
     ]
-    found = anova(pd.DataFrame(rows), "y", ["psa", "poa", "flag"])
+    found = anova(pd.DataFrame(rows), "y", ["psa", "poa", "flag"], interactions=False)
+    assert found.attrs["interactions"] == "interactions are in the residual"
     assert list(found.index) == ["poa", "psa", "flag", "seeds", "residual"]
     assert found.loc["poa", "eta_sq"] > 0.9
     assert found.loc["psa", "p"] < 1e-6 and found.loc["flag", "p"] > 0.01
     assert found["eta_sq"].sum() == pytest.approx(1.0)
     assert found.loc["poa", "df"] == 2 and found.loc["residual", "df"] == 40
-    both = anova(pd.DataFrame(rows), "y", ["psa", "poa"], interactions=True)
-    assert "psa x poa" in both.index
+    both = anova(pd.DataFrame(rows), "y", ["psa", "poa"], names={"psa": "P"})
+    assert both.index[-3:].tolist() == ["P x poa", "seeds", "residual"]
     without = anova(pd.DataFrame(rows), "y", ["psa", "poa"], block=None)
     assert "seeds" not in without.index
     with pytest.raises(InputError, match="no factor has more than one level"):
         anova(pd.DataFrame(rows).assign(psa="near"), "y", ["psa"])
+
+
+def factorial(levels: dict[str, int], seeds: int, *, drop: int = 0) -> pd.DataFrame:
+    """Runs of a grid with effects and interactions of all sizes; `drop` runs of them are lost."""
+    rng = np.random.default_rng(len(levels) * 10 + seeds)
+    shared = rng.normal(0, 3, seeds)
+    rows = []
+    for place in itertools.product(*(range(count) for count in levels.values())):
+        for seed in range(seeds):
+            y = sum((2 + k) * level for k, level in enumerate(place)) + np.prod(place) ** 0.5
+            y += 3 * (place[0] == 1) * (place[-1] == 1) + shared[seed] + rng.normal()
+            rows.append({**dict(zip(levels, place, strict=True)), "replication": seed, "y": y})
+    return pd.DataFrame(rows).sample(frac=1, random_state=1).iloc[drop:].sort_index()
+
+
+def plainly(data: pd.DataFrame, factors: list[str], *, blocked: bool) -> pd.DataFrame:
+    """The table as statsmodels makes it, under its own labels."""
+    from statsmodels.formula.api import ols
+    from statsmodels.stats.anova import anova_lm
+
+    pairs = " + ".join(f"C({name})" for name in factors)
+    formula = f"y ~ ({pairs})**2" + (" + C(replication)" if blocked else "")
+    return anova_lm(ols(formula, data).fit(), typ=2)
+
+
+@pytest.mark.parametrize("blocked", [True, False], ids=["blocked", "not-blocked"])
+@pytest.mark.parametrize("drop", [0, 5], ids=["balanced", "unbalanced"])
+@pytest.mark.parametrize("count", [1, 2, 3, 4])
+def test_every_row_is_that_of_statsmodels(count, drop, blocked):
+    factors = list("abcd")[:count]
+    data = factorial(dict(zip(factors, (3, 2, 3, 2), strict=False)), seeds=4, drop=drop)
+    expected = plainly(data, factors, blocked=blocked)
+    found = anova(data, "y", factors, block="replication" if blocked else None)
+    assert len(found) == len(expected)
+    for label, row in expected.iterrows():
+        name = {"C(replication)": "seeds", "Residual": "residual"}.get(
+            label, re.sub(r"C\((\w)\)", r"\1", label).replace(":", " x ")
+        )
+        told = found.loc[name, ["sum_sq", "df", "f", "p"]].to_numpy(float)
+        np.testing.assert_allclose(told, row.to_numpy(float), rtol=1e-7, atol=1e-12)
+
+
+def test_combinations_that_are_left_out_cost_degrees_of_freedom():
+    """Type II of an incomplete grid: the same as comparing two models of full rank by hand."""
+    data = factorial({"a": 3, "b": 3, "c": 2}, seeds=3)
+    data = data[~((data["a"] == 2) & (data["b"] == 2))]
+    found = anova(data, "y", ["a", "b", "c"])
+    assert found.loc["a x b", "df"] == 3 and found.loc["a x c", "df"] == 2
+    one = pd.get_dummies(data[["a", "b", "c", "replication"]].astype(str)).to_numpy(float)
+    cells = [pd.get_dummies(data[x].astype(str) + data[y].astype(str)).to_numpy(float)
+             for x, y in ("ab", "ac", "bc")]  # fmt: skip
+
+    def rest(parts):
+        model = np.hstack([one, *parts])
+        y = data["y"].to_numpy()
+        return float(((y - model @ (np.linalg.pinv(model) @ y)) ** 2).sum())
+
+    assert found.loc["a x b", "sum_sq"] == pytest.approx(rest(cells[1:]) - rest(cells))
+    assert found.loc["residual", "sum_sq"] == pytest.approx(rest(cells))
+
+
+def test_a_fraction_has_its_interactions_in_one_row():
+    """Half of the grid of three factors: every main effect is also the interaction of the others'
+    two, so pairs have no row; what they do is kept out of the residual all the same."""
+    data = factorial({"a": 2, "b": 2, "c": 2}, seeds=5)
+    half = data[(data["a"] + data["b"] + data["c"]) % 2 == 0].copy()
+    half["y"] += 50.0 * (half["a"] * half["b"])
+    assert not tell_apart(half, ["a", "b", "c"]) and tell_apart(data, ["a", "b", "c"])
+    found = anova(half, "y", ["a", "b", "c"])
+    assert not [name for name in found.index if " x " in name]
+    # four combinations, four parameters: main effects already say all there is
+    assert "too few runs" in found.attrs["interactions"]
+    wide = factorial({"a": 3, "b": 3, "c": 3}, seeds=4)
+    third = wide[(wide["a"] + wide["b"] + wide["c"]) % 3 == 0].copy()
+    third["y"] += 50.0 * (third["a"] * third["b"])
+    found = anova(third, "y", ["a", "b", "c"])
+    assert found.loc["interactions", "df"] == 2 and found.loc["residual", "df"] == 36 - 9 - 3
+    assert found.loc["interactions", "p"] < 1e-6
+    assert found.loc["residual", "sum_sq"] / found.loc["residual", "df"] < 3
+    assert "all interactions are one row" in found.attrs["interactions"]
+    within = third["y"] - third.groupby(["a", "b", "c"])["y"].transform("mean")
+    within -= within.groupby(third["replication"]).transform("mean")
+    assert found.loc["residual", "sum_sq"] == pytest.approx((within**2).sum())
+
+
+def test_where_runs_run_out_interactions_stay_in_the_residual():
+    grid = factorial({"a": 3, "b": 3}, seeds=1)
+    found = anova(grid, "y", ["a", "b"])
+    assert found.index.tolist() == ["b", "a", "residual"] and found.loc["residual", "df"] == 4
+    assert found.attrs["interactions"].startswith("too few runs")
+    with pytest.raises(InputError, match="3 runs are too few for 1 factors"):
+        anova(factorial({"a": 3}, seeds=1), "y", ["a"])
+    twins = grid.assign(b=grid["a"])
+    with pytest.raises(InputError, match="levels of a cannot be told from those"):
+        anova(twins, "y", ["a", "b"])
 
 
 def test_balanced_anova_is_the_textbook_decomposition():

@@ -11,10 +11,10 @@ from stand_in import Inline
 from rmfs import experiments
 from rmfs.errors import InputError
 from rmfs.experiments import provenance, tables
-from rmfs.experiments.figures import front, pareto, progression
+from rmfs.experiments.figures import effects, front, interaction, pareto, progression
 from rmfs.experiments.figures.progression import per_bin
 from rmfs.experiments.figures.style import axis_label, saving
-from rmfs.experiments.plotting import KINDS, draw
+from rmfs.experiments.plotting import KINDS, Wish, draw
 from rmfs.experiments.running.driver import drive
 from rmfs.experiments.statistics import anova
 from rmfs.experiments.store import Store
@@ -67,9 +67,10 @@ def test_differences_are_corrected_over_the_whole_table(results):
 
 def test_anova_as_a_table(results):
     plan, frame, _ = results
-    found = anova(frame, "units_per_h", plan.factors).rename(index=plan.short_names)
+    found = anova(frame, "units_per_h", plan.factors, names=plan.short_names)
     text = tables.effects(found, "units_per_h").to("markdown")
-    assert "| robots" in text and "omega_sq" in text
+    assert "| robots" in text and "| robots x psa" in text and "omega_sq" in text
+    assert "interactions of two factors have a row each" in text
 
 
 def test_digits_follow_the_spread():
@@ -99,8 +100,71 @@ def test_the_front_holds_what_nothing_dominates():
 
     robots = pd.Series({"a": 8, "b": 16, "c": 16, "d": 24, "e": 8})
     units = pd.Series({"a": 600, "b": 900, "c": 800, "d": 900, "e": 600})
-    assert front(robots, units) == ["a", "e", "b"]
-    assert front(robots, units, "max", "max") == ["d"]
+    assert front(robots, units, "less", "more") == ["a", "e", "b"]
+    assert front(robots, units, "more", "more") == ["d"]
+
+
+def test_the_front_does_not_depend_on_the_order_of_the_columns(results, tmp_path):
+    _, frame, _ = results
+    with saving(tmp_path / "x.svg") as figure:
+        first, second, third = figure.subplots(1, 3)
+        best = pareto(frame, "robots", "units_per_h", first)
+        assert set(pareto(frame, "units_per_h", "robots", second)) == set(best)
+        assert best == ["robots=8,psa=nearest", "robots=16,psa=nearest"]
+        assert first.get_xlabel() == "robots, less is better ←"
+        assert first.get_ylabel() == "units per hour, more is better ↑"
+        assert second.get_xlabel() == "units per hour, more is better →"
+        assert pareto(frame, "robots", "units_per_h", third, x_goal="more") == best[1:]
+        with pytest.raises(InputError, match="say which: --goal tasks_pick=more or"):
+            pareto(frame, "tasks_pick", "units_per_h", third)
+
+
+def test_effects_show_pairs_of_factors_where_they_can_be_told(results, tmp_path, monkeypatch):
+    plan, frame, folder = results
+    drawn: list[tuple[str, str]] = []
+    monkeypatch.setattr(
+        "rmfs.experiments.plotting.interaction",
+        lambda frame, column, across, by, ax, **more: drawn.append((across, by)),
+    )
+    robots, psa = plan.factors
+
+    def effects(frame, **wish):
+        drawn.clear()
+        draw("effects", plan, frame, folder, ["units_per_h"], tmp_path / "x.png", Wish(**wish))
+        return drawn
+
+    assert set(effects(frame)) == {(robots, psa), (psa, robots)}
+    assert effects(frame, interactions=False) == []
+    # one of four combinations is lacking: main effects and interaction are one
+    assert effects(frame[frame["arm"] != frame["arm"].iloc[-1]]) == []
+    draw("interaction", plan, frame, folder, ["units_per_h"], tmp_path / "x.png")
+    assert drawn == [(robots, psa)]
+    drawn.clear()
+    wish = Wish(factors=["psa", "robots"])
+    draw("interaction", plan, frame, folder, ["units_per_h"], tmp_path / "x.png", wish)
+    assert drawn == [(psa, robots)]
+    for factors, text in ((["robots"], "needs two factors"), (["poa", "psa"], "factor poa: no")):
+        wish = Wish(factors=factors)
+        with pytest.raises(InputError, match=text):
+            draw("interaction", plan, frame, folder, ["units_per_h"], tmp_path / "x.png", wish)
+
+
+def test_lines_of_an_interaction_are_means_of_the_arms_with_both_levels(results, tmp_path):
+    plan, frame, _ = results
+    robots, psa = plan.factors
+    frame = frame.assign(**{psa: frame[psa].where(frame[psa] != "random", None)})
+    with saving(tmp_path / "x.png") as figure:
+        ax = figure.subplots()
+        interaction(frame, "units_per_h", robots, psa, ax)
+        assert [text.get_text() for text in ax.get_legend().get_texts()] == ["nearest", "none"]
+        told = frame.assign(psa=frame[psa].isna())
+        means = told.pivot_table(index="psa", columns=robots, values="units_per_h")
+        lines = [container.lines[0].get_ydata() for container in ax.containers]
+        for line, expected in zip(lines, means.to_numpy(), strict=True):
+            assert list(line) == pytest.approx(expected)
+        ax = figure.add_subplot()
+        effects(frame, "units_per_h", [psa], [ax])
+        assert list(ax.containers[0].lines[0].get_ydata()) == pytest.approx(means.mean(axis=1))
 
 
 def test_figures_draw_into_the_axes_they_are_given(results, tmp_path):

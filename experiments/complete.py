@@ -1,0 +1,44 @@
+"""Whether all runs of an experiment have come in, or what is lacking."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.experiments.design.stages import schedule
+from rmfs.experiments.results import assigned, failed_pairs
+
+if TYPE_CHECKING:
+    from rmfs.experiments.design.planning import Plan
+    from rmfs.experiments.store import Store
+
+
+def lacking(plan: Plan, store: Store) -> str:
+    """Say what an experiment lacks, with the counts; nothing if all of its runs are finished."""
+    lost = failed_pairs(plan, store)
+    rows = assigned(plan, store)
+    now = schedule(plan, rows, lost)
+    finished = store.finished(plan.design.keep)
+    arms = {arm.name: arm for arm in plan.arms}
+    done = {
+        (run.arm, run.replication)
+        for run in now.runs
+        if plan.job(arms[run.arm], run.replication).key in finished
+    }
+    wanted = len(now.runs)
+    if len(done) == wanted and now.complete:
+        return ""
+    said = [f"incomplete: {len(done)} of {wanted} runs are in"]
+    failed = len(lost & {(run.arm, run.replication) for run in now.runs})
+    if failed:
+        said.append(f"{failed} failed")
+    empty = len({run.arm for run in now.runs} - {arm for arm, _ in done})
+    if empty:
+        said.append(f"{empty} of {len({run.arm for run in now.runs})} arms have none")
+    if not now.complete and may_grow(plan):
+        said.append("stages may ask for more")
+    return ", ".join(said)
+
+
+def may_grow(plan: Plan) -> bool:
+    """Whether stages decide on the way what is run."""
+    return any(stage.until or stage.select or stage.arms for stage in plan.design.stages)

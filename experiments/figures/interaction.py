@@ -1,0 +1,79 @@
+"""Whether the effect of one factor depends on the level of another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.experiments.figures.style import COLOURS, axis_label, levels
+from rmfs.experiments.statistics import interval
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+SPREAD = 0.24
+"""Width over which the lines of one level are put side by side, in levels."""
+
+STYLES = ("-", "--", ":")
+"""Of lines, where there are more than colours."""
+
+
+def interaction(
+    frame: pd.DataFrame,
+    column: str,
+    across: str,
+    by: str,
+    ax: Axes,
+    *,
+    names: tuple[str, str] | None = None,
+    confidence: float = 0.95,
+    legend: bool = True,
+) -> None:
+    """Draw means over the levels of a factor, a line per level of another: parallel if they add up.
+
+    The interval of a point is that of the means over all arms with both levels, seed by seed.
+    Combinations that the design leaves out are gaps.
+
+    Parameters
+    ----------
+    across
+        Factor along the axis.
+    by
+        Factor whose levels get a line each.
+    names
+        What the two are called. Default as in the frame.
+    legend
+        Whether to name the lines. Default yes.
+    """
+    called = names if names is not None else (across, by)
+    places = list(levels(frame, across))
+    lines = levels(frame, by)
+    for number, (line, mine) in enumerate(lines.items()):
+        rows = levels(mine, across)
+        found = [
+            interval(rows[place].groupby("replication")[column].mean(), confidence)
+            if place in rows
+            else interval([])
+            for place in places
+        ]
+        shift = SPREAD * ((number + 0.5) / len(lines) - 0.5)
+        ax.errorbar(
+            np.arange(len(places)) + shift,
+            [one.mean for one in found],
+            yerr=np.nan_to_num([one.half_width for one in found]),
+            marker="o",
+            color=COLOURS[number % len(COLOURS)],
+            linestyle=STYLES[number // len(COLOURS) % len(STYLES)],
+            label=line,
+            markersize=4,
+            linewidth=1,
+            capsize=2,
+        )
+    ax.set_xticks(range(len(places)), places, rotation=45, ha="right")
+    ax.set_xlim(-0.5, len(places) - 0.5)
+    ax.set_xlabel(called[0])
+    ax.set_ylabel(axis_label(column))
+    if legend:
+        ax.legend(title=called[1], fontsize=7, title_fontsize=7)
