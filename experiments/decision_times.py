@@ -81,7 +81,7 @@ NEVER_ASKED = {(Problem.MM, "none"), (Problem.REPOSITIONING, "none")}
 
 
 def cases() -> list[Case]:
-    """Return all rules with their parameters' defaults, and the scorers of pods one by one."""
+    """Return all rules with their parameters' defaults, and the criteria of pods one by one."""
     made = []
     for problem in Problem:
         for name in registry.built_in(problem):
@@ -96,8 +96,8 @@ def cases() -> list[Case]:
             made.append(Case(problem, name, tables))
         if problem is Problem.PPS:
             made += [
-                Case(problem, f"only {scorer}", {"pps": {"pick_pod": [scorer, "random"]}})
-                for scorer in SCORERS
+                Case(problem, f"only {criterion}", {"pps": {"pick_pod": [criterion, "random"]}})
+                for criterion in SCORERS
             ]
             queue = {"poa": {"name": "queue"}}
             made.append(Case(problem, "lexicographic, beside POA queue", queue))

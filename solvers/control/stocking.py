@@ -15,6 +15,7 @@ from rmfs.control.problems import Problem, Trigger
 from rmfs.control.rps import ReplenishmentPodSelection
 from rmfs.control.trackers.frequency import Frequency, PairFrequency
 from rmfs.solvers.control.answers import answer
+from rmfs.solvers.control.buffer import Buffer
 from rmfs.solvers.control.foresight import Foresight
 from rmfs.solvers.control.parameters import SearchParameters
 from rmfs.solvers.models import replenishment
@@ -37,12 +38,6 @@ Method = Literal["cp_sat", "highs", "rounding", "greedy"]
 NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 Count = Annotated[int, pydantic.Field(ge=1)]
 
-_SOLVERS = {
-    "cp_sat": replenishment.solve_by_cp_sat,
-    "highs": replenishment.solve_by_highs,
-    "rounding": replenishment.solve_by_rounding,
-    "greedy": replenishment.solve_greedily,
-}
 _NODES = 1
 _SCORED_PER_S = 1e6
 """Candidates that the greedy rule scores in about a second."""
@@ -65,10 +60,11 @@ class Question:
 
 def solve(question: Question) -> Answer:
     """Find `pod` of each bundle and `station` of each pod, -1 for none."""
-    found = replenishment.solve_greedily(question.data)
+    found = replenishment.solve(question.data, "greedy")
     if question.method != "greedy":
-        start = found.values
-        found = _SOLVERS[question.method](question.data, question.limits, start=start)
+        found = replenishment.solve(
+            question.data, question.method, question.limits, start=found.values
+        )
     values = found.values
     return answer(found, None if values is None else dict(vars(values)))
 
@@ -118,20 +114,17 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
         self._foresight = Foresight(view, horizon_s=1800.0, kept_s=300.0)
         self._frequency = view.trackers.get(Frequency)
         self._pairs = view.trackers.get(PairFrequency)
-        self._asked_s = -inf
-        self._wants_to_ask = False
+        self._buffer = Buffer(view, parameters.buffer_s)
 
     def next_event_s(self) -> float:
         """When the optimiser may be asked again, if it is to be asked."""
-        return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
+        return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Told]:
         """Ask if bundles wait for which some station has room, and the last time is long ago."""
-        self._wants_to_ask = not self.in_flight and self._is_possible()
-        if not self._wants_to_ask or self.view.now_s < self._asked_s + self.parameters.buffer_s:
-            return
-        self._asked_s = self.view.now_s
-        yield self._question()
+        if self._buffer.is_over(not self.in_flight and self._is_possible()):
+            self._buffer.begin(again=True)
+            yield self._question()
 
     def answered(self, call: Call) -> Iterator[Told]:
         """Apply what still holds, pod by pod; without a solution, what the greedy rule says."""

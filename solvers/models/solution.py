@@ -7,12 +7,15 @@ on an idle one. A wall-clock guard exists, but it only ever raises an error.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from time import perf_counter
 from typing import Generic, TypeVar
 
 from rmfs.solvers.models.checks import number, require
 
+V = TypeVar("V")
 V_co = TypeVar("V_co", covariant=True)
 
 GAP_FLOOR = 1e-9
@@ -194,6 +197,73 @@ class Solution(Generic[V_co]):
         )
 
 
+def solution_of_rule(
+    values: V | None,
+    objective: Callable[[V], float],
+    *,
+    bound: float,
+    work: float,
+    began: float,
+) -> Solution[V]:
+    """Wrap up what a heuristic found; a minimum.
+
+    Parameters
+    ----------
+    values
+        What it found; None if that is nothing, or not feasible.
+    objective
+        The model's own.
+    bound
+        A proven lower bound; +inf if it shows that the problem is infeasible.
+    work
+        Candidates scored.
+    began
+        When it began, as `time.perf_counter` tells it.
+    """
+    wall_s = perf_counter() - began
+    if values is None:
+        status = Status.LIMIT if bound < math.inf else Status.INFEASIBLE
+        return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, work)
+    value = objective(values)
+    return Solution(values, value, min(bound, value), Status.FEASIBLE, "rule", wall_s, 0.0, work)
+
+
+def solution_of_optimum(
+    values: V | None,
+    objective: Callable[[V], float],
+    *,
+    bound: float,
+    backend: str,
+    work: float,
+    began: float,
+    built: float,
+) -> Solution[V]:
+    """Wrap up what a method that always finds the optimum found; a minimum.
+
+    Parameters
+    ----------
+    values
+        The best ones; None: there are none.
+    objective
+        The model's own.
+    bound
+        Proven lower bound.
+    backend
+        Who solved it.
+    work
+        In its unit.
+    began, built
+        When it began, and when the solver's model was built, as `time.perf_counter` tells it.
+    """
+    wall_s, build_s = perf_counter() - began, built - began
+    if values is None:
+        status = Status.INFEASIBLE
+        return Solution(None, math.inf, math.inf, status, backend, wall_s, build_s, work)
+    value = objective(values)
+    bound = min(bound, value)
+    return Solution(values, value, bound, Status.OPTIMAL, backend, wall_s, build_s, work)
+
+
 WORK_UNITS = {
     "cp_sat": "deterministic seconds",
     "highs": "simplex iterations over all nodes",
@@ -202,5 +272,6 @@ WORK_UNITS = {
     "scipy": "entries of the cost table",
     "min_cost_flow": "arcs",
     "rounding": "simplex iterations",
+    "dynamic": "states expanded",
 }
 """The unit of `Solution.work` per back end; heuristics count under "rule"."""

@@ -12,25 +12,25 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 TABLE = Path("results") / "published" / "models.csv"
-KEY = ["model", "size", "back end"]
+KEY = ["model", "size", "method"]
 _ROWS: list[dict[str, Any]] = []
 
 
 @pytest.fixture
 def note(benchmark: Any) -> Callable[..., None]:
-    """Write down what the table shows of a solution: `note(model, size, solution, what)`.
+    """Write down what the table shows of a solution: `note(model, size, method, solution, what)`.
 
     At the large size building may take no longer than solving, whatever the model.
     """
 
-    def write(model: str, size: str, solution: Any, what: str) -> None:
+    def write(model: str, size: str, method: str, solution: Any, what: str) -> None:
         if benchmark.disabled:
             return
         found = {
             "model": model,
             "size": size,
             "what": what,
-            "back end": solution.backend,
+            "method": method,
             "build ms": 1e3 * solution.build_s,
             "solve ms": 1e3 * solution.solve_s,
             "median ms": 1e3 * benchmark.stats.stats.median,
@@ -53,7 +53,7 @@ def pytest_sessionfinish() -> None:
     if TABLE.is_file():
         made = pd.concat([pd.read_csv(TABLE), made]).drop_duplicates(KEY, keep="last")
     size = pd.CategoricalIndex(made["size"], ["small", "medium", "large"], ordered=True)
-    made = made.assign(order=size).sort_values(["model", "back end", "order"], kind="stable")
+    made = made.assign(order=size).sort_values(["model", "method", "order"], kind="stable")
     made = made.drop(columns="order")
     TABLE.parent.mkdir(parents=True, exist_ok=True)
     for path, text in (

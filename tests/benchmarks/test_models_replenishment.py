@@ -10,21 +10,12 @@ from rmfs.solvers.models.replenishment import (
     Replenishment,
     best_pods,
     bundle_worth_s,
-    solve_by_cp_sat,
-    solve_by_highs,
-    solve_by_rounding,
-    solve_greedily,
+    methods,
+    solve,
 )
 
 SIZES = {"small": (20, 100, 2, 100), "medium": (60, 400, 4, 400), "large": (200, 1200, 6, 1000)}
 """Bundles, pods, stations, SKUs."""
-
-BACKENDS = {
-    "cp_sat": solve_by_cp_sat,
-    "highs": solve_by_highs,
-    "rounding": solve_by_rounding,
-    "rule": solve_greedily,
-}
 
 
 def stock_of(rng: np.random.Generator, skus: int, pods: int) -> np.ndarray:
@@ -62,19 +53,25 @@ def site(bundles: int, pods: int, stations: int, skus: int) -> Replenishment:
 
 
 @pytest.mark.benchmark(group="replenishment")
-@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("method", methods())
 @pytest.mark.parametrize("size", SIZES)
-def test_replenishment(benchmark: Any, note: Any, size: str, backend: str) -> None:
+def test_replenishment(benchmark: Any, note: Any, size: str, method: str) -> None:
     data = best_pods(site(*SIZES[size]), pods=5, stations=2)
-    start = solve_greedily(data)
+    start = solve(data, "greedy")
     limits = Limits(deterministic_s=1.0, nodes=1, gap=0.05)
     solution = benchmark.pedantic(
-        BACKENDS[backend], (data, limits), {"start": start.required}, rounds=1
+        solve, (data, method, limits), {"start": start.required}, rounds=1
     )
     # rules begin from nothing, so they may also be a little worse than the start
     assert solution.objective <= 0.95 * start.objective
     bundles, pods, stations, _ = SIZES[size]
-    note("replenishment", size, solution, f"{bundles} bundles, {pods} pods, {stations} stations")
+    note(
+        "replenishment",
+        size,
+        method,
+        solution,
+        f"{bundles} bundles, {pods} pods, {stations} stations",
+    )
 
 
 @pytest.mark.benchmark(group="replenishment: worth")

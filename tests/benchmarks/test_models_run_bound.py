@@ -54,4 +54,4 @@ def test_run_bound(benchmark: Any, note: Any, size: str) -> None:
     assert solution.bound <= min(single_bounds(data).values()) * (1 + 1e-9)
     picking, refilling, pods, robots = SIZES[size]
     what = f"{picking} + {refilling} stations, {pods} pods, {robots} robots"
-    note("run_bound", size, solution, what)
+    note("run_bound", size, "highs", solution, what)

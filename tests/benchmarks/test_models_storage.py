@@ -26,17 +26,18 @@ def free_places(pods: int, places: int) -> placement.Placement:
 
 
 @pytest.mark.benchmark(group="storage: placement")
-@pytest.mark.parametrize("solver", ["scipy", "min_cost_flow"])
+@pytest.mark.parametrize("method", ["assignment", "flow"])
 @pytest.mark.parametrize("size", PLACEMENT)
-def test_placement(benchmark: Any, note: Any, size: str, solver: str) -> None:
+def test_placement(benchmark: Any, note: Any, size: str, method: str) -> None:
     data = free_places(*PLACEMENT[size])
-    solution = benchmark(placement.solve, data, solver=solver)
-    rule = placement.solve_greedily(data)
+    solution = benchmark(placement.solve, data, method)
+    rule = placement.solve(data, "greedy")
     assert solution.gap < 1e-6
     assert solution.objective <= rule.objective + 1e-6
     note(
         "storage.placement",
         size,
+        method,
         solution,
         f"{PLACEMENT[size][0]} pods, {PLACEMENT[size][1]} places",
     )
@@ -62,9 +63,15 @@ def test_zones(benchmark: Any, note: Any, size: str) -> None:
     zones.solve(data)  # compiles the programme of this size, once and for all
     solution = benchmark(zones.solve, data)
     assert solution.status is Status.OPTIMAL
-    assert solution.objective <= zones.solve_greedily(data).objective * (1 + 1e-6)
+    assert solution.objective <= zones.solve(data, "greedy").objective * (1 + 1e-6)
     assert solution.build_s < solution.solve_s
-    note("storage.zones", size, solution, f"{ZONES[size][0]} classes, {ZONES[size][1]} zones")
+    note(
+        "storage.zones",
+        size,
+        "clarabel",
+        solution,
+        f"{ZONES[size][0]} classes, {ZONES[size][1]} zones",
+    )
 
 
 def half_an_hour(number: int, count: int) -> stays.Stays:
@@ -79,17 +86,16 @@ def half_an_hour(number: int, count: int) -> stays.Stays:
 
 
 @pytest.mark.benchmark(group="storage: stays")
-@pytest.mark.parametrize("backend", ["highs", "cp_sat"])
+@pytest.mark.parametrize("method", ["highs", "cp_sat"])
 @pytest.mark.parametrize("size", STAYS)
-def test_stays(benchmark: Any, note: Any, size: str, backend: str) -> None:
+def test_stays(benchmark: Any, note: Any, size: str, method: str) -> None:
     data = half_an_hour(*STAYS[size])
-    start = stays.solve_greedily(data).required
-    solve = {"highs": stays.solve_by_highs, "cp_sat": stays.solve_by_cp_sat}[backend]
+    start = stays.solve(data, "greedy").required
     limits = Limits(deterministic_s=3.0, nodes=50, gap=1e-3)
-    solution = benchmark.pedantic(solve, (data, limits), {"start": start}, rounds=3)
+    solution = benchmark.pedantic(stays.solve, (data, method, limits), {"start": start}, rounds=3)
     assert solution.objective <= stays.objective(data, start) + 1e-6
     assert solution.gap < 0.02
-    note("storage.stays", size, solution, f"{STAYS[size][0]} stays, {STAYS[size][1]} zones")
+    note("storage.stays", size, method, solution, f"{STAYS[size][0]} stays, {STAYS[size][1]} zones")
 
 
 @pytest.mark.benchmark(group="storage: two zones")
@@ -97,6 +103,6 @@ def test_stays(benchmark: Any, note: Any, size: str, backend: str) -> None:
 def test_two_zones(benchmark: Any, note: Any, size: str) -> None:
     many = half_an_hour(*STAYS[size])
     data = stays.Stays(many.begin_s, many.end_s, many.cost_s[:, [0, -1]], [20, 500])
-    solution = benchmark(stays.solve_by_flow, data)
+    solution = benchmark(stays.solve, data, "flow")
     assert solution.gap < 1e-6
-    note("storage.stays", size, solution, f"{STAYS[size][0]} stays, 2 zones")
+    note("storage.stays", size, "flow", solution, f"{STAYS[size][0]} stays, 2 zones")

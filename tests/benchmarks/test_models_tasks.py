@@ -23,14 +23,16 @@ def pairs(robots: int, tasks: int) -> matching.Matching:
 
 
 @pytest.mark.benchmark(group="tasks: matching")
-@pytest.mark.parametrize("solver", ["scipy", "min_cost_flow"])
+@pytest.mark.parametrize("method", ["assignment", "flow"])
 @pytest.mark.parametrize("size", SIZES)
-def test_matching(benchmark: Any, note: Any, size: str, solver: str) -> None:
+def test_matching(benchmark: Any, note: Any, size: str, method: str) -> None:
     data = pairs(*SIZES[size])
-    solution = benchmark(matching.solve, data, solver=solver)
+    solution = benchmark(matching.solve, data, method)
     assert solution.gap < 1e-6
-    assert solution.objective <= matching.solve_greedily(data).objective + 1e-6
-    note("tasks.matching", size, solution, f"{SIZES[size][0]} robots, {SIZES[size][1]} tasks")
+    assert solution.objective <= matching.solve(data, "greedy").objective + 1e-6
+    note(
+        "tasks.matching", size, method, solution, f"{SIZES[size][0]} robots, {SIZES[size][1]} tasks"
+    )
 
 
 @pytest.mark.benchmark(group="tasks: balance")
@@ -50,16 +52,17 @@ def test_balance(benchmark: Any, note: Any, size: str) -> None:
     )
     solution = benchmark(balance.solve, data)
     assert solution.gap < 1e-6
-    assert solution.objective <= balance.solve_greedily(data).objective + 1e-6
+    assert solution.objective <= balance.solve(data, "greedy").objective + 1e-6
     note(
         "tasks.balance",
         size,
+        "flow",
         solution,
         f"{SIZES[size][0]} robots, {SIZES[size][1]} tasks, {STATIONS} stations",
     )
 
 
-def floor(robots: int, tasks: int, places: int) -> sequence.Sequence:
+def floor(robots: int, tasks: int, places: int) -> sequence.TaskSequence:
     """Points on 60 m by 40 m, stations along one side, rectangular ways at 1.3 m/s."""
     rng = np.random.default_rng(7)
     size = np.array([60.0, 40.0])
@@ -70,7 +73,7 @@ def floor(robots: int, tasks: int, places: int) -> sequence.Sequence:
     def drive_s(a: np.ndarray, b: np.ndarray) -> np.ndarray:
         return np.abs(a[:, None] - b[None]).sum(axis=2) / 1.3
 
-    return sequence.Sequence(
+    return sequence.TaskSequence(
         rng.uniform(0, 40, robots),
         rng.random(robots) < 0.6,
         drive_s(at_robot, at_pod),
@@ -90,16 +93,17 @@ def floor(robots: int, tasks: int, places: int) -> sequence.Sequence:
 @pytest.mark.parametrize("size", ROUTES)
 def test_sequence(benchmark: Any, note: Any, size: str) -> None:
     data = floor(*ROUTES[size])
-    rule = sequence.solve_greedily(data)
+    rule = sequence.solve(data, "greedy")
     near = sequence.short_ways(data, rule.required, tasks=3, places=2)
     given = {"start": rule.required, "ways": None if size == "small" else near}
     limits = Limits(deterministic_s=1.0)
-    solution = benchmark.pedantic(sequence.solve, (data, limits), given, rounds=3)
+    solution = benchmark.pedantic(sequence.solve, (data, "cp_sat", limits), given, rounds=3)
     assert solution.objective <= rule.objective + 1e-6
     assert solution.gap < (1e-6 if size == "small" else 0.3)
     note(
         "tasks.sequence",
         size,
+        "cp_sat",
         solution,
         f"{ROUTES[size][0]} robots, {ROUTES[size][1]} tasks, {ROUTES[size][2]} places",
     )
@@ -109,11 +113,12 @@ def test_sequence(benchmark: Any, note: Any, size: str) -> None:
 @pytest.mark.parametrize("size", ROUTES)
 def test_insertion(benchmark: Any, note: Any, size: str) -> None:
     data = floor(*ROUTES[size])
-    solution = benchmark.pedantic(sequence.solve_greedily, (data,), rounds=3)
+    solution = benchmark.pedantic(sequence.solve, (data, "greedy"), rounds=3)
     assert not sequence.violations(data, solution.required)
     note(
         "tasks.sequence",
         size,
+        "greedy",
         solution,
         f"{ROUTES[size][0]} robots, {ROUTES[size][1]} tasks, {ROUTES[size][2]} places",
     )

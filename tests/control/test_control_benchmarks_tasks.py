@@ -27,9 +27,9 @@ LIMIT_S = 1e-3
 PICK_SCORERS: list[Any] = [
     "random",
     "nearest",
-    {"scorer": "nearest", "metric": "euclidean"},
-    {"scorer": "nearest", "metric": "manhattan"},
-    {"scorer": "nearest", "metric": "path"},
+    {"criterion": "nearest", "metric": "euclidean"},
+    {"criterion": "nearest", "metric": "manhattan"},
+    {"criterion": "nearest", "metric": "path"},
     "pile-on",
     "age",
     "lateness",
@@ -125,9 +125,9 @@ def title(given: Any) -> str:
     return given if isinstance(given, str) else " ".join(str(value) for value in given.values())
 
 
-@pytest.mark.parametrize("scorer", PICK_SCORERS, ids=title)
-def test_pps_scorer_alone(benchmark, busy, scorer) -> None:
-    controller = rule(busy, Problem.PPS, "lexicographic", pick_pod=(scorer, "random"))
+@pytest.mark.parametrize("criterion", PICK_SCORERS, ids=title)
+def test_pps_criterion_alone(benchmark, busy, criterion) -> None:
+    controller = rule(busy, Problem.PPS, "lexicographic", pick_pod=(criterion, "random"))
     robot, station = busy.world.robots[149], busy.world.pick_stations[0]
     assert measure(benchmark, busy, lambda: controller.pick_pod(robot, station)) >= 0
 
@@ -139,9 +139,9 @@ def test_pps(benchmark, busy, name) -> None:
     assert measure(benchmark, busy, lambda: controller.pick_pod(robot, station)) >= 0
 
 
-@pytest.mark.parametrize("scorer", ["random", "nearest", "work-amount", "demand"])
-def test_pps_replenishment(benchmark, busy, scorer) -> None:
-    controller = rule(busy, Problem.PPS, "lexicographic", replenishment_pod=(scorer, "random"))
+@pytest.mark.parametrize("criterion", ["random", "nearest", "work-amount", "demand"])
+def test_pps_replenishment(benchmark, busy, criterion) -> None:
+    controller = rule(busy, Problem.PPS, "lexicographic", replenishment_pod=(criterion, "random"))
     robot, station = busy.world.robots[149], busy.world.replenishment_stations[0]
     assert measure(benchmark, busy, lambda: controller.replenishment_pod(robot, station)) >= 0
 

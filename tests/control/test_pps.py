@@ -1,4 +1,4 @@
-"""PPS scorers and rules in small situations, the answers worked out by hand."""
+"""PPS criteria and rules in small situations, the answers worked out by hand."""
 
 from __future__ import annotations
 
@@ -9,9 +9,7 @@ import pytest
 from doubles import Situation, small_layout
 
 from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
-from rmfs.control.pps.lexicographic import Lexicographic
-from rmfs.control.pps.random import RandomPod
-from rmfs.control.pps.scorers import (
+from rmfs.control.pps.criteria import (
     BundleDemand,
     BundleWorkAmount,
     Completeable,
@@ -19,8 +17,10 @@ from rmfs.control.pps.scorers import (
     Nearest,
     PickDemand,
     PickWorkAmount,
-    RandomScorer,
+    RandomCriterion,
 )
+from rmfs.control.pps.lexicographic import Lexicographic
+from rmfs.control.pps.random import RandomPod
 
 
 @pytest.fixture
@@ -60,7 +60,7 @@ class TestCandidates:
         assert found.pods.tolist() == [3]
 
 
-class TestScorers:
+class TestCriteria:
     @pytest.fixture
     def three_orders(self, situation) -> Situation:
         """Orders: 0 wants 2 of SKU 0; 1 wants 1 of SKU 0 and 1 of SKU 1; 2 wants 1 of SKU 1.
@@ -94,8 +94,8 @@ class TestScorers:
 
     def test_work_amount_counts_units_of_completed_orders_twice(self, three_orders) -> None:
         """3 + 2, 2 + 2, 5 + 5."""
-        scorer = PickWorkAmount(time_cost=0.0)
-        scores = scorer.score(candidates(three_orders), three_orders.rng)
+        criterion = PickWorkAmount(time_cost=0.0)
+        scores = criterion.score(candidates(three_orders), three_orders.rng)
         assert scores.tolist() == [5.0, 4.0, 10.0]
 
     def test_work_amount_charges_for_the_way(self, three_orders) -> None:
@@ -103,8 +103,8 @@ class TestScorers:
 
         At half a unit per second and without boost: 3 - 6.5, 2 - 7.5, 5 - 8.5.
         """
-        scorer = PickWorkAmount(time_cost=0.5, completable_boost=0.0)
-        scores = scorer.score(candidates(three_orders), three_orders.rng)
+        criterion = PickWorkAmount(time_cost=0.5, completable_boost=0.0)
+        scores = criterion.score(candidates(three_orders), three_orders.rng)
         assert scores.tolist() == [-3.5, -5.5, -3.5]
 
     def test_nearest_by_time_and_by_distance(self, three_orders) -> None:
@@ -119,8 +119,8 @@ class TestScorers:
     def test_nearest_along_the_axes_and_without_estimate(self, three_orders) -> None:
         """Robot (0, 2) to pod x: x + 2; on to (0, 10): x + 10. Traffic knows no turns: as long."""
         found = candidates(three_orders)
-        for scorer in (Nearest(metric="manhattan"), Nearest(estimate=False)):
-            assert scorer.score(found, three_orders.rng).tolist() == [-12.0, -14.0, -16.0]
+        for criterion in (Nearest(metric="manhattan"), Nearest(estimate=False)):
+            assert criterion.score(found, three_orders.rng).tolist() == [-12.0, -14.0, -16.0]
 
     def test_nearest_along_the_waypoints(self, three_orders) -> None:
         """No edge leads to a pod, but all are equally far then."""
@@ -130,7 +130,7 @@ class TestScorers:
     def test_random_is_uniform(self, three_orders) -> None:
         """Of 300 draws each pod is best in about 100."""
         found = candidates(three_orders)
-        best = [RandomScorer().score(found, three_orders.rng).argmax() for _ in range(300)]
+        best = [RandomCriterion().score(found, three_orders.rng).argmax() for _ in range(300)]
         assert all(70 < count < 130 for count in np.bincount(best, minlength=3))
 
     def test_narrowing_keeps_what_was_counted(self, three_orders) -> None:
@@ -154,7 +154,7 @@ class TestLexicographic:
         controller = situation.make(Lexicographic, **parameters)
         return controller.pick_pod(situation.world.robots[0], situation.world.pick_stations[0])
 
-    def test_the_second_scorer_decides_among_equals_of_the_first(self, situation) -> None:
+    def test_the_second_criterion_decides_among_equals_of_the_first(self, situation) -> None:
         """Pods 0 and 2 complete one order each, pod 1 none; pod 2 serves a unit more.
 
         Order 0 wants 1 of SKU 0, order 1 wants 2 of SKU 1. Pod 2 has one of each: 1 completed, 2
@@ -167,10 +167,10 @@ class TestLexicographic:
         situation.assigned(s0=1)
         situation.assigned(s1=2)
         assert self.choose(situation) == 0
-        free = {"scorer": "work-amount", "time_cost": 0.0}
+        free = {"criterion": "work-amount", "time_cost": 0.0}
         assert self.choose(situation, pick_pod=("completeable", free)) == 2
 
-    def test_the_first_scorer_outweighs_all_others(self, situation) -> None:
+    def test_the_first_criterion_outweighs_all_others(self, situation) -> None:
         """Pod 5 completes one order of one unit, pod 0 gives five units of another: pod 5."""
         situation.stock(0, s1=5)
         situation.stock(5, s0=1)
@@ -253,22 +253,22 @@ class TestDemand:
         situation.stock(0, s0=9)
         situation.stock(1, s0=1, s1=6)
         situation.stock(2, s0=2)
-        scorer = PickDemand()
-        scorer.prepare(situation.view)
+        criterion = PickDemand()
+        criterion.prepare(situation.view)
         situation.assigned(s0=2)
         situation.order(s0=3, s1=4)
-        assert scorer.score(candidates(situation), situation.rng).tolist() == [5, 5, 2]
+        assert criterion.score(candidates(situation), situation.rng).tolist() == [5, 5, 2]
 
     def test_bound_requests_are_wanted_no_more(self, situation) -> None:
         """Two units of the first order are bound to pod 3; three of the other remain wanted."""
         for pod in (0, 3):
             situation.stock(pod, s0=4)
-        scorer = PickDemand()
-        scorer.prepare(situation.view)
+        criterion = PickDemand()
+        criterion.prepare(situation.view)
         situation.assigned(s0=2)
         situation.world.start_pick(situation.world.robots[1], pod=3, station=0)
         situation.assigned(s0=3)
-        assert scorer.score(candidates(situation), situation.rng).tolist() == [3]
+        assert criterion.score(candidates(situation), situation.rng).tolist() == [3]
 
     def test_of_bundles_only_what_is_wanted_counts(self, situation) -> None:
         """Three of SKU 0 are wanted. Pod 2: a bundle of 4 of SKU 0: 3. Pod 3: two of SKU 1: 0."""
@@ -302,8 +302,8 @@ class TestAgeAndLateness:
         return situation
 
     def scores(self, aged, **parameters) -> list[float]:
-        scorer = PickWorkAmount(time_cost=0.0, **parameters)
-        return scorer.score(candidates(aged), aged.rng).tolist()
+        criterion = PickWorkAmount(time_cost=0.0, **parameters)
+        return criterion.score(candidates(aged), aged.rng).tolist()
 
     def test_age(self, aged) -> None:
         """50; 50 + 50 + 10; 10. With boost pod 1, which completes order 0: 100 more."""
@@ -318,10 +318,14 @@ class TestAgeAndLateness:
 
     def test_plain_names(self) -> None:
         parameters = Lexicographic.parameters_model(
-            pick_pod=("pile-on", "age", {"scorer": "lateness", "time_cost": 0.0})
+            pick_pod=("pile-on", "age", {"criterion": "lateness", "time_cost": 0.0})
         )
-        assert [scorer.metric for scorer in parameters.pick_pod] == ["picks", "age", "lateness"]
-        assert [scorer.time_cost for scorer in parameters.pick_pod] == [1 / 3, 1 / 3, 0.0]
+        assert [criterion.metric for criterion in parameters.pick_pod] == [
+            "picks",
+            "age",
+            "lateness",
+        ]
+        assert [criterion.time_cost for criterion in parameters.pick_pod] == [1 / 3, 1 / 3, 0.0]
 
     def test_age_of_bundles(self, situation) -> None:
         """Pod 2: a bundle assigned at 0 s; pod 3: two assigned at 60 s. At 100 s: 100 and 80."""
@@ -345,8 +349,8 @@ class TestTravelTime:
         found = candidates(situation)
 
         def score(**parameters) -> float:
-            scorer = PickWorkAmount(time_cost=1.0, completable_boost=0.0, **parameters)
-            return scorer.score(found, situation.rng).item()
+            criterion = PickWorkAmount(time_cost=1.0, completable_boost=0.0, **parameters)
+            return criterion.score(found, situation.rng).item()
 
         assert score() == 1 - 13
         assert score(estimate_to_pod=False) == 1 - 12
@@ -369,10 +373,10 @@ class TestTiers:
         assert found.other_tiers().tolist() == [1, 1, 1, 1]
         situation.world.robots[0].tier = 0
         assert found.other_tiers().tolist() == [0, 0, 2, 2]
-        scorer = PickWorkAmount(time_cost=0.0, completable_boost=0.0)
-        assert scorer.score(found, situation.rng).tolist() == [1, 1, -1999, -1999]
-        assert (RandomScorer().score(found, situation.rng) < 1).tolist() == [True] * 4
-        assert (RandomScorer().score(found, situation.rng)[2:] < -1).all()
+        criterion = PickWorkAmount(time_cost=0.0, completable_boost=0.0)
+        assert criterion.score(found, situation.rng).tolist() == [1, 1, -1999, -1999]
+        assert (RandomCriterion().score(found, situation.rng) < 1).tolist() == [True] * 4
+        assert (RandomCriterion().score(found, situation.rng)[2:] < -1).all()
 
 
 def test_random_takes_any_pod_with_work(situation) -> None:

@@ -6,7 +6,7 @@ import pytest
 from doubles import Situation, small_layout
 
 from rmfs.control.pps.lexicographic import Lexicographic
-from rmfs.control.pps.station_scorers import MostWork, NearestNextStation
+from rmfs.control.pps.station_criteria import MostWork, NearestNextStation
 
 
 class TestNextStation:
@@ -21,8 +21,8 @@ class TestNextStation:
         situation.carry(robot=0, pod=0)
         return situation
 
-    def choose(self, situation, *scorers) -> int:
-        rule = situation.make(Lexicographic, next_station=scorers)
+    def choose(self, situation, *criteria) -> int:
+        rule = situation.make(Lexicographic, next_station=criteria)
         return rule.next_station(situation.world.robots[0], [1, 2])
 
     def test_age(self, three) -> None:
@@ -44,8 +44,8 @@ class TestNextStation:
         robot = three.world.robots[0]
         scores = MostWork(metric="lateness").score(three.view, robot, [1], three.rng)
         assert scores.tolist() == [45.0]
-        scorer = MostWork(metric="lateness", only_positive_lateness=True)
-        assert scorer.score(three.view, robot, [1], three.rng).tolist() == [60.0]
+        criterion = MostWork(metric="lateness", only_positive_lateness=True)
+        assert criterion.score(three.view, robot, [1], three.rng).tolist() == [60.0]
 
     def test_nearest(self, three) -> None:
         scores = NearestNextStation().score(three.view, three.world.robots[0], [1, 2], three.rng)

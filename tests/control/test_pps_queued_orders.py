@@ -6,11 +6,11 @@ import pytest
 from doubles import Situation, small_layout
 
 from rmfs.control.pps.candidates import pick_candidates
-from rmfs.control.pps.random import RandomPod
-from rmfs.control.pps.scorers import (
+from rmfs.control.pps.criteria import (
     Completeable,
     PickWorkAmount,
 )
+from rmfs.control.pps.random import RandomPod
 from rmfs.world import verify
 
 
@@ -85,16 +85,16 @@ class TestQueuedOrders:
     def test_or_all_of_them(self, pooled) -> None:
         """Without boost: pod 1 has 2 units for the pool, pod 2 has 1, pod 3 has 3."""
         found = self.found(pooled, "assigned-and-queued")
-        scorer = PickWorkAmount(time_cost=0.0, completable_boost=0.0)
-        scores = scorer.score(found, pooled.rng)
+        criterion = PickWorkAmount(time_cost=0.0, completable_boost=0.0)
+        scores = criterion.score(found, pooled.rng)
         assert scores.tolist() == pytest.approx([1.0, 0.4, 0.2, 0.6])
 
     def test_age_since_they_were_queued(self, pooled) -> None:
         """At 100 s all are 100 s old; per request 100, 50 and 50. Pod 1: 0.2 x 100; pod 2: 0.2 x
         50; pod 3: 0.2 x 150."""
         pooled.world.now_s = 100.0
-        scorer = PickWorkAmount(metric="age", time_cost=0.0, completable_boost=0.0)
-        scores = scorer.score(self.found(pooled, "assigned-and-queued"), pooled.rng)
+        criterion = PickWorkAmount(metric="age", time_cost=0.0, completable_boost=0.0)
+        scores = criterion.score(self.found(pooled, "assigned-and-queued"), pooled.rng)
         assert scores.tolist() == pytest.approx([100.0, 20.0, 10.0, 30.0])
 
     def test_what_a_carried_pod_serves(self, pooled) -> None:

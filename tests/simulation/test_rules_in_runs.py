@@ -63,7 +63,7 @@ RUNS: dict[str, dict[str, Any]] = {
     "psa cache": {"psa": "cache"},
     "psa utility": {"psa": "utility"},
     "pps random": {"pps": "random"},
-    "pps all scorers": {
+    "pps all criteria": {
         "pps": {
             "pick_pod": [
                 "fill",
@@ -72,15 +72,17 @@ RUNS: dict[str, dict[str, Any]] = {
                 "lateness",
                 "completeable",
                 "pile-on",
-                {"scorer": "nearest", "metric": "path"},
+                {"criterion": "nearest", "metric": "path"},
                 "random",
             ],
-            "replenishment_pod": [{"scorer": "work-amount", "age": True}, "demand", "random"],
+            "replenishment_pod": [{"criterion": "work-amount", "age": True}, "demand", "random"],
             "next_station": ["age", "nearest", "random"],
         },
         "ta": {"other_stations": True, "search_radius_m": 30.0},
     },
-    "pps exact times": {"pps": {"pick_pod": [{"scorer": "work-amount", "estimate_to_pod": False}]}},
+    "pps exact times": {
+        "pps": {"pick_pod": [{"criterion": "work-amount", "estimate_to_pod": False}]}
+    },
     "pps without late binding": {"pps": {"late_picks": False, "late_bundles": False}},
     "pps queued orders": {"poa": "queue"},
     "pps all queued orders": {"poa": "queue", "pps": ANY_QUEUED},

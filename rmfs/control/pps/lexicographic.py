@@ -1,4 +1,4 @@
-"""PPS lexicographic: one scorer after the other, each among what the former left equal."""
+"""PPS lexicographic: one criterion after the other, each among what the former left equal."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ import pydantic
 
 from rmfs.control.pps import LateBinding, PodSelection
 from rmfs.control.pps.candidates import Candidates, pick_candidates, replenishment_candidates
-from rmfs.control.pps.scorers import (
-    BundleScorer,
+from rmfs.control.pps.criteria import (
+    BundleCriterion,
     BundleWorkAmount,
     Completeable,
     Nearest,
-    PickScorer,
+    PickCriterion,
     PickWorkAmount,
-    RandomScorer,
+    RandomCriterion,
 )
-from rmfs.control.pps.station_scorers import (
+from rmfs.control.pps.station_criteria import (
     MostWork,
     NearestNextStation,
-    NextStationScorer,
+    NextStationCriterion,
     RandomNextStation,
 )
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 AtLeastOne = pydantic.Field(min_length=1)
 
 
-class Scorer(Protocol):
+class Criterion(Protocol):
     """Rates candidates; the highest score wins."""
 
     def score(self, candidates: Any, rng: np.random.Generator) -> np.ndarray[Any, Any]:
@@ -46,30 +46,30 @@ class Scorer(Protocol):
 class LexicographicParameters(LateBinding):
     """Parameters of PPS lexicographic."""
 
-    pick_pod: Annotated[tuple[PickScorer, ...], AtLeastOne] = (
+    pick_pod: Annotated[tuple[PickCriterion, ...], AtLeastOne] = (
         Completeable(),
         PickWorkAmount(),
         Nearest(),
     )
-    """Scorers of pods for a pick station, the first counting most: `random`, `nearest`, `pile-on`
+    """Criteria of pods for a pick station, the first counting most: `random`, `nearest`, `pile-on`
     (or `work-amount`), `age`, `lateness`, `completeable`, `demand`, `fill`."""
-    replenishment_pod: Annotated[tuple[BundleScorer, ...], AtLeastOne] = (
+    replenishment_pod: Annotated[tuple[BundleCriterion, ...], AtLeastOne] = (
         BundleWorkAmount(),
         Nearest(metric="euclidean"),
-        RandomScorer(),
+        RandomCriterion(),
     )
-    """Scorers of pods for a replenishment station: `random`, `nearest`, `work-amount`, `demand`."""
-    next_station: Annotated[tuple[NextStationScorer, ...], AtLeastOne] = (
+    """The same for a replenishment station: `random`, `nearest`, `work-amount`, `demand`."""
+    next_station: Annotated[tuple[NextStationCriterion, ...], AtLeastOne] = (
         MostWork(),
         NearestNextStation(),
         RandomNextStation(),
     )
-    """Scorers of stations for a pod that has been served, if TA lets it go on to others: `random`,
+    """Criteria of stations for a pod that has been served, if TA lets it go on to others: `random`,
     `nearest`, `work-amount` (or `pile-on`, `age`, `lateness`)."""
 
 
 class Lexicographic(PodSelection[LexicographicParameters]):
-    """Takes the pod that is best by the first scorer, then by the second, and so on.
+    """Takes the pod that is best by the first criterion, then by the second, and so on.
 
     Full ties: the pod, or the station, with the lowest number.
 
@@ -83,36 +83,36 @@ class Lexicographic(PodSelection[LexicographicParameters]):
         self, parameters: LexicographicParameters, view: View, rng: np.random.Generator
     ) -> None:
         super().__init__(parameters, view, rng)
-        for scorer in (*parameters.pick_pod, *parameters.replenishment_pod):
-            scorer.prepare(view)
+        for criterion in (*parameters.pick_pod, *parameters.replenishment_pod):
+            criterion.prepare(view)
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
-        """Choose by the scorers for pick stations."""
+        """Choose by the criteria for pick stations."""
         candidates = pick_candidates(self.view, robot, station, self.parameters.consider)
         return self._best(candidates, self.parameters.pick_pod)
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Choose by the scorers for replenishment stations."""
+        """Choose by the criteria for replenishment stations."""
         candidates = replenishment_candidates(self.view, robot, station)
         return self._best(candidates, self.parameters.replenishment_pod)
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Choose by the scorers of stations."""
+        """Choose by the criteria of stations."""
         left = list(stations)
-        for scorer in self.parameters.next_station:
+        for criterion in self.parameters.next_station:
             if len(left) == 1:
                 break
-            scores = scorer.score(self.view, robot, left, self.rng)
+            scores = criterion.score(self.view, robot, left, self.rng)
             left = [left[position] for position in (scores == scores.max()).nonzero()[0].tolist()]
         return left[0]
 
-    def _best(self, candidates: Candidates, scorers: Sequence[Scorer]) -> int:
+    def _best(self, candidates: Candidates, criteria: Sequence[Criterion]) -> int:
         if not len(candidates):
             return -1
-        for scorer in scorers:
+        for criterion in criteria:
             if len(candidates) == 1:
                 break
-            scores = scorer.score(candidates, self.rng)
+            scores = criterion.score(candidates, self.rng)
             tied = (scores == scores.max()).nonzero()[0]
             if len(tied) < len(candidates):
                 candidates = candidates.narrowed(tied)

@@ -189,17 +189,17 @@ def pps(kind: str, block: Settings) -> Table:
     if kind == "Swarm":
         table |= {"late_picks": False, "late_bundles": False}
         selection.note("Swarm binds nothing on the way, whatever OnTheFlyExtract and -Store say")
-    table["pick_pod"] = _scorers(
+    table["pick_pod"] = _criteria(
         selection, "OutputPodScorer", _PICK_POD, ("Completeable", "WorkAmount", "Nearest")
     )
-    table["replenishment_pod"] = _scorers(
+    table["replenishment_pod"] = _criteria(
         selection, "InputPodScorer", _REPLENISHMENT_POD, ("WorkAmount", "Nearest", "Random")
     )
     _next_stations(selection, table)
     selection.text("Name")
     selection.leave_rest()
-    scorers = [*table["pick_pod"], *table["replenishment_pod"], *table["next_station"]]
-    if all(scorer["scorer"] == "random" for scorer in scorers):
+    criteria = [*table["pick_pod"], *table["replenishment_pod"], *table["next_station"]]
+    if all(criterion["criterion"] == "random" for criterion in criteria):
         binding = {key: table[key] for key in ("late_picks", "late_bundles", "consider", "reserve")}
         return {
             "name": "random",
@@ -210,34 +210,34 @@ def pps(kind: str, block: Settings) -> Table:
 
 
 def _next_stations(selection: Settings, table: Table) -> None:
-    """Map the two lists of scorers of stations, for which we have one."""
+    """Map the two lists of criteria of stations, for which we have one."""
     usual = ("WorkAmount", "Nearest", "Random")
-    picks = _scorers(selection, "OutputExtendedSearchScorer", _NEXT_PICK, usual)
-    bundles = _scorers(selection, "InputExtendedSearchScorer", _NEXT_REPLENISHMENT, usual)
-    named = [[scorer["scorer"] for scorer in scorers] for scorers in (picks, bundles)]
+    picks = _criteria(selection, "OutputExtendedSearchScorer", _NEXT_PICK, usual)
+    bundles = _criteria(selection, "InputExtendedSearchScorer", _NEXT_REPLENISHMENT, usual)
+    named = [[criterion["criterion"] for criterion in criteria] for criteria in (picks, bundles)]
     if named[0] != named[1]:
         selection.note(
             "pods that go on to another station are scored alike for both kinds of station: "
             f"InputExtendedSearchScorer ({', '.join(named[1])}) is left out"
         )
-    for scorer, other in zip(picks, bundles, strict=True):
-        if scorer["scorer"] == other["scorer"] == "work-amount":
-            scorer["bundle_age"] = other["bundle_age"]
+    for criterion, other in zip(picks, bundles, strict=True):
+        if criterion["criterion"] == other["criterion"] == "work-amount":
+            criterion["bundle_age"] = other["bundle_age"]
     table["next_station"] = picks
 
 
-def _scorers(
+def _criteria(
     selection: Settings, tag: str, rules: dict[str, Rule], usual: tuple[str, str, str]
 ) -> list[Table]:
-    """Return a scorer and its two tie breakers; absent ones are the usual ones."""
+    """Return a criterion and its two tie breakers; absent ones are the usual ones."""
     found = []
     for end, default in zip(("", "TieBreaker1", "TieBreaker2"), usual, strict=True):
         block = selection.block(tag + end)
         word = next((word for word in rules if block.kind.endswith(word)), None)
         if block.kind and word is None:
-            raise selection.error(tag + end, f"unknown scorer {block.kind:.60}")
+            raise selection.error(tag + end, f"unknown criterion {block.kind:.60}")
         table = translated(block, rules[word or default])
-        table["scorer"] = table.pop("name")
+        table["criterion"] = table.pop("name")
         block.leave_rest()
         found.append(table)
     return found

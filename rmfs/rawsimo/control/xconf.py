@@ -84,7 +84,7 @@ def read_xconf(path: Path) -> ImportedControllers:
         if problem == "ta":
             table["pps"] = tasks.pps(method, block)
         block.leave_rest()
-        # the same is often said of each of several scorers
+        # the same is often said of each of several criteria
         notes[before:] = dict.fromkeys(f"{given.tag}: {note}" for note in notes[before:])
     root.leave_rest()
     _let_robots_decide(table, notes)

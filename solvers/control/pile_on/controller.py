@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import inf
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rmfs.control.poa import PickOrderAssignment
 from rmfs.control.pps.lexicographic import Lexicographic
 from rmfs.control.problems import Problem, Trigger
+from rmfs.solvers.control.buffer import Buffer
 from rmfs.solvers.control.pile_on import snapshot
 from rmfs.solvers.control.pile_on.parameters import PileOnParameters
 from rmfs.solvers.control.pile_on.plan import Plan
@@ -52,9 +52,8 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         super().__init__(parameters, view, rng)
         self._heuristic = Lexicographic(Lexicographic.parameters_model(), view, rng)
         self._plan = Plan(view, parameters.kept_slots)
-        self._asked_s = -inf
+        self._buffer = Buffer(view, parameters.buffer_s)
         self._arrived = True
-        self._wants_to_ask = False
 
     # --- orders ---------------------------------------------------------------------------------
 
@@ -64,16 +63,14 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
 
     def next_event_s(self) -> float:
         """When the optimiser may be asked again, if it is to be asked."""
-        return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
+        return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Decision]:
         """Fill slots by the plan, and ask if it has to be extended."""
         yield from self._carry_out()
-        self._wants_to_ask = not self.in_flight and self._is_short()
-        if not self._wants_to_ask or self.view.now_s < self._asked_s + self.parameters.buffer_s:
+        if not self._buffer.is_over(not self.in_flight and self._is_short()):
             return
-        self._asked_s = self.view.now_s
-        self._wants_to_ask = False
+        self._buffer.begin()
         taken = snapshot.take(self.view, self._plan, self.parameters)
         self._arrived = False
         if taken is not None:

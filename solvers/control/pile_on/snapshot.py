@@ -11,7 +11,7 @@ from rmfs.control.asks import Ask
 from rmfs.solvers.control.pile_on.plan import Item
 from rmfs.solvers.control.pile_on.question import Question, solve
 from rmfs.solvers.models.pile_on import Candidates, PileOn, everything
-from rmfs.solvers.models.pile_on.draft import Draft
+from rmfs.solvers.models.pile_on.partial_assignment import PartialAssignment
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,8 +34,6 @@ class Snapshot:
 
     Attributes
     ----------
-    may_call
-        Stations that need a pod, shape (S,).
     items
         The order, or line, of each order number of the model.
     robots
@@ -43,7 +41,6 @@ class Snapshot:
     """
 
     data: PileOn
-    may_call: NDArray[np.bool_]
     items: Sequence[Item]
     robots: Sequence[Robot] = ()
 
@@ -58,9 +55,7 @@ class Snapshot:
             "skus": data.skus,
             "robots": data.robots,
         }
-        question = Question(
-            data, self.may_call, given.method, given.limits, given.pruning, given.bound_steps
-        )
+        question = Question(data, given.method, given.limits, given.pruning, given.bound_steps)
         return Ask(solve, question, sizes, self)
 
 
@@ -95,7 +90,7 @@ def take(
         slots = np.minimum(np.maximum(free, 0), data.slots)
     if not slots.any() and not data.shortage.any():
         return None
-    return Snapshot(replace(data, slots=slots), may_call, items, robots or ())
+    return Snapshot(replace(data, slots=slots, may_call=may_call), items, robots or ())
 
 
 def _items(view: View, plan: Plan, split: bool) -> list[Item]:
@@ -194,8 +189,10 @@ def _needs_pod(view: View, plan: Plan, given: JointParameters, station: PickStat
 def _coverable(data: PileOn) -> NDArray[np.int64]:
     """How many orders each station can fill from pods on their way alone, shape (S,)."""
     pairs = everything(data)
-    draft = Draft(data, Candidates(np.zeros_like(pairs.calls), pairs.places, pairs.fetches))
+    partial = PartialAssignment(
+        data, Candidates(np.zeros_like(pairs.calls), pairs.places, pairs.fetches)
+    )
     for station in np.argsort(data.slots, kind="stable").tolist():
-        draft.fill(station)
-    placed = draft.order_station[draft.order_station >= 0]
+        partial.fill(station)
+    placed = partial.order_station[partial.order_station >= 0]
     return np.bincount(placed, minlength=data.stations)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import inf
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -21,6 +20,7 @@ from rmfs.control.problems import Problem, Trigger
 from rmfs.control.ta import WORK, TaskAllocation
 from rmfs.control.ta.rest import RestPlaces, RestRule
 from rmfs.control.ta.stations import keeper_of
+from rmfs.solvers.control.buffer import Buffer
 from rmfs.solvers.control.pile_on import snapshot
 from rmfs.solvers.control.pile_on.parameters import JointParameters
 from rmfs.solvers.control.pile_on.plan import Plan
@@ -110,9 +110,8 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
         self._plan = Plan(view, parameters.kept_slots)
         self._rest = RestPlaces(view, parameters.rest, self.draw)
         self._at_bundles = max(round(parameters.replenishment_share * len(view.robots)), 1)
-        self._asked_s = -inf
+        self._buffer = Buffer(view, parameters.buffer_s)
         self._changed = True
-        self._wants_to_ask = False
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
         """Take note that the model may decide otherwise than before.
@@ -124,7 +123,7 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
 
     def next_event_s(self) -> float:
         """When the optimiser may be asked again, if it is to be asked."""
-        return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
+        return self._buffer.next_event_s
 
     def decide(self, consult: Consult) -> Iterator[Decision]:
         """Carry out the plan, ask if slots are left, and give the other robots their tasks."""
@@ -160,14 +159,13 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
     # --- the model ------------------------------------------------------------------------------
 
     def _ask(self) -> Iterator[Decision]:
-        given, now_s = self.parameters, self.view.now_s
-        self._wants_to_ask = self._changed and not self.in_flight and self._is_short()
-        if not self._wants_to_ask or now_s < self._asked_s + given.buffer_s:
+        if not self._buffer.is_over(self._changed and not self.in_flight and self._is_short()):
             return
-        self._asked_s, self._changed, self._wants_to_ask = now_s, False, False
-        taken = snapshot.take(self.view, self._plan, given, self._free_robots())
+        self._buffer.begin()
+        self._changed = False
+        taken = snapshot.take(self.view, self._plan, self.parameters, self._free_robots())
         if taken is not None:
-            yield taken.ask(given)
+            yield taken.ask(self.parameters)
 
     def _is_short(self) -> bool:
         """Whether there is a slot, or an open request, for which nothing is planned."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from math import inf
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from rmfs.control.problems import Trigger
 from rmfs.control.psa import PodStorageAssignment
 from rmfs.control.psa.nearest import Nearest
+from rmfs.solvers.control.buffer import Buffer
 from rmfs.solvers.control.foresight import Foresight
 from rmfs.solvers.control.storage.parameters import StorageParameters
 from rmfs.solvers.control.storage.ways import Ways
@@ -41,8 +41,7 @@ class Ahead(PodStorageAssignment[P]):
         self.ways = Ways(view)
         self._heuristic = Nearest(Nearest.parameters_model(), view, rng)
         self._plan: dict[int, tuple[int, Call]] = {}
-        self._asked_s = -inf
-        self._wants_to_ask = False
+        self._buffer = Buffer(view, parameters.buffer_s)
 
     @abstractmethod
     def question(self, robots: Sequence[Robot]) -> Ask[Any]:
@@ -54,17 +53,15 @@ class Ahead(PodStorageAssignment[P]):
 
     def next_event_s(self) -> float:
         """When the optimiser may be asked again, if it is to be asked."""
-        return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
+        return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Ask[Any]]:
         """Ask, unless it was done a moment ago or the answer is still out."""
-        late = self.view.now_s >= self._asked_s + self.parameters.buffer_s
-        self._wants_to_ask = not late and not self.in_flight
-        if self.in_flight or not late:
+        if not self._buffer.is_over(not self.in_flight):
             return
         robots = [robot for robot in self.view.robots if _will_store(robot)]
         if robots and self.view.storage.is_empty.any():
-            self._asked_s = self.view.now_s
+            self._buffer.begin()
             yield self.question(robots)
 
     def answered(self, call: Call) -> Iterator[Any]:

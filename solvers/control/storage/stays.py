@@ -15,7 +15,8 @@ from rmfs.solvers.control.storage.ahead import Ahead
 from rmfs.solvers.control.storage.bands import bands, means
 from rmfs.solvers.control.storage.parameters import Positive, StorageParameters
 from rmfs.solvers.models.solution import Limits
-from rmfs.solvers.models.storage.stays import Stays, solve_by_cp_sat, solve_greedily
+from rmfs.solvers.models.storage import stays
+from rmfs.solvers.models.storage.stays import Stays
 from rmfs.solvers.models.storage.zones import expected_stay_h
 
 if TYPE_CHECKING:
@@ -46,8 +47,8 @@ class Question:
 
 def solve(question: Question) -> Answer:
     """Find the zone of each pod that returns: `zone`, shape (returning,)."""
-    rule = solve_greedily(question.data)
-    found = solve_by_cp_sat(question.data, question.limits, start=rule.values)
+    rule = stays.solve(question.data, "greedy")
+    found = stays.solve(question.data, "cp_sat", question.limits, start=rule.values)
     values = None if found.values is None else {"zone": found.values[: question.returning]}
     return answer(found, values)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from math import inf
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import pydantic
@@ -12,6 +11,7 @@ from rmfs.control.decisions import Park, Rest, TaskDecision
 from rmfs.control.ta import TaskAllocation
 from rmfs.control.ta.rest import RestPlaces, RestRule
 from rmfs.control.ta.stations import bring, keeper_of
+from rmfs.solvers.control.buffer import Buffer
 from rmfs.solvers.control.parameters import BufferParameters
 
 if TYPE_CHECKING:
@@ -59,8 +59,7 @@ class Asking(TaskAllocation[P]):
         super().__init__(parameters, view, rng)
         self._rest = RestPlaces(view, parameters.rest, self.draw)
         self._seen: tuple[tuple[int, ...], ...] | None = None
-        self._asked_s = -inf
-        self._wants_to_ask = False
+        self._buffer = Buffer(view, parameters.buffer_s)
 
     @abstractmethod
     def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Any]:
@@ -72,16 +71,13 @@ class Asking(TaskAllocation[P]):
 
     def next_event_s(self) -> float:
         """When the optimiser may be asked again, if it is to be asked."""
-        return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
+        return self._buffer.next_event_s
 
     def decide(self, consult: Consult) -> Iterator[Told]:
         """Ask if there is something to ask, or let the rule decide while the answer is out."""
         self._consult = consult
-        if not self.in_flight and self._has_news():
-            late = self.view.now_s >= self._asked_s + self.parameters.buffer_s
-            self._wants_to_ask = not late
-            if late:
-                yield self._ask(consult)
+        if self._buffer.is_over(not self.in_flight and self._has_news()):
+            yield self._ask(consult)
         if self.in_flight and self.parameters.rule_meanwhile:
             for robot in list(self.view.asking.values()):
                 if robot.pod >= 0 and robot.task is None:
@@ -125,7 +121,7 @@ class Asking(TaskAllocation[P]):
         return max(0, self.parameters.robots_per_station - len(target.tasks))
 
     def _ask(self, consult: Consult) -> Ask[Any]:
-        self._asked_s = self.view.now_s
+        self._buffer.begin()
         self._seen = self._versions()
         robots = [robot for robot in self.view.asking.values() if robot.task is None]
         return self.question([*robots, *self.view.resting.values()], consult)

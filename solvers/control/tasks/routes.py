@@ -19,7 +19,7 @@ from rmfs.solvers.control.tasks.asking import Asking, NotNegative, TaskParameter
 from rmfs.solvers.control.tasks.jobs import Job, Worth, jobs
 from rmfs.solvers.models.solution import Limits
 from rmfs.solvers.models.tasks import sequence
-from rmfs.solvers.models.tasks.sequence import Sequence as Routing
+from rmfs.solvers.models.tasks.sequence import TaskSequence
 from rmfs.world.tasks import TaskKind
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Question:
         insertion alone.
     """
 
-    data: Routing
+    data: TaskSequence
     limits: Limits
     tasks: int
     places: int
@@ -60,10 +60,10 @@ def solve(question: Question) -> Answer:
     Insertion first, then CP-SAT from there over the shortest ways.
     """
     data = question.data
-    found = sequence.solve_greedily(data)
+    found = sequence.solve(data, "greedy")
     if found.values is not None and question.tasks and data.tasks:
         ways = sequence.short_ways(data, found.values, tasks=question.tasks, places=question.places)
-        found = sequence.solve(data, question.limits, start=found.values, ways=ways)
+        found = sequence.solve(data, "cp_sat", question.limits, start=found.values, ways=ways)
     if found.values is None:
         return answer(found, None)
     routes = found.values
@@ -220,7 +220,7 @@ class RoutesControl(Asking[RoutesParameters]):
 
     def _routing(
         self, robots: Sequence[Robot], tasks: Sequence[Job], places: NDArray[np.int32]
-    ) -> Routing:
+    ) -> TaskSequence:
         view, travel = self.view, self.view.travel
         at = np.array([view.storage.place_of[job.pod] for job in tasks], np.int32)
         of = [view.stations[job.station].waypoint for job in tasks]
@@ -234,7 +234,7 @@ class RoutesControl(Asking[RoutesParameters]):
         stow_s = np.zeros((len(robots), len(places)))
         carriers = np.flatnonzero(carrying)
         stow_s[carriers] = away_s([robots[row].waypoint for row in carriers.tolist()])
-        return Routing(
+        return TaskSequence(
             ready_s=np.array([self._ready_s(robot) for robot in robots]),
             carrying=carrying,
             reach_s=np.array([travel.estimate_s(robot.waypoint, at) for robot in robots]).reshape(

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from rmfs.solvers.models.backends.flow import Network, min_cost_flow
-from rmfs.solvers.models.solution import Solution, Status
+from rmfs.solvers.models.solution import Solution, solution_of_optimum
 
 Solver = Literal["scipy", "min_cost_flow"]
 """Shortest augmenting paths on real costs (SciPy), or cost scaling on whole ones (OR-Tools)."""
@@ -96,18 +96,19 @@ def solve_by_assignment(
     -------
     The best values, or that there are none; work in entries of the table.
     """
-    begin = perf_counter()
+    began = perf_counter()
     cost = table()
-    build_s = perf_counter() - begin
+    built = perf_counter()
     assigned = assign(cost, solver)
-    wall_s = perf_counter() - begin
-    if assigned is None:
-        work, status = float(cost.size), Status.INFEASIBLE
-        return Solution(None, math.inf, math.inf, status, solver, wall_s, build_s, work)
-    values = read(assigned.column)
-    value = objective(values)
-    bound = min(assigned.bound, value)
-    return Solution(values, value, bound, Status.OPTIMAL, solver, wall_s, build_s, assigned.work)
+    return solution_of_optimum(
+        None if assigned is None else read(assigned.column),
+        objective,
+        bound=math.inf if assigned is None else assigned.bound,
+        backend=solver,
+        work=float(cost.size),
+        began=began,
+        built=built,
+    )
 
 
 def greedy_assign(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:

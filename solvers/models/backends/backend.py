@@ -45,11 +45,15 @@ class Formulation(Generic[V]):
         Writes values as columns of the programme.
     decode
         Reads values off the columns.
+    objective, violations
+        The model's own.
     """
 
     program: LinearProgram
     encode: Callable[[V], NDArray[np.float64]]
     decode: Callable[[NDArray[np.float64]], V]
+    objective: Callable[[V], float]
+    violations: Callable[[V], list[str]]
 
 
 def solve_by(
@@ -59,10 +63,8 @@ def solve_by(
     *,
     seed: int,
     start: V | None,
-    objective: Callable[[V], float],
-    violations: Callable[[V], list[str]],
 ) -> Solution[V]:
-    """Check the start, state the programme, hand it over, and read the answer.
+    """State the programme, check the start, hand both over, and read the answer.
 
     Parameters
     ----------
@@ -74,8 +76,6 @@ def solve_by(
         As the back ends say.
     start
         Values to start from, or None.
-    objective, violations
-        The model's own: the objective is recomputed, and the start has to be feasible.
 
     Returns
     -------
@@ -87,15 +87,16 @@ def solve_by(
         If the start is not feasible.
     """
     begin = perf_counter()
-    if start is not None:
-        broken = violations(start)
-        require(not broken, "start", "; ".join(broken))
     formulation = formulate()
-    point = None if start is None else formulation.encode(start)
+    point = None
+    if start is not None:
+        broken = formulation.violations(start)
+        require(not broken, "start", "; ".join(broken))
+        point = formulation.encode(start)
     built_s = perf_counter() - begin
     outcome = backend(formulation.program, limits, seed=seed, start=point)
-    found = outcome.solution(formulation.decode, objective, build_s=built_s)
-    return found if start is None else at_least(found, start, objective(start))
+    found = outcome.solution(formulation.decode, formulation.objective, build_s=built_s)
+    return found if start is None else at_least(found, start, formulation.objective(start))
 
 
 def at_least(found: Solution[V], start: V, value: float) -> Solution[V]:

@@ -117,7 +117,7 @@ def everything(data: PileOn) -> Candidates:
     calls = (data.stock > 0).astype(np.float32) @ wanted.T.astype(np.float32) > 0
     calls &= data.available[:, None]
     places = np.broadcast_to(takes_orders, (data.orders, data.stations))
-    return Candidates(calls, places, _fetches(data, calls))
+    return Candidates(calls & data.callable_to, places, _fetches(data, calls))
 
 
 def prune(data: PileOn, pruning: Pruning | None = None) -> Candidates:
@@ -156,7 +156,7 @@ def prune(data: PileOn, pruning: Pruning | None = None) -> Candidates:
         free = data.free_robots
         rank = np.argsort(np.argsort(data.fetch[free], axis=0, kind="stable"), axis=0)
         fetches[free] &= rank < keep.robots_per_pod
-    return Candidates(calls, places, fetches)
+    return Candidates(calls & data.callable_to, places, fetches)
 
 
 def _order_price(data: PileOn, sku_price: Floats) -> Floats:

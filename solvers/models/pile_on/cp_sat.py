@@ -1,4 +1,4 @@
-"""The pile-on models with CP-SAT: the back end for decisions under a deterministic time limit."""
+"""The pile-on models with CP-SAT."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import partial
 from rmfs.solvers.models.backends import cp_sat
 from rmfs.solvers.models.pile_on.candidates import Candidates
 from rmfs.solvers.models.pile_on.data import PileOn
-from rmfs.solvers.models.pile_on.exact import solve_with
+from rmfs.solvers.models.pile_on.program import solve_program
 from rmfs.solvers.models.pile_on.values import Assignment
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
 
@@ -21,18 +21,12 @@ def solve(
     candidates: Candidates | None = None,
     strengthen: bool = True,
 ) -> Solution[Assignment]:
-    """Decide with CP-SAT.
+    """Decide with CP-SAT; `deterministic_s` and `gap` apply.
 
     Parameters
     ----------
-    data
-        The input.
-    limits
-        ``deterministic_s`` and ``gap`` apply. Default: to optimality.
-    seed
-        Seed of the solver. Default 0.
-    start
-        A feasible decision to start from; the result is never worse. Default: none.
+    data, limits, seed, start
+        As for every method.
     candidates
         The pairs to use. Default: all. With pruned pairs the bound is -inf.
     strengthen
@@ -42,13 +36,6 @@ def solve(
     -------
     The solution; always with values.
     """
-    return solve_with(
-        # The formulation is tight as it stands: presolving takes longer than it saves.
-        partial(cp_sat.solve, presolve=False),
-        data,
-        limits,
-        seed=seed,
-        start=start,
-        candidates=candidates,
-        strengthen=strengthen,
-    )
+    # the formulation is tight as it stands: presolving takes longer than it saves
+    backend = partial(cp_sat.solve, presolve=False)
+    return solve_program(backend, data, limits, seed, start, candidates, strengthen)

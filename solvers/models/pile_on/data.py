@@ -56,6 +56,9 @@ class PileOn:
         other pod; its pod, if available, needs no other robot.
     worth
         Extra reward for giving an order its (first) slot, shape (O,): age, due time. Default: none.
+    may_call
+        Whether pods may be called to each station, shape (S,); to the others comes what comes
+        anyway. Default: to all.
     variant
         How orders may be covered. Default: whole.
     weights
@@ -79,6 +82,7 @@ class PileOn:
     fetch: Floats | None = None
     robot_pod: Integers | None = None
     worth: Floats | None = None
+    may_call: Flags | None = None
     variant: Variant = Variant.WHOLE
     weights: Weights = field(default_factory=Weights)
 
@@ -107,6 +111,8 @@ class PileOn:
             checked["robot_pod"] = integers("robot_pod", bound, (robots,), low=-1, high=pods - 1)
         if self.worth is not None:
             checked["worth"] = reals("worth", self.worth, (orders,), low=0)
+        if self.may_call is not None:
+            checked["may_call"] = flags("may_call", self.may_call, (stations,))
         for name, value in checked.items():
             object.__setattr__(self, name, value)
         self._check_relations()
@@ -214,6 +220,11 @@ class PileOn:
         if self.robot_pod is not None:
             needs[self.robot_pod[self.robot_pod >= 0]] = False
         return needs
+
+    @cached_property
+    def callable_to(self) -> Flags:
+        """`may_call`, true where none is given, shape (S,)."""
+        return np.ones(self.stations, np.bool_) if self.may_call is None else self.may_call
 
     @cached_property
     def order_worth(self) -> Floats:

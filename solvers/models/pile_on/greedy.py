@@ -15,12 +15,15 @@ from collections.abc import Callable
 
 from rmfs.solvers.models.pile_on.candidates import Candidates, everything
 from rmfs.solvers.models.pile_on.data import PileOn
-from rmfs.solvers.models.pile_on.draft import Call, Draft, decision, drop_idle
-from rmfs.solvers.models.pile_on.partial import cover_rest
+from rmfs.solvers.models.pile_on.leftovers import cover_rest
+from rmfs.solvers.models.pile_on.partial_assignment import (
+    Call,
+    PartialAssignment,
+    decision,
+    drop_idle,
+)
 from rmfs.solvers.models.pile_on.values import Assignment, objective
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
-
-NAME = "greedy"
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_rule
 
 
 def solve(
@@ -31,18 +34,12 @@ def solve(
     start: Assignment | None = None,
     candidates: Candidates | None = None,
 ) -> Solution[Assignment]:
-    """Decide by greatest gain.
+    """Decide by greatest gain; `iterations` limits the calls of pods.
 
     Parameters
     ----------
-    data
-        The input.
-    limits
-        ``iterations`` limits the calls of pods. Default: none.
-    seed
-        Not used: nothing is drawn.
-    start
-        Not used: the rule builds from nothing.
+    data, limits, seed, start
+        As for every method; neither seed nor start is used.
     candidates
         The pairs to use. Default: all.
 
@@ -51,55 +48,52 @@ def solve(
     A feasible decision without a bound.
     """
     began = time.perf_counter()
-    draft = Draft(data, candidates or everything(data))
-    fill_slots(draft, limits.iterations)
-    drop_idle(draft)
-    add_prospects(draft, limits.iterations)
-    values = cover_rest(data, decision(draft))
-    ended = time.perf_counter()
-    return Solution(
-        values=values,
-        objective=objective(data, values),
+    partial = PartialAssignment(data, candidates or everything(data))
+    fill_slots(partial, limits.iterations)
+    drop_idle(partial)
+    add_prospects(partial, limits.iterations)
+    values = cover_rest(data, decision(partial))
+    return solution_of_rule(
+        values,
+        lambda values: objective(data, values),
         bound=float("-inf"),
-        status=Status.FEASIBLE,
-        backend=NAME,
-        wall_s=ended - began,
-        work=float(draft.scored),
+        work=float(partial.scored),
+        began=began,
     )
 
 
-def fill_slots(draft: Draft, most: int | None = None) -> None:
+def fill_slots(partial: PartialAssignment, most: int | None = None) -> None:
     """Place orders and call pods until nothing gains any more.
 
     Parameters
     ----------
-    draft
-        The draft to complete.
+    partial
+        The partial assignment to complete.
     most
         Most calls to make. Default: no limit.
     """
-    for station in range(draft.data.stations):
-        draft.fill(station)
-    _best_first(draft, draft.best_call, lambda call: draft.fill(call.station), most)
+    for station in range(partial.data.stations):
+        partial.fill(station)
+    _best_first(partial, partial.best_call, lambda call: partial.fill(call.station), most)
 
 
-def add_prospects(draft: Draft, most: int | None = None) -> None:
+def add_prospects(partial: PartialAssignment, most: int | None = None) -> None:
     """Count the orders that leftovers cover, and call pods that bring more of them than they cost.
 
     Parameters
     ----------
-    draft
-        A draft with its slots filled.
+    partial
+        A partial assignment with its slots filled.
     most
         Most calls to make. Default: no limit.
     """
-    for station in range(draft.data.stations):
-        draft.reserve(station)
-    _best_first(draft, draft.best_prospect_call, draft.settle_prospects, most)
+    for station in range(partial.data.stations):
+        partial.reserve(station)
+    _best_first(partial, partial.best_prospect_call, partial.settle_prospects, most)
 
 
 def _best_first(
-    draft: Draft,
+    partial: PartialAssignment,
     score: Callable[[int], Call | None],
     use: Callable[[Call], None],
     most: int | None,
@@ -110,7 +104,7 @@ def _best_first(
     """
     # A station that was never scored comes first.
     queue: list[tuple[float, int, int, Call | None]] = [
-        (float("-inf"), station, -1, None) for station in range(draft.data.stations)
+        (float("-inf"), station, -1, None) for station in range(partial.data.stations)
     ]
     calls = 0
     while queue and (most is None or calls < most):
@@ -120,7 +114,7 @@ def _best_first(
             if call is not None:
                 heapq.heappush(queue, (-call.gain, station, calls, call))
         elif call is not None:
-            draft.call(call)
+            partial.call(call)
             use(call)
             calls += 1
             heapq.heappush(queue, (float("-inf"), station, -1, None))

@@ -21,12 +21,16 @@ import numpy as np
 from rmfs.solvers.models.pile_on.candidates import Candidates, everything
 from rmfs.solvers.models.pile_on.columns import every
 from rmfs.solvers.models.pile_on.data import Floats, Integers, PileOn
-from rmfs.solvers.models.pile_on.draft import Call, Draft, decision, drop_idle
-from rmfs.solvers.models.pile_on.partial import cover_rest
+from rmfs.solvers.models.pile_on.leftovers import cover_rest
+from rmfs.solvers.models.pile_on.partial_assignment import (
+    Call,
+    PartialAssignment,
+    decision,
+    drop_idle,
+)
 from rmfs.solvers.models.pile_on.values import Assignment, objective
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_rule
 
-NAME = "hadgs"
 SETS = 10
 """Pod sets sampled where no single pod completes an order (l1)."""
 
@@ -42,18 +46,12 @@ def solve(
     start: Assignment | None = None,
     candidates: Candidates | None = None,
 ) -> Solution[Assignment]:
-    """Decide by HADGS.
+    """Decide by HADGS; `iterations` limits the calls of pods.
 
     Parameters
     ----------
-    data
-        The input.
-    limits
-        ``iterations`` limits the calls of pods. Default: none.
-    seed
-        Seed of the sampled pod sets. Default 0.
-    start
-        Not used: the rule builds from nothing.
+    data, limits, seed, start
+        As for every method; the start is not used.
     candidates
         The pairs to use. Default: all.
 
@@ -62,31 +60,28 @@ def solve(
     A feasible decision without a bound.
     """
     began = time.perf_counter()
-    draft = Draft(data, candidates or everything(data))
+    partial = PartialAssignment(data, candidates or everything(data))
     rng = np.random.default_rng(seed)
     calls = 0
     for station in _stations(data):
-        draft.fill(station)
+        partial.fill(station)
         while limits.iterations is None or calls < limits.iterations:
-            call = _next_call(draft, station, rng)
+            call = _next_call(partial, station, rng)
             if call is None:
                 break
-            draft.call(call)
-            draft.fill(station)
+            partial.call(call)
+            partial.fill(station)
             calls += 1
-    drop_idle(draft)
+    drop_idle(partial)
     for station in range(data.stations):
-        draft.reserve(station)
-    values = cover_rest(data, decision(draft))
-    ended = time.perf_counter()
-    return Solution(
-        values=values,
-        objective=objective(data, values),
+        partial.reserve(station)
+    values = cover_rest(data, decision(partial))
+    return solution_of_rule(
+        values,
+        lambda values: objective(data, values),
         bound=float("-inf"),
-        status=Status.FEASIBLE,
-        backend=NAME,
-        wall_s=ended - began,
-        work=float(draft.scored),
+        work=float(partial.scored),
+        began=began,
     )
 
 
@@ -99,62 +94,64 @@ def _stations(data: PileOn) -> list[int]:
     return order
 
 
-def _next_call(draft: Draft, station: int, rng: np.random.Generator) -> Call | None:
+def _next_call(partial: PartialAssignment, station: int, rng: np.random.Generator) -> Call | None:
     """The pod of least K that completes an order or eases a shortage; else a sampled set."""
-    weights = draft.data.weights
-    pods = draft.free_pods(station)
+    weights = partial.data.weights
+    pods = partial.free_pods(station)
     if not pods.size:
         return None
-    eased = draft.easing(pods, station)
-    done = draft.completions(pods, station) if draft.slots[station] else np.zeros(pods.size)
-    k = draft.call_costs(pods, station) - weights.complete * done - weights.open_unit * eased
+    eased = partial.easing(pods, station)
+    done = partial.completions(pods, station) if partial.slots[station] else np.zeros(pods.size)
+    k = partial.call_costs(pods, station) - weights.complete * done - weights.open_unit * eased
     k[(done == 0) & (eased == 0)] = np.inf
     best = int(k.argmin())
     if np.isfinite(k[best]):
         return Call(float(-k[best]), station, (int(pods[best]),))
-    return _sampled_set(draft, station, pods, rng) if draft.slots[station] else None
+    return _sampled_set(partial, station, pods, rng) if partial.slots[station] else None
 
 
 def _sampled_set(
-    draft: Draft, station: int, pods: Integers, rng: np.random.Generator
+    partial: PartialAssignment, station: int, pods: Integers, rng: np.random.Generator
 ) -> Call | None:
     """Sample pod sets that each cover a random open order, and improve the best by exchanges."""
-    data = draft.data
-    need = data.line_units - draft.stock_left[station, data.line_sku]
+    data = partial.data
+    need = data.line_units - partial.stock_left[station, data.line_sku]
     enough = data.stock[np.ix_(pods, data.line_sku)] >= need
-    can = every(enough.any(axis=0) | (need <= 0), data) & draft.open_orders
-    orders = np.flatnonzero(can & draft.candidates.places[:, station])
+    can = every(enough.any(axis=0) | (need <= 0), data) & partial.open_orders
+    orders = np.flatnonzero(can & partial.candidates.places[:, station])
     if not orders.size:
         return None
-    cost = draft.call_costs(pods, station)
+    cost = partial.call_costs(pods, station)
     best: tuple[float, Integers, Integers] | None = None
     for _ in range(SETS):
         order = int(orders[rng.integers(orders.size)])
         own = np.arange(data.first_line[order], data.first_line[order + 1])
         missing = own[need[own] > 0]
         chosen = np.array([_draw(np.flatnonzero(enough[:, line]), rng) for line in missing])
-        best = _better(best, (_k(draft, station, pods, cost, chosen), chosen, missing))
+        best = _better(best, (_k(partial, station, pods, cost, chosen), chosen, missing))
     for _ in range(SEARCHES if best is not None else 0):
         assert best is not None
         _, chosen, missing = best
         swapped = chosen.copy()
         at = int(rng.integers(missing.size))
         swapped[at] = _draw(np.flatnonzero(enough[:, missing[at]]), rng)
-        best = _better(best, (_k(draft, station, pods, cost, swapped), swapped, missing))
+        best = _better(best, (_k(partial, station, pods, cost, swapped), swapped, missing))
     if best is None or not np.isfinite(best[0]):
         return None
     return Call(-best[0], station, tuple(pods[np.unique(best[1])].tolist()))
 
 
-def _k(draft: Draft, station: int, pods: Integers, cost: Floats, chosen: Integers) -> float:
+def _k(
+    partial: PartialAssignment, station: int, pods: Integers, cost: Floats, chosen: Integers
+) -> float:
     """K of a set of pods; inf if there are not robots enough for it."""
-    data = draft.data
+    data = partial.data
     members = np.unique(chosen)
-    if data.fetch is not None and data.needs_robot[pods[members]].sum() > draft.robots.size:
+    if data.fetch is not None and data.needs_robot[pods[members]].sum() > partial.robots.size:
         return float("inf")
-    left = draft.stock_left[station] + data.stock[pods[members]].sum(axis=0)
-    done = every(left[data.line_sku] >= data.line_units, data) & draft.open_orders
-    draft.scored += data.orders
+    left = partial.stock_left[station] + data.stock[pods[members]].sum(axis=0)
+    done = every(left[data.line_sku] >= data.line_units, data) & partial.open_orders
+    partial.scored += data.orders
     return float(cost[members].sum() - data.weights.complete * done.sum())
 
 

@@ -1,11 +1,11 @@
-"""The pile-on models with HiGHS: the back end for proofs and for bounds at the root."""
+"""The pile-on models with HiGHS."""
 
 from __future__ import annotations
 
 from rmfs.solvers.models.backends import highs
 from rmfs.solvers.models.pile_on.candidates import Candidates
 from rmfs.solvers.models.pile_on.data import PileOn
-from rmfs.solvers.models.pile_on.exact import solve_with
+from rmfs.solvers.models.pile_on.program import solve_program
 from rmfs.solvers.models.pile_on.values import Assignment
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
 
@@ -19,18 +19,12 @@ def solve(
     candidates: Candidates | None = None,
     strengthen: bool = True,
 ) -> Solution[Assignment]:
-    """Decide with HiGHS.
+    """Decide with HiGHS; `nodes` and `gap` apply.
 
     Parameters
     ----------
-    data
-        The input.
-    limits
-        ``nodes`` and ``gap`` apply. Default: to optimality.
-    seed
-        Seed of the solver. Default 0.
-    start
-        A feasible decision to start from; the result is never worse. Default: none.
+    data, limits, seed, start
+        As for every method.
     candidates
         The pairs to use. Default: all. With pruned pairs the bound is -inf.
     strengthen
@@ -40,12 +34,4 @@ def solve(
     -------
     The solution; always with values.
     """
-    return solve_with(
-        highs.solve,
-        data,
-        limits,
-        seed=seed,
-        start=start,
-        candidates=candidates,
-        strengthen=strengthen,
-    )
+    return solve_program(highs.solve, data, limits, seed, start, candidates, strengthen)

@@ -16,12 +16,11 @@ import numpy as np
 from rmfs.solvers.models.pile_on import cp_sat
 from rmfs.solvers.models.pile_on.candidates import Candidates, everything
 from rmfs.solvers.models.pile_on.data import Integers, PileOn
-from rmfs.solvers.models.pile_on.draft import assign_robots
+from rmfs.solvers.models.pile_on.partial_assignment import assign_robots
 from rmfs.solvers.models.pile_on.restrict import compact, part
 from rmfs.solvers.models.pile_on.values import Assignment, nothing, objective, violations
-from rmfs.solvers.models.solution import Limits, Solution, Status
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
-NAME = "neighbourhood"
 WIDTH = 2
 """Stations decided at a time."""
 
@@ -31,7 +30,7 @@ DEFAULT_WORK = 1.0
 
 def solve(
     data: PileOn,
-    limits: Limits | None = None,
+    limits: Limits = NO_LIMITS,
     *,
     seed: int = 0,
     start: Assignment | None = None,
@@ -41,15 +40,11 @@ def solve(
 
     Parameters
     ----------
-    data
-        The input.
+    data, seed, start
+        As for every method.
     limits
         ``deterministic_s`` limits all parts together, ``iterations`` the number of parts, and
         ``gap`` each part. Default: one deterministic second.
-    seed
-        Seed of CP-SAT. Default 0.
-    start
-        A feasible decision to start from. Default: decide nothing.
     candidates
         The pairs to use. Default: all.
 
@@ -57,18 +52,18 @@ def solve(
     -------
     The decision; no bound, except where one part is all there is.
     """
-    bounds = Limits(deterministic_s=DEFAULT_WORK) if limits is None else limits
+    left = DEFAULT_WORK if limits.deterministic_s is None else limits.deterministic_s
+    limits = replace(limits, deterministic_s=left)
     values = nothing(data) if start is None else start
     pairs = everything(data) if candidates is None else candidates
     groups = station_groups(data)
     if len(groups) <= 1:
-        return cp_sat.solve(data, bounds, seed=seed, start=start, candidates=candidates)
+        return cp_sat.solve(data, limits, seed=seed, start=start, candidates=candidates)
     began = time.perf_counter()
     small = compact(data, pairs.including(values))
     current = small.shrink(values)
     build_s, work, idle, turn = 0.0, 0.0, 0, 0
-    most = bounds.iterations if bounds.iterations is not None else len(groups) * 1000
-    left = bounds.deterministic_s if bounds.deterministic_s is not None else DEFAULT_WORK
+    most = limits.iterations if limits.iterations is not None else len(groups) * 1000
     # Once every part has been tried since the last change, nothing more is to be found.
     while turn < most and left - work > 0 and idle < len(groups):
         stage = part(small.data, small.candidates, current, groups[turn % len(groups)])
@@ -79,7 +74,7 @@ def solve(
         before = stage.start()
         found = cp_sat.solve(
             stage.data,
-            replace(bounds, deterministic_s=left - work, iterations=None),
+            replace(limits, deterministic_s=left - work, iterations=None),
             seed=seed,
             start=before,
             candidates=stage.candidates,
@@ -97,7 +92,7 @@ def solve(
         objective=objective(data, result),
         bound=float("-inf"),
         status=Status.FEASIBLE,
-        backend=NAME,
+        backend="cp_sat",
         wall_s=time.perf_counter() - began,
         build_s=build_s,
         work=work,

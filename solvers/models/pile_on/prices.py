@@ -22,14 +22,16 @@ objective of a known decision.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import csr_array
 
 from rmfs.solvers.models.pile_on.candidates import fetch_estimate
 from rmfs.solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
+from rmfs.solvers.models.pile_on.values import Assignment
 from rmfs.solvers.models.pile_on.variant import Variant
+from rmfs.solvers.models.solution import Solution, Status
 
 ITERATIONS = 40
 """Subgradient steps by default."""
@@ -75,6 +77,28 @@ def bound(data: PileOn, upper: float, iterations: int = ITERATIONS) -> float:
         price = np.where(dual.priced, np.maximum(price + step * rise, 0.0), 0.0)
         relief = np.clip(relief + step * ease, 0.0, data.weights.open_unit)
     return min(best, upper)
+
+
+def bounded(
+    data: PileOn, found: Solution[Assignment], iterations: int = ITERATIONS, gap: float = 0.0
+) -> Solution[Assignment]:
+    """Add the bound to a decision.
+
+    Parameters
+    ----------
+    data
+        The input.
+    found
+        The decision.
+    iterations
+        Subgradient steps. Default `ITERATIONS`.
+    gap
+        Relative gap at which it counts as optimal. Default 0.
+    """
+    cost = found.objective
+    least = bound(data, cost, iterations)
+    status = Status.OPTIMAL if cost - least <= gap * abs(cost) else Status.FEASIBLE
+    return replace(found, bound=least, status=status)
 
 
 @dataclass(frozen=True)

@@ -31,36 +31,24 @@ leaves to the relaxation, and is what makes the bound good.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rmfs.solvers.models.pile_on.candidates import Candidates
+from rmfs.solvers.models.backends.backend import Backend, Formulation, solve_by
+from rmfs.solvers.models.pile_on.candidates import Candidates, everything
 from rmfs.solvers.models.pile_on.columns import Columns, add_columns, decode, encode
-from rmfs.solvers.models.pile_on.data import Floats, Integers, PileOn
-from rmfs.solvers.models.pile_on.values import Assignment
+from rmfs.solvers.models.pile_on.data import Integers, PileOn
+from rmfs.solvers.models.pile_on.values import Assignment, nothing, objective, violations
 from rmfs.solvers.models.pile_on.variant import Variant
-from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
+from rmfs.solvers.models.program import ProgramBuilder
+from rmfs.solvers.models.solution import Limits, Solution, Status
 
 
-@dataclass(frozen=True)
-class Formulation:
-    """The program of one input, and the way from its columns to a decision and back."""
-
-    data: PileOn
-    columns: Columns
-    program: LinearProgram
-
-    def decode(self, x: Floats) -> Assignment:
-        """Make a decision of column values."""
-        return decode(self.data, self.columns, x)
-
-    def encode(self, values: Assignment) -> Floats:
-        """Make column values of a feasible decision that uses candidate pairs only."""
-        return encode(self.data, self.columns, values, self.program.columns)
-
-
-def formulate(data: PileOn, candidates: Candidates, *, strengthen: bool = True) -> Formulation:
+def formulate(
+    data: PileOn, candidates: Candidates, *, strengthen: bool = True
+) -> Formulation[Assignment]:
     """State the program of an input.
 
     Parameters
@@ -85,8 +73,57 @@ def formulate(data: PileOn, candidates: Candidates, *, strengthen: bool = True) 
     if strengthen:
         _strong_line_rows(builder, data, columns, held)
         _strong_shortage_rows(builder, data, columns, held)
-    offset = data.weights.empty_slot * float(data.slots.sum())
-    return Formulation(data, columns, builder.build(offset))
+    program = builder.build(data.weights.empty_slot * float(data.slots.sum()))
+    return Formulation(
+        program,
+        lambda values: encode(data, columns, values, program.columns),
+        lambda x: decode(data, columns, x),
+        lambda values: objective(data, values),
+        lambda values: violations(data, values),
+    )
+
+
+def solve_program(
+    backend: Backend,
+    data: PileOn,
+    limits: Limits,
+    seed: int,
+    start: Assignment | None,
+    candidates: Candidates | None,
+    strengthen: bool,
+) -> Solution[Assignment]:
+    """State the program and solve it; the start is the answer if nothing better is found.
+
+    Parameters
+    ----------
+    backend
+        Who solves it.
+    data
+        The input.
+    limits, seed
+        As the back ends say.
+    start
+        A feasible decision; None: decide nothing.
+    candidates
+        The pairs to use, None for all. With a proper subset there is no bound (-inf).
+    strengthen
+        Whether to add (8).
+
+    Returns
+    -------
+    The solution; always with values.
+    """
+    first = nothing(data) if start is None else start
+
+    def stated() -> Formulation[Assignment]:
+        pairs = everything(data) if candidates is None else candidates.including(first)
+        return formulate(data, pairs, strengthen=strengthen)
+
+    found = solve_by(backend, stated, limits, seed=seed, start=first)
+    if candidates is None:
+        return found
+    # the best of the pruned pairs proves nothing about the others
+    return replace(found, bound=-math.inf, status=Status.FEASIBLE)
 
 
 @dataclass(frozen=True)

@@ -218,5 +218,6 @@ def part(
         fetch=None if data.fetch is None else data.fetch[robots],
         robot_pod=None if data.robot_pod is None else data.robot_pod[robots],
         worth=None if data.worth is None else data.worth[orders],
+        may_call=data.callable_to[stations],
     )
     return Part(data, values, small, own, stations, orders, robots)

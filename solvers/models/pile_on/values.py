@@ -180,6 +180,8 @@ def violations(data: PileOn, values: Assignment) -> list[str]:
         "station takes more orders than it has slots": values.slot.sum(axis=0) > data.slots,
         "stock of station does not cover what it serves": (missing > 0).any(axis=1),
         "pod is called but not available": (values.pod_station >= 0) & ~data.available,
+        "pod is called to a station that may call none": (values.pod_station >= 0)
+        & ~np.append(data.callable_to, True)[values.pod_station],
         "prospect is not rewarded, or has a slot": (values.prospect >= 0)
         & ((parts > 0) | (not data.weights.prospects)),
         "prospect waits for a station without slots": np.append(data.slots == 0, False)[

@@ -16,7 +16,7 @@ from rmfs.solvers.models.rack_allocation.data import (
     pods_needed,
     violations,
 )
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_rule
 
 
 def solve(
@@ -32,13 +32,6 @@ def solve(
     first; if no pod completes one, the pod that adds most of the lines still missing. Pods that
     turn out not to be needed are given back.
 
-    Parameters
-    ----------
-    data
-        The problem.
-    limits, seed, start
-        Not needed.
-
     Returns
     -------
     Who goes where; ties go to the lowest index. Status LIMIT if a station could not be filled,
@@ -52,15 +45,15 @@ def solve(
     for station in np.argsort(-data.slots, kind="stable").tolist():
         filling.fill(station)
     allocation = Allocation(filling.order_station, filling.pod_station)
-    wall_s, work = perf_counter() - begin, float(filling.scored)
-    if violations(data, allocation):
-        short = int(servable.sum()) < int(data.slots.sum())
-        status = Status.INFEASIBLE if short else Status.LIMIT
-        bound = math.inf if short else bound
-        return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, work)
-    value = objective(data, allocation)
-    return Solution(
-        allocation, value, min(bound, value), Status.FEASIBLE, "rule", wall_s, 0.0, work
+    broken = bool(violations(data, allocation))
+    if broken and int(servable.sum()) < int(data.slots.sum()):
+        bound = math.inf
+    return solution_of_rule(
+        None if broken else allocation,
+        lambda values: objective(data, values),
+        bound=bound,
+        work=float(filling.scored),
+        began=begin,
     )
 
 

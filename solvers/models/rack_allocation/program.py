@@ -16,7 +16,13 @@ from numpy.typing import NDArray
 
 from rmfs.solvers.models.backends.backend import Formulation
 from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
-from rmfs.solvers.models.rack_allocation.data import NONE, Allocation, RackAllocation
+from rmfs.solvers.models.rack_allocation.data import (
+    NONE,
+    Allocation,
+    RackAllocation,
+    objective,
+    violations,
+)
 
 
 def formulate(data: RackAllocation) -> Formulation[Allocation]:
@@ -47,7 +53,13 @@ def formulate(data: RackAllocation) -> Formulation[Allocation]:
 
     units, stock = _wanted(data, orders, pods)
     program = _program(units, stock, data.slots, _most_wanted(units, data.slots))
-    return Formulation(program, encode, decode)
+    return Formulation(
+        program,
+        encode,
+        decode,
+        lambda allocation: objective(data, allocation),
+        lambda allocation: violations(data, allocation),
+    )
 
 
 def together(data: RackAllocation) -> LinearProgram:

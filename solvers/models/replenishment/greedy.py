@@ -17,7 +17,7 @@ from rmfs.solvers.models.replenishment.data import (
     violations,
 )
 from rmfs.solvers.models.replenishment.polish import polished
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_rule
 
 
 def solve(
@@ -33,13 +33,6 @@ def solve(
     the pods on top of a heap are rated again; they enter it with what they could gain if bundles
     could be cut. Bundles that must be stored count a large gain.
 
-    Parameters
-    ----------
-    data
-        The problem.
-    limits, seed, start
-        Not needed.
-
     Returns
     -------
     Where bundles and pods go; ties go to the lowest pod and station. Status LIMIT if a bundle is
@@ -50,20 +43,12 @@ def solve(
     bound = math.fsum(best) if np.isfinite(best).all() else math.inf
     filling = Filling(data)
     stocking = polished(data, filling.run())
-    wall_s = perf_counter() - begin
-    if violations(data, stocking):
-        status = Status.LIMIT if math.isfinite(bound) else Status.INFEASIBLE
-        return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, float(filling.scored))
-    value = objective(data, stocking)
-    return Solution(
-        stocking,
-        value,
-        min(bound, value),
-        Status.FEASIBLE,
-        "rule",
-        wall_s,
-        0.0,
-        float(filling.scored),
+    return solution_of_rule(
+        None if violations(data, stocking) else stocking,
+        lambda values: objective(data, values),
+        bound=bound,
+        work=float(filling.scored),
+        began=begin,
     )
 
 

@@ -21,7 +21,14 @@ from numpy.typing import NDArray
 
 from rmfs.solvers.models.backends.backend import Formulation
 from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
-from rmfs.solvers.models.replenishment.data import LEFT, PARTS, Replenishment, Stocking
+from rmfs.solvers.models.replenishment.data import (
+    LEFT,
+    PARTS,
+    Replenishment,
+    Stocking,
+    objective,
+    violations,
+)
 
 
 @dataclass(frozen=True)
@@ -170,4 +177,6 @@ def formulate(data: Replenishment, *, whole: bool) -> Formulation[Stocking]:
         program(data, columns, whole=whole),
         lambda stocking: columns_of(data, columns, stocking),
         lambda x: stocking_of(data, columns, x),
+        lambda stocking: objective(data, stocking),
+        lambda stocking: violations(data, stocking),
     )

@@ -1,5 +1,7 @@
 """What no run can exceed: a proven bound on the units that a warehouse picks in a time."""
 
+from rmfs.solvers.models.methods import Methods
+from rmfs.solvers.models.run_bound import highs
 from rmfs.solvers.models.run_bound.data import Orders as Orders
 from rmfs.solvers.models.run_bound.data import PickStations as PickStations
 from rmfs.solvers.models.run_bound.data import Refill as Refill
@@ -9,7 +11,8 @@ from rmfs.solvers.models.run_bound.data import Throughput as Throughput
 from rmfs.solvers.models.run_bound.data import objective as objective
 from rmfs.solvers.models.run_bound.legs import Legs as Legs
 from rmfs.solvers.models.run_bound.legs import visit_legs as visit_legs
-from rmfs.solvers.models.run_bound.linear import solve as solve
-from rmfs.solvers.models.run_bound.linear import units_per_h_bound as units_per_h_bound
-from rmfs.solvers.models.run_bound.linear import violations as violations
+from rmfs.solvers.models.run_bound.program import violations as violations
 from rmfs.solvers.models.run_bound.single import single_bounds as single_bounds
+
+solve = Methods[RunBound, Throughput]({"highs": highs.solve}, default="highs")
+methods = solve.names

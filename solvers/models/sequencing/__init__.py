@@ -1,13 +1,20 @@
 """Rack sequencing at one station (Boysen, Briskorn, Emde 2017): fewest pod visits.
 
-- `dynamic.solve`: exact, for about ten orders; `cp_sat.solve`: exact, limited by counted work;
-- `beam.solve`: beam search with local search, for any size.
-
-All take a `Sequencing` and give a `Solution[Plan]`.
+- `dynamic`: exact, for about ten orders; `cp_sat`: exact, limited by counted work;
+- `beam`: beam search with local search, for any size.
 """
 
-from rmfs.solvers.models.sequencing.data import Plan as Plan
+from rmfs.solvers.models.methods import Methods
+from rmfs.solvers.models.sequencing import beam, cp_sat, dynamic
 from rmfs.solvers.models.sequencing.data import Sequencing as Sequencing
+from rmfs.solvers.models.sequencing.data import VisitSequence as VisitSequence
 from rmfs.solvers.models.sequencing.data import finish as finish
 from rmfs.solvers.models.sequencing.data import objective as objective
 from rmfs.solvers.models.sequencing.data import violations as violations
+
+solve = Methods[Sequencing, VisitSequence](
+    {"cp_sat": cp_sat.solve, "dynamic": dynamic.solve, "beam": beam.solve},
+    default="cp_sat",
+    rule="beam",
+)
+methods = solve.names

@@ -19,11 +19,16 @@ from numpy.typing import NDArray
 
 from rmfs.solvers.models.sequencing import local_search
 from rmfs.solvers.models.sequencing.bounds import visits_bound
-from rmfs.solvers.models.sequencing.data import Flags, Integers, Plan, Sequencing, objective
+from rmfs.solvers.models.sequencing.data import (
+    Flags,
+    Integers,
+    Sequencing,
+    VisitSequence,
+    objective,
+)
 from rmfs.solvers.models.sequencing.sets import useful_pods
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
-NAME = "beam"
 WIDTH = 20
 """Partial plans kept per visit."""
 
@@ -33,9 +38,9 @@ def solve(
     limits: Limits = NO_LIMITS,
     *,
     seed: int = 0,
-    start: Plan | None = None,
+    start: VisitSequence | None = None,
     width: int = WIDTH,
-) -> Solution[Plan]:
+) -> Solution[VisitSequence]:
     """Find a good plan.
 
     Parameters
@@ -57,7 +62,7 @@ def solve(
     """
     began = time.perf_counter()
     if not data.feasible:
-        return Solution(None, math.inf, math.inf, Status.INFEASIBLE, NAME)
+        return Solution(None, math.inf, math.inf, Status.INFEASIBLE, "rule")
     plan, scored = search(data, width)
     if start is not None and objective(data, start) < objective(data, plan):
         plan = start
@@ -68,13 +73,13 @@ def solve(
         objective=objective(data, plan),
         bound=bound,
         status=Status.OPTIMAL if bound == objective(data, plan) else Status.FEASIBLE,
-        backend=NAME,
+        backend="rule",
         wall_s=time.perf_counter() - began,
         work=float(scored + moves),
     )
 
 
-def search(data: Sequencing, width: int) -> tuple[Plan, int]:
+def search(data: Sequencing, width: int) -> tuple[VisitSequence, int]:
     """The beam search alone.
 
     Parameters
@@ -95,7 +100,7 @@ def search(data: Sequencing, width: int) -> tuple[Plan, int]:
     for visit in range(int(data.needs.sum()) + 1):
         for plan in kept:
             if not plan.missing.any():
-                return Plan(pods[list(plan.pods)], plan.start), scored
+                return VisitSequence(pods[list(plan.pods)], plan.start), scored
         kept = _next(data, kept, holds, visit, width)
         scored += len(kept) * pods.size
     raise AssertionError("every visit of the best plan serves somebody")

@@ -1,50 +1,20 @@
-r"""Rack sequencing with CP-SAT, over the visits of a plan of known length.
-
-A heuristic plan of T visits bounds the horizon. Binary columns: v_tp pod p makes visit t, s_ot
-order o has started by visit t, f_ot it has finished by visit t, d_okt it takes SKU k at visit t,
-c_ot it comes and goes at visit t, r_t some order does.
-
-.. math::
-
-    \min \sum_{t,p} v_{tp}, \quad
-    & \textstyle\sum_p v_{tp} \le \sum_p v_{t-1,p} \le 1, \qquad v_{tp} + v_{t+1,p} \le 1 \\
-    & d_{okt} \le \textstyle\sum_{p \ni k} v_{tp}, \qquad d_{okt} \le s_{ot}, \qquad
-      f_{ot} \le \sum_{t' \le t} d_{okt'} \\
-    & s_{o,t-1} \le s_{ot}, \qquad f_{o,t-1} \le f_{ot} \le s_{ot}, \qquad f_{oT} = 1 \\
-    & \textstyle\sum_o (s_{ot} - f_{ot}) \le C, \qquad f_{ot} - s_{o,t-1} \le c_{ot} \le r_t \\
-    & \textstyle\sum_o (s_{o,t-1} - f_{ot} + c_{ot}) + r_t \le C
-
-The last row leaves a slot for orders that come and go: its sum counts the orders open before and
-after the visit.
-"""
+"""Rack sequencing with CP-SAT, within the length of a heuristic plan."""
 
 from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import replace
 
 from rmfs.solvers.models.backends import cp_sat
+from rmfs.solvers.models.backends.backend import solve_by
 from rmfs.solvers.models.checks import require
-from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
 from rmfs.solvers.models.sequencing import beam
 from rmfs.solvers.models.sequencing.bounds import visits_bound
-from rmfs.solvers.models.sequencing.data import (
-    Flags,
-    Integers,
-    Plan,
-    Sequencing,
-    finish,
-    objective,
-    violations,
-)
+from rmfs.solvers.models.sequencing.data import Sequencing, VisitSequence, objective, violations
 from rmfs.solvers.models.sequencing.local_search import merged
-from rmfs.solvers.models.sequencing.sets import useful_pods
+from rmfs.solvers.models.sequencing.program import formulate
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
-
-NAME = "cp_sat"
 
 
 def solve(
@@ -52,226 +22,35 @@ def solve(
     limits: Limits = NO_LIMITS,
     *,
     seed: int = 0,
-    start: Plan | None = None,
-) -> Solution[Plan]:
-    """Find a plan of fewest visits, within the length of a heuristic one.
+    start: VisitSequence | None = None,
+) -> Solution[VisitSequence]:
+    """Find a plan of fewest visits; `deterministic_s` and `gap` apply.
 
-    Parameters
-    ----------
-    data
-        The input.
-    limits
-        ``deterministic_s`` and ``gap`` apply. Default: to optimality.
-    seed
-        Seed of the solver and of the heuristic. Default 0.
-    start
-        A feasible plan to start from. Default: that of the beam search.
-
-    Returns
-    -------
-    The plan, never longer than the start.
-
-    Raises
-    ------
-    ModelError
-        If the start is not feasible.
+    It starts from the plan of the beam search unless there is another.
     """
     began = time.perf_counter()
     if not data.feasible:
-        return Solution(None, math.inf, math.inf, Status.INFEASIBLE, NAME)
+        return Solution(None, math.inf, math.inf, Status.INFEASIBLE, cp_sat.NAME)
     first = beam.solve(data, seed=seed).required if start is None else start
     broken = violations(data, first)
     require(not broken, "start", "; ".join(broken))
     first = merged(first)
-    least = visits_bound(data)
-    if least >= first.pods.size:
-        return _proven(data, first, time.perf_counter() - began)
-    formulation = formulate(data, first.pods.size, int(least))
-    outcome = cp_sat.solve(formulation.program, limits, seed=seed, start=formulation.encode(first))
-    solution = outcome.solution(
-        formulation.decode,
-        lambda plan: objective(data, plan),
-        build_s=time.perf_counter() - began - outcome.wall_s,
+    least, visits = visits_bound(data), objective(data, first)
+    if least >= visits:
+        wall_s = time.perf_counter() - began
+        return Solution(first, visits, visits, Status.OPTIMAL, cp_sat.NAME, wall_s)
+    found = solve_by(
+        cp_sat.solve,
+        lambda: formulate(data, first.pods.size, int(least)),
+        limits,
+        seed=seed,
+        start=first,
     )
-    bound = max(least, math.ceil(solution.bound - 1e-6))
-    if not solution.found or solution.objective > objective(data, first):
-        solution = replace(
-            solution, values=first, objective=objective(data, first), status=Status.FEASIBLE
-        )
-    status = Status.OPTIMAL if bound >= solution.objective else solution.status
-    return replace(solution, bound=min(float(bound), solution.objective), status=status)
-
-
-def _proven(data: Sequencing, plan: Plan, wall_s: float) -> Solution[Plan]:
-    """The solution where the start meets the bound."""
-    visits = objective(data, plan)
-    return Solution(plan, visits, visits, Status.OPTIMAL, NAME, wall_s=wall_s)
-
-
-@dataclass(frozen=True)
-class Formulation:
-    """The program for a horizon of T visits, and the way from its columns to a plan and back.
-
-    Parameters
-    ----------
-    data, program
-        The input and its program.
-    pods
-        The pods that are worth looking at.
-    visit, started, finished, passing, room
-        Columns v (T, pods), s and f (T + 1, O; row 0 is before the first visit), c (T, O), r (T,).
-    order, sku, take
-        Order and SKU of each need, and its columns d, shape (T, needs).
-    """
-
-    data: Sequencing
-    program: LinearProgram
-    pods: Integers
-    visit: Integers
-    started: Integers
-    finished: Integers
-    passing: Integers
-    room: Integers
-    order: Integers
-    sku: Integers
-    take: Integers
-
-    def decode(self, x: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Plan:
-        """Make a plan of column values."""
-        taken = x > 0.5
-        visits = taken[self.visit]
-        used = int(visits.any(axis=1).sum())
-        started = taken[self.started]
-        start = np.where(self.data.open, -1, started.argmax(axis=0) - 1)
-        # Orders start with what they take first; the columns may say earlier.
-        takes = taken[self.take]
-        first = np.where(takes.any(axis=0), takes.argmax(axis=0), used)
-        earliest = np.full(self.data.orders, used)
-        np.minimum.at(earliest, self.order, first)
-        start = np.where(self.data.open, -1, np.maximum(start, earliest))
-        return merged(Plan(self.pods[visits[:used].argmax(axis=1)], start))
-
-    def encode(self, plan: Plan) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-        """Make column values of a feasible plan of at most T visits."""
-        visits, end = self.visit.shape[0], finish(self.data, plan)
-        x = np.zeros(self.program.columns)
-        stand_in = _stand_ins(self.data, self.pods)[plan.pods]
-        x[self.visit[np.arange(plan.pods.size), stand_in]] = 1
-        time_ = np.arange(-1, visits)[:, None]
-        started: Flags = plan.start <= time_
-        finished: Flags = end <= time_
-        x[self.started], x[self.finished] = started, finished
-        passing = finished[1:] & ~started[:-1]
-        x[self.passing], x[self.room] = passing, passing.any(axis=1)
-        present = np.zeros((visits, self.data.needs.shape[1]), dtype=np.bool_)
-        present[: plan.pods.size] = self.data.holds[plan.pods]
-        x[self.take] = present[:, self.sku] & started[1:, self.order]
-        return x
-
-
-def formulate(data: Sequencing, visits: int, least: int) -> Formulation:
-    """State the program.
-
-    Parameters
-    ----------
-    data
-        The input; feasible.
-    visits
-        The horizon T.
-    least
-        A proven lower bound on the visits: so many are made in any case.
-    """
-    builder = ProgramBuilder()
-    pods = useful_pods(data)
-    order, sku = np.nonzero(data.needs)
-    times = np.arange(visits)[:, None]
-    visit = builder.columns((visits, pods.size), cost=1.0)
-    fixed = np.broadcast_to(data.open, (visits + 1, data.orders)).copy()
-    may_start = np.broadcast_to(np.arange(visits + 1)[:, None] > 0, fixed.shape) | fixed
-    started = builder.columns(fixed.shape, lower=fixed, upper=may_start)
-    done = np.broadcast_to(np.arange(visits + 1)[:, None] == visits, fixed.shape)
-    may_end = np.broadcast_to(np.arange(visits + 1)[:, None] > 0, fixed.shape)
-    finished = builder.columns(fixed.shape, lower=done, upper=may_end)
-    passing = builder.columns((visits, data.orders))
-    room = builder.columns(visits)
-    take = builder.columns((visits, order.size))
-    made = (times < least).astype(np.float64).ravel()
-    builder.rows(visits, (times, visit, 1), lower=made, upper=1)
-    index = np.arange(visits - 1)[:, None]
-    builder.rows(visits - 1, (index, visit[1:], 1), (index, visit[:-1], -1), upper=0)
-    _twice(builder, visit)
-    _takes(builder, data, pods, visit, started, finished, take, order, sku)
-    _slots(builder, data, started, finished, passing, room)
-    return Formulation(
-        data, builder.build(), pods, visit, started, finished, passing, room, order, sku, take
+    bound = max(least, float(math.ceil(found.bound - 1e-6)))
+    status = Status.OPTIMAL if bound >= found.objective else found.status
+    return replace(
+        found,
+        bound=min(bound, found.objective),
+        status=status,
+        wall_s=time.perf_counter() - began,
     )
-
-
-def _twice(builder: ProgramBuilder, visit: Integers) -> None:
-    """The same pod twice in a row is one visit."""
-    pair = np.arange(visit[1:].size).reshape(visit[1:].shape)
-    builder.rows(pair.size, (pair, visit[1:], 1), (pair, visit[:-1], 1), upper=1)
-
-
-def _takes(
-    builder: ProgramBuilder,
-    data: Sequencing,
-    pods: Integers,
-    visit: Integers,
-    started: Integers,
-    finished: Integers,
-    take: Integers,
-    order: Integers,
-    sku: Integers,
-) -> None:
-    """An order takes a SKU from a pod that has it while open, and ends when it has all."""
-    visits = take.shape[0]
-    cell = np.arange(take.size).reshape(take.shape)
-    need, pod = np.nonzero(data.holds[pods][:, sku].T)
-    builder.rows(take.size, (cell, take, 1), (cell[:, need], visit[:, pod], -1), upper=0)
-    builder.rows(take.size, (cell, take, 1), (cell, started[1:, order], -1), upper=0)
-    late, early = np.nonzero(np.tri(visits, dtype=np.bool_))
-    builder.rows(take.size, (cell, finished[1:, order], 1), (cell[late], take[early], -1), upper=0)
-    step = np.arange(visits * data.orders).reshape(visits, data.orders)
-    builder.rows(step.size, (step, started[:-1], 1), (step, started[1:], -1), upper=0)
-    builder.rows(step.size, (step, finished[:-1], 1), (step, finished[1:], -1), upper=0)
-    builder.rows(step.size, (step, finished[1:], 1), (step, started[1:], -1), upper=0)
-
-
-def _slots(
-    builder: ProgramBuilder,
-    data: Sequencing,
-    started: Integers,
-    finished: Integers,
-    passing: Integers,
-    room: Integers,
-) -> None:
-    """No more orders are open than there are slots, also while orders come and go."""
-    visits = passing.shape[0]
-    time_ = np.arange(visits)[:, None]
-    builder.rows(visits, (time_, started[1:], 1), (time_, finished[1:], -1), upper=data.capacity)
-    cell = np.arange(passing.size).reshape(passing.shape)
-    builder.rows(
-        cell.size,
-        (cell, finished[1:], 1),
-        (cell, started[:-1], -1),
-        (cell, passing, -1),
-        upper=0,
-    )
-    builder.rows(cell.size, (cell, passing, 1), (cell, room[:, None], -1), upper=0)
-    builder.rows(
-        visits,
-        (time_, started[:-1], 1),
-        (time_, finished[1:], -1),
-        (time_, passing, 1),
-        (time_, room[:, None], 1),
-        upper=data.capacity,
-    )
-
-
-def _stand_ins(data: Sequencing, pods: Integers) -> Integers:
-    """For each pod the position of a listed pod that holds all its useful SKUs."""
-    holds = data.holds[:, data.needs.any(axis=0)].astype(np.float32)
-    covers = holds @ holds[pods].T == holds.sum(axis=1, keepdims=True)
-    stand_in: Integers = covers.argmax(axis=1)
-    return stand_in

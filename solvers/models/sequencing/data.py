@@ -86,8 +86,8 @@ class Sequencing:
 
 
 @dataclass(frozen=True)
-class Plan:
-    """Visits, and when each order comes.
+class VisitSequence:
+    """A plan: visits, and when each order comes.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class Plan:
     start: Integers
 
 
-def objective(data: Sequencing, plan: Plan) -> float:
+def objective(data: Sequencing, plan: VisitSequence) -> float:
     """Number of visits; the same pod twice in a row is one visit.
 
     Parameters
@@ -114,7 +114,7 @@ def objective(data: Sequencing, plan: Plan) -> float:
     return float(1 + np.count_nonzero(np.diff(plan.pods))) if plan.pods.size else 0.0
 
 
-def finish(data: Sequencing, plan: Plan) -> Integers:
+def finish(data: Sequencing, plan: VisitSequence) -> Integers:
     """Visit during which each order is complete, shape (O,); `NEVER` if it is not.
 
     Parameters
@@ -136,7 +136,7 @@ def finish(data: Sequencing, plan: Plan) -> Integers:
     return end
 
 
-def violations(data: Sequencing, plan: Plan) -> list[str]:
+def violations(data: Sequencing, plan: VisitSequence) -> list[str]:
     """Say which rules a plan breaks.
 
     Parameters

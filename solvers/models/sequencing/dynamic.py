@@ -19,11 +19,10 @@ from itertools import combinations
 
 import numpy as np
 
-from rmfs.solvers.models.sequencing.data import Plan, Sequencing, objective
+from rmfs.solvers.models.sequencing.data import Sequencing, VisitSequence, objective
 from rmfs.solvers.models.sequencing.sets import Sets, reduce
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
-NAME = "dynamic"
 State = tuple[tuple[int, ...], int]
 """Missing SKUs per order, and the bit set of orders that have been started."""
 
@@ -33,8 +32,8 @@ def solve(
     limits: Limits = NO_LIMITS,
     *,
     seed: int = 0,
-    start: Plan | None = None,
-) -> Solution[Plan]:
+    start: VisitSequence | None = None,
+) -> Solution[VisitSequence]:
     """Find a plan of fewest visits.
 
     Parameters
@@ -129,7 +128,7 @@ def _estimate(missing: tuple[int, ...], sets: Sets) -> int:
 
 def _trace(
     data: Sequencing, sets: Sets, state: State, came_from: dict[State, tuple[State, int]]
-) -> Plan:
+) -> VisitSequence:
     """Follow the transitions back to the root."""
     pods: list[int] = []
     start = np.full(data.orders, -1)
@@ -144,24 +143,24 @@ def _trace(
         for order in range(data.orders):
             if fresh >> order & 1:
                 start[order] = visit
-    return Plan(np.array(pods, dtype=np.int64), start)
+    return VisitSequence(np.array(pods, dtype=np.int64), start)
 
 
 def _solution(
     data: Sequencing,
-    plan: Plan | None,
+    plan: VisitSequence | None,
     bound: float,
     status: Status,
     expanded: int,
     began: float,
-) -> Solution[Plan]:
+) -> Solution[VisitSequence]:
     """Wrap up."""
     return Solution(
         values=plan,
         objective=math.inf if plan is None else objective(data, plan),
         bound=bound,
         status=status,
-        backend=NAME,
+        backend="dynamic",
         wall_s=time.perf_counter() - began,
         work=float(expanded),
     )

@@ -10,7 +10,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from rmfs.solvers.models.sequencing.data import NEVER, Integers, Plan, Sequencing, violations
+from rmfs.solvers.models.sequencing.data import (
+    NEVER,
+    Integers,
+    Sequencing,
+    VisitSequence,
+    violations,
+)
 from rmfs.solvers.models.sequencing.sets import useful_pods
 
 MOVES = 400
@@ -18,8 +24,8 @@ MOVES = 400
 
 
 def improve(
-    data: Sequencing, plan: Plan, moves: int | None = None, seed: int = 0
-) -> tuple[Plan, int]:
+    data: Sequencing, plan: VisitSequence, moves: int | None = None, seed: int = 0
+) -> tuple[VisitSequence, int]:
     """Shorten a plan.
 
     Parameters
@@ -55,7 +61,7 @@ def improve(
                 current, missing = candidate, left
         if missing:
             break
-        found = merged(Plan(current, still_open(data, current)[0]))
+        found = merged(VisitSequence(current, still_open(data, current)[0]))
         if violations(data, found) or found.pods.size >= best.pods.size:
             break
         best = found
@@ -96,7 +102,7 @@ def still_open(data: Sequencing, pods: Integers) -> tuple[Integers, int]:
     return start, int(np.count_nonzero(leave == NEVER))
 
 
-def merged(plan: Plan) -> Plan:
+def merged(plan: VisitSequence) -> VisitSequence:
     """Make one visit of the same pod twice in a row.
 
     Parameters
@@ -106,7 +112,7 @@ def merged(plan: Plan) -> Plan:
     """
     new = np.diff(plan.pods, prepend=-1) != 0
     position = np.append(np.cumsum(new) - 1, -1)
-    return Plan(plan.pods[new], np.where(plan.start >= 0, position[plan.start], -1))
+    return VisitSequence(plan.pods[new], np.where(plan.start >= 0, position[plan.start], -1))
 
 
 def _ends(data: Sequencing, pods: Integers) -> Integers:

@@ -1,17 +1,18 @@
 """Returning pods to free places, with the pods' expected next visits in the cost."""
 
-from rmfs.solvers.models.storage.placement.assignment import solve as solve
+import numpy as np
+from numpy.typing import NDArray
+
+from rmfs.solvers.models.methods import Methods
+from rmfs.solvers.models.storage.placement import assignment, flow, greedy
 from rmfs.solvers.models.storage.placement.data import Placement as Placement
 from rmfs.solvers.models.storage.placement.data import objective as objective
 from rmfs.solvers.models.storage.placement.data import violations as violations
-from rmfs.solvers.models.storage.placement.greedy import solve as solve_greedily
 from rmfs.solvers.models.storage.placement.visits import expected_visits as expected_visits
 
-__all__ = [
-    "Placement",
-    "expected_visits",
-    "objective",
-    "solve",
-    "solve_greedily",
-    "violations",
-]
+solve = Methods[Placement, NDArray[np.int64]](
+    {"assignment": assignment.solve, "flow": flow.solve, "greedy": greedy.solve},
+    default="assignment",
+    rule="greedy",
+)
+methods = solve.names

@@ -16,18 +16,20 @@ def solve(
     *,
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
-    solver: Solver = "scipy",
 ) -> Solution[NDArray[np.int64]]:
-    """Find the cheapest place of every pod.
+    """Find the place of each pod by SciPy's shortest augmenting paths."""
+    return solve_by(data, "scipy")
+
+
+def solve_by(data: Placement, solver: Solver) -> Solution[NDArray[np.int64]]:
+    """Find the cheapest place of every pod by a solver of assignments.
 
     Parameters
     ----------
     data
         The problem.
-    limits, seed, start
-        Not needed: the algorithm is polynomial, deterministic and starts from nothing.
     solver
-        Who solves it. Default: SciPy.
+        Who solves it.
 
     Returns
     -------

@@ -8,7 +8,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_rule
 from rmfs.solvers.models.storage.placement.data import Placement, objective
 
 
@@ -23,13 +23,6 @@ def solve(
 
     The bound lets every pod have its cheapest place, also one that others have.
 
-    Parameters
-    ----------
-    data
-        The problem.
-    limits, seed, start
-        Not needed.
-
     Returns
     -------
     The place of each pod, shape (P,); ties go to the lowest index. Status LIMIT if a pod is left
@@ -38,24 +31,22 @@ def solve(
     begin = perf_counter()
     cost_s = data.cost_s
     bound = float(cost_s.min(axis=1, initial=math.inf).sum())
-    place = np.full(len(cost_s), -1, np.int64)
-    free = cost_s.copy()
+    return solution_of_rule(
+        _places(data, cost_s.copy()),
+        lambda place: objective(data, place),
+        bound=bound,
+        work=float(cost_s.size),
+        began=begin,
+    )
+
+
+def _places(data: Placement, free: NDArray[np.float64]) -> NDArray[np.int64] | None:
+    """Give pods places; None if one finds none. The table is used up."""
+    place = np.full(len(free), -1, np.int64)
     for pod in np.argsort(-data.visits, kind="stable").tolist():
         best = int(free[pod].argmin()) if free.shape[1] else -1
         if best < 0 or math.isinf(free[pod, best]):
-            status = Status.LIMIT if math.isfinite(bound) else Status.INFEASIBLE
-            wall_s = perf_counter() - begin
-            return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, float(free.size))
+            return None
         place[pod] = best
         free[:, best] = math.inf
-    value = objective(data, place)
-    return Solution(
-        place,
-        value,
-        min(bound, value),
-        Status.FEASIBLE,
-        "rule",
-        perf_counter() - begin,
-        0.0,
-        float(cost_s.size),
-    )
+    return place

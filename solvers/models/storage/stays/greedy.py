@@ -9,7 +9,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_rule
 from rmfs.solvers.models.storage.stays.data import Stays, objective
 
 
@@ -26,13 +26,6 @@ def solve(
     stays better than a long one. If that leaves a stay without a zone, they choose in the order of
     their begin, which fails only where not every zone is allowed (or there is no room at all).
 
-    Parameters
-    ----------
-    data
-        The problem.
-    limits, seed, start
-        Not needed.
-
     Returns
     -------
     The zone of each stay, shape (S,); ties go to the lowest index. Status LIMIT if both orders
@@ -41,17 +34,18 @@ def solve(
     begin = perf_counter()
     stays, zones = data.cost_s.shape
     bound = float(data.cost_s.min(axis=1, initial=math.inf).sum())
-    scored = 0
+    zone, tried = None, 0
     for order in (_at_stake(data), np.argsort(data.begin_s, kind="stable")):
-        zone = _place(data, order.tolist())
-        scored += stays * zones
+        zone, tried = _place(data, order.tolist()), tried + 1
         if zone is not None:
-            value = objective(data, zone)
-            wall_s = perf_counter() - begin
-            return Solution(zone, value, bound, Status.FEASIBLE, "rule", wall_s, 0.0, float(scored))
-    status = Status.LIMIT if math.isfinite(bound) else Status.INFEASIBLE
-    wall_s = perf_counter() - begin
-    return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, float(scored))
+            break
+    return solution_of_rule(
+        zone,
+        lambda values: objective(data, values),
+        bound=bound,
+        work=float(tried * stays * zones),
+        began=begin,
+    )
 
 
 def _at_stake(data: Stays) -> NDArray[np.intp]:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from rmfs.solvers.models.backends.backend import Formulation
 from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
-from rmfs.solvers.models.storage.stays.data import Stays
+from rmfs.solvers.models.storage.stays.data import Stays, objective, violations
 
 
 def program(data: Stays, *, whole: bool) -> LinearProgram:
@@ -102,4 +102,6 @@ def formulate(data: Stays, *, whole: bool) -> Formulation[NDArray[np.int64]]:
         program(data, whole=whole),
         lambda zone: columns_of(data, zone),
         lambda x: zones_of(data, x),
+        lambda zone: objective(data, zone),
+        lambda zone: violations(data, zone),
     )

@@ -1,25 +1,17 @@
 """Classes of pods to zones of places in the steady state; the prices of zones rate places."""
 
-from rmfs.solvers.models.storage.zones.convex import solve as solve
+from rmfs.solvers.models.methods import Methods
+from rmfs.solvers.models.storage.zones import clarabel, greedy
 from rmfs.solvers.models.storage.zones.data import ZonePlan as ZonePlan
 from rmfs.solvers.models.storage.zones.data import Zones as Zones
 from rmfs.solvers.models.storage.zones.data import objective as objective
 from rmfs.solvers.models.storage.zones.data import violations as violations
-from rmfs.solvers.models.storage.zones.greedy import solve as solve_greedily
 from rmfs.solvers.models.storage.zones.prices import Prices as Prices
 from rmfs.solvers.models.storage.zones.prices import expected_stay_h as expected_stay_h
 from rmfs.solvers.models.storage.zones.prices import place_values as place_values
 from rmfs.solvers.models.storage.zones.prices import price_bound as price_bound
 
-__all__ = [
-    "Prices",
-    "ZonePlan",
-    "Zones",
-    "expected_stay_h",
-    "objective",
-    "place_values",
-    "price_bound",
-    "solve",
-    "solve_greedily",
-    "violations",
-]
+solve = Methods[Zones, ZonePlan](
+    {"clarabel": clarabel.solve, "greedy": greedy.solve}, default="clarabel", rule="greedy"
+)
+methods = solve.names

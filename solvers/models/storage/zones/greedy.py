@@ -8,7 +8,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_rule
 from rmfs.solvers.models.storage.zones.data import ZonePlan, Zones, objective, traffic_per_h
 from rmfs.solvers.models.storage.zones.prices import price_bound
 
@@ -24,20 +24,15 @@ def solve(
     The time includes the delay that its traffic causes. The price of a zone is what a pod there
     saves, at least, against the best zone with room left over; 0 if there is no such zone.
 
-    Parameters
-    ----------
-    data
-        The problem.
-    limits, seed, start
-        Not needed.
-
     Returns
     -------
     The plan; ties go to the lowest index.
     """
     begin = perf_counter()
     if not data.fits:
-        return Solution(None, math.inf, math.inf, Status.INFEASIBLE, "rule", perf_counter() - begin)
+        return solution_of_rule(
+            None, lambda plan: objective(data, plan), bound=math.inf, work=0.0, began=begin
+        )
     standing = np.zeros(data.visit_s.shape)
     room = data.places.copy()
     traffic = np.zeros(len(room))
@@ -55,10 +50,12 @@ def solve(
             left -= amount
             steps += 1
     plan = ZonePlan(standing, _prices(data, standing, room))
-    value = objective(data, plan)
-    bound = min(value, price_bound(data, plan)) if data.pods.size else 0.0
-    return Solution(
-        plan, value, bound, Status.FEASIBLE, "rule", perf_counter() - begin, 0.0, float(steps)
+    return solution_of_rule(
+        plan,
+        lambda values: objective(data, values),
+        bound=price_bound(data, plan) if data.pods.size else 0.0,
+        work=float(steps),
+        began=begin,
     )
 
 

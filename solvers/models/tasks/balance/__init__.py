@@ -1,9 +1,15 @@
 """Robots to tasks with balanced stations and due times."""
 
+import numpy as np
+from numpy.typing import NDArray
+
+from rmfs.solvers.models.methods import Methods
+from rmfs.solvers.models.tasks.balance import flow, greedy
 from rmfs.solvers.models.tasks.balance.data import Balance as Balance
 from rmfs.solvers.models.tasks.balance.data import objective as objective
 from rmfs.solvers.models.tasks.balance.data import violations as violations
-from rmfs.solvers.models.tasks.balance.flow import solve as solve
-from rmfs.solvers.models.tasks.balance.greedy import solve as solve_greedily
 
-__all__ = ["Balance", "objective", "solve", "solve_greedily", "violations"]
+solve = Methods[Balance, NDArray[np.int64]](
+    {"flow": flow.solve, "greedy": greedy.solve}, default="flow", rule="greedy"
+)
+methods = solve.names

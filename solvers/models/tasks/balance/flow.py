@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rmfs.solvers.models.backends.flow import Network, min_cost_flow
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_optimum
 from rmfs.solvers.models.tasks.balance.data import Balance, objective
 from rmfs.solvers.models.tasks.matching.data import LEFT
 
@@ -30,13 +30,6 @@ def solve(
 ) -> Solution[NDArray[np.int64]]:
     """Find the robot of each task.
 
-    Parameters
-    ----------
-    data
-        The problem.
-    limits, seed, start
-        Not needed: the algorithm is polynomial, deterministic and starts from nothing.
-
     Returns
     -------
     The robot of each task, or `LEFT`, shape (T,); work in arcs.
@@ -47,25 +40,20 @@ def solve(
     network = _network(data, pair_s, pair_robot, pair_task)
     built = perf_counter()
     flow = min_cost_flow(network)
-    if flow is None:
-        wall_s, build_s = perf_counter() - begin, built - begin
-        return Solution(
-            None, math.inf, math.inf, Status.INFEASIBLE, "min_cost_flow", wall_s, build_s
-        )
-    robot = np.full(len(data.leave_s), LEFT, np.int64)
-    used = flow.units[: len(pair_task)] > 0
-    robot[pair_task[used]] = pair_robot[used]
-    value = objective(data, robot)
+    robot = None
+    if flow is not None:
+        robot = np.full(len(data.leave_s), LEFT, np.int64)
+        used = flow.units[: len(pair_task)] > 0
+        robot[pair_task[used]] = pair_robot[used]
     paid = math.fsum(data.leave_s[np.isfinite(data.leave_s)])
-    return Solution(
+    return solution_of_optimum(
         robot,
-        value,
-        min(paid + flow.bound, value),
-        Status.OPTIMAL,
-        "min_cost_flow",
-        perf_counter() - begin,
-        built - begin,
-        flow.work,
+        lambda values: objective(data, values),
+        bound=math.inf if flow is None else paid + flow.bound,
+        backend="min_cost_flow",
+        work=0.0 if flow is None else flow.work,
+        began=begin,
+        built=built,
     )
 
 

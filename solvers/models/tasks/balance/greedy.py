@@ -8,7 +8,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_rule
 from rmfs.solvers.models.tasks.balance.data import Balance, objective, violations
 from rmfs.solvers.models.tasks.matching.data import LEFT
 
@@ -24,13 +24,6 @@ def solve(
 
     A task is left if its travel, lateness and the waiting it adds cost more than leaving it. The
     bound lets robots do any number of tasks and stations start with the queue they have.
-
-    Parameters
-    ----------
-    data
-        The problem.
-    limits, seed, start
-        Not needed.
 
     Returns
     -------
@@ -55,9 +48,10 @@ def solve(
             robot[task] = best
             sent[station] += 1
             pair_s[best] = math.inf
-    wall_s, work = perf_counter() - begin, float(pair_s.size)
-    if violations(data, robot):
-        status = Status.LIMIT if math.isfinite(bound) else Status.INFEASIBLE
-        return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, work)
-    value = objective(data, robot)
-    return Solution(robot, value, min(bound, value), Status.FEASIBLE, "rule", wall_s, 0.0, work)
+    return solution_of_rule(
+        None if violations(data, robot) else robot,
+        lambda values: objective(data, values),
+        bound=bound,
+        work=float(pair_s.size),
+        began=begin,
+    )

@@ -1,9 +1,17 @@
 """Robots to tasks, at most one each, by travel time."""
 
-from rmfs.solvers.models.tasks.matching.assignment import solve as solve
+import numpy as np
+from numpy.typing import NDArray
+
+from rmfs.solvers.models.methods import Methods
+from rmfs.solvers.models.tasks.matching import assignment, flow, greedy
 from rmfs.solvers.models.tasks.matching.data import Matching as Matching
 from rmfs.solvers.models.tasks.matching.data import objective as objective
 from rmfs.solvers.models.tasks.matching.data import violations as violations
-from rmfs.solvers.models.tasks.matching.greedy import solve as solve_greedily
 
-__all__ = ["Matching", "objective", "solve", "solve_greedily", "violations"]
+solve = Methods[Matching, NDArray[np.int64]](
+    {"assignment": assignment.solve, "flow": flow.solve, "greedy": greedy.solve},
+    default="assignment",
+    rule="greedy",
+)
+methods = solve.names

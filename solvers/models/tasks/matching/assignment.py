@@ -18,18 +18,20 @@ def solve(
     *,
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
-    solver: Solver = "scipy",
 ) -> Solution[NDArray[np.int64]]:
-    """Find the robot of each task.
+    """Find the robot of each task, or `LEFT`, by SciPy's shortest augmenting paths."""
+    return solve_by(data, "scipy")
+
+
+def solve_by(data: Matching, solver: Solver) -> Solution[NDArray[np.int64]]:
+    """Find the robot of each task by a solver of assignments.
 
     Parameters
     ----------
     data
         The problem.
-    limits, seed, start
-        Not needed: the algorithm is polynomial, deterministic and starts from nothing.
     solver
-        Who solves it. Default: SciPy.
+        Who solves it.
 
     Returns
     -------

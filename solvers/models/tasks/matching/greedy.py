@@ -8,7 +8,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_rule
 from rmfs.solvers.models.tasks.matching.data import LEFT, Matching, objective, violations
 
 
@@ -22,13 +22,6 @@ def solve(
     """Match the pair that saves most against leaving the task, until none saves anything.
 
     Tasks that must be done come first. The bound lets robots do any number of tasks.
-
-    Parameters
-    ----------
-    data
-        The problem.
-    limits, seed, start
-        Not needed.
 
     Returns
     -------
@@ -51,9 +44,10 @@ def solve(
                 idle[one] = False
     best = np.minimum(data.travel_s.min(axis=0, initial=math.inf), data.leave_s)
     bound, work = float(best.sum()), float(gain.size)
-    wall_s = perf_counter() - begin
-    if violations(data, robot):
-        status = Status.LIMIT if math.isfinite(bound) else Status.INFEASIBLE
-        return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, work)
-    value = objective(data, robot)
-    return Solution(robot, value, min(bound, value), Status.FEASIBLE, "rule", wall_s, 0.0, work)
+    return solution_of_rule(
+        None if violations(data, robot) else robot,
+        lambda values: objective(data, values),
+        bound=bound,
+        work=work,
+        began=begin,
+    )

@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 
 from rmfs.solvers.models.backends.assignment import assign
 from rmfs.solvers.models.tasks.sequence.candidates import shortest_over_places
-from rmfs.solvers.models.tasks.sequence.data import SLACK_S, Sequence
+from rmfs.solvers.models.tasks.sequence.data import SLACK_S, TaskSequence
 
 _ROUNDING = 2.0**-40
 
 
-def relaxed_bound(data: Sequence) -> float:
+def relaxed_bound(data: TaskSequence) -> float:
     """Bound the cost of all routes from below.
 
     Parameters
@@ -58,7 +58,7 @@ def relaxed_bound(data: Sequence) -> float:
 
 
 def _from_robots(
-    data: Sequence,
+    data: TaskSequence,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return when robots can be at pods, what that adds to storing, and storing itself."""
     through_s = shortest_over_places(data.stow_s, data.fetch_s)
@@ -69,7 +69,7 @@ def _from_robots(
 
 
 def _from_tasks(
-    data: Sequence,
+    data: TaskSequence,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return the time from one station to the next pod, what it adds, and storing itself."""
     through_s = shortest_over_places(data.store_s, data.fetch_s)
@@ -80,7 +80,7 @@ def _from_tasks(
 
 
 def _earliest(
-    data: Sequence, first_s: NDArray[np.float64], next_s: NDArray[np.float64]
+    data: TaskSequence, first_s: NDArray[np.float64], next_s: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return the earliest arrival of each pod over all chains of tasks, shape (T,), in s."""
     start_s = np.maximum(first_s.min(axis=0, initial=math.inf) + data.bring_s, data.earliest_s)

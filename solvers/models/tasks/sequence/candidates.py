@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rmfs.solvers.models.tasks.sequence.data import NONE, Routes, Sequence
+from rmfs.solvers.models.tasks.sequence.data import NONE, Routes, TaskSequence
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Ways:
     complete: bool
 
 
-def every_way(data: Sequence) -> Ways:
+def every_way(data: TaskSequence) -> Ways:
     """Return all ways of a problem.
 
     Parameters
@@ -49,7 +49,7 @@ def every_way(data: Sequence) -> Ways:
     return Ways(first, _without_loops(data, onward), last, complete=True)
 
 
-def short_ways(data: Sequence, keep: Routes, *, tasks: int, places: int) -> Ways:
+def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> Ways:
     """Return the shortest ways, and those of a plan, so that it stays possible.
 
     Of all tasks, those that are nearest over the best place are looked at after each owner, and
@@ -116,13 +116,13 @@ def shortest_over_places(
     return shortest
 
 
-def _first_s(data: Sequence) -> NDArray[np.float64]:
+def _first_s(data: TaskSequence) -> NDArray[np.float64]:
     """Return the empty drives from robots without a pod, infinite for the others, shape (R, T)."""
     first_s: NDArray[np.float64] = np.where(data.carrying[:, np.newaxis], np.inf, data.reach_s)
     return first_s
 
 
-def _owners_s(data: Sequence) -> NDArray[np.float64]:
+def _owners_s(data: TaskSequence) -> NDArray[np.float64]:
     """Return the drives of owners with their pods to places, shape (R + T, L)."""
     stow_s = np.where(data.carrying[:, np.newaxis], data.stow_s, np.inf)
     return np.vstack([stow_s, data.store_s])
@@ -141,14 +141,14 @@ def _among_nearest(way_s: NDArray[np.float64], count: int) -> NDArray[np.bool_]:
     return _nearest(way_s, count) | _nearest(way_s.T, count).T
 
 
-def _without_loops(data: Sequence, onward: NDArray[np.int64]) -> NDArray[np.int64]:
+def _without_loops(data: TaskSequence, onward: NDArray[np.int64]) -> NDArray[np.int64]:
     """Remove ways from a task to itself."""
     ways: NDArray[np.int64] = onward[onward[:, 0] != onward[:, 2] + data.robots]
     return ways
 
 
 def _ways_of(
-    data: Sequence, routes: Routes
+    data: TaskSequence, routes: Routes
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """Return the ways that routes take, in the three tables of `Ways`."""
     first, onward, last = [], [], []

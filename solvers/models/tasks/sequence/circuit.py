@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ortools.sat.python import cp_model
 
 from rmfs.solvers.models.tasks.sequence.candidates import Ways
-from rmfs.solvers.models.tasks.sequence.data import NONE, TICKS_PER_S, Routes, Sequence
+from rmfs.solvers.models.tasks.sequence.data import NONE, TICKS_PER_S, Routes, TaskSequence
 from rmfs.solvers.models.tasks.sequence.schedule import arrivals_s
 
 _DEPOT = 0
@@ -45,7 +45,7 @@ class Circuit:
         What to hand to the solver.
     """
 
-    def __init__(self, data: Sequence, ways: Ways) -> None:
+    def __init__(self, data: TaskSequence, ways: Ways) -> None:
         self.model = cp_model.CpModel()
         self._data = data
         self._arcs: dict[tuple[int, int], cp_model.IntVar] = {}
@@ -239,7 +239,7 @@ def _ticks(time_s: NDArray[np.float64] | float) -> NDArray[np.int64]:
     return ticks
 
 
-def _horizon(data: Sequence) -> int:
+def _horizon(data: TaskSequence) -> int:
     """Return a time by which all tasks can be done, one after another, in ticks."""
     ways = (data.reach_s, data.fetch_s, data.stow_s, data.store_s)
     longest = [int(_ticks(way_s).max(initial=0)) for way_s in ways]

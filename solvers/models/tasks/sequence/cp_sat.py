@@ -14,7 +14,7 @@ from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 from rmfs.solvers.models.tasks.sequence.bound import relaxed_bound
 from rmfs.solvers.models.tasks.sequence.candidates import Ways, every_way
 from rmfs.solvers.models.tasks.sequence.circuit import Circuit
-from rmfs.solvers.models.tasks.sequence.data import NONE, TICKS_PER_S, Routes, Sequence
+from rmfs.solvers.models.tasks.sequence.data import NONE, TICKS_PER_S, Routes, TaskSequence
 from rmfs.solvers.models.tasks.sequence.schedule import objective, violations
 
 _STATUS = {
@@ -26,7 +26,7 @@ _STATUS = {
 
 
 def solve(
-    data: Sequence,
+    data: TaskSequence,
     limits: Limits = NO_LIMITS,
     *,
     seed: int = 0,
@@ -102,7 +102,7 @@ def _without_proof(status: Status, value: float, bound: float, limits: Limits) -
     return status
 
 
-def _without_robots(data: Sequence, begin: float) -> Solution[Routes]:
+def _without_robots(data: TaskSequence, begin: float) -> Solution[Routes]:
     """Leave everything."""
     routes = Routes((), np.full(data.tasks, NONE, np.int64), np.zeros(0, np.int64))
     value = objective(data, routes)

@@ -30,7 +30,7 @@ SLACK_S = 1e-7
 
 
 @dataclass(frozen=True)
-class Sequence:
+class TaskSequence:
     """Robots, tasks and free places.
 
     Times are rounded to milliseconds; +inf forbids a way.

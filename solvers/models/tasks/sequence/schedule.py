@@ -13,10 +13,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from rmfs.solvers.models.tasks.sequence.data import NONE, SLACK_S, Routes, Sequence
+from rmfs.solvers.models.tasks.sequence.data import NONE, SLACK_S, Routes, TaskSequence
 
 
-def approach_s(data: Sequence, robot: int, place: int, task: int) -> float:
+def approach_s(data: TaskSequence, robot: int, place: int, task: int) -> float:
     """Return the empty drive to the pod of a task.
 
     Parameters
@@ -34,7 +34,7 @@ def approach_s(data: Sequence, robot: int, place: int, task: int) -> float:
 
 
 def follow(
-    data: Sequence, robot: int, tasks: tuple[int, ...], place: NDArray[np.int64], stowed: int
+    data: TaskSequence, robot: int, tasks: tuple[int, ...], place: NDArray[np.int64], stowed: int
 ) -> tuple[float, list[float]]:
     """Drive one route.
 
@@ -70,7 +70,7 @@ def follow(
     return driving_s, arrivals
 
 
-def lateness_s(data: Sequence, task: int, arrival_s: float) -> float:
+def lateness_s(data: TaskSequence, task: int, arrival_s: float) -> float:
     """Return the weighted lateness of a task; infinite after the end of its window.
 
     Parameters
@@ -87,7 +87,7 @@ def lateness_s(data: Sequence, task: int, arrival_s: float) -> float:
     return data.late_weight * max(0.0, arrival_s - float(data.due_s[task]))
 
 
-def arrivals_s(data: Sequence, routes: Routes) -> NDArray[np.float64]:
+def arrivals_s(data: TaskSequence, routes: Routes) -> NDArray[np.float64]:
     """Return when the pod of each task is at its station, shape (T,), in s; nan if it is left.
 
     Parameters
@@ -104,7 +104,7 @@ def arrivals_s(data: Sequence, routes: Routes) -> NDArray[np.float64]:
     return arrive
 
 
-def objective(data: Sequence, routes: Routes) -> float:
+def objective(data: TaskSequence, routes: Routes) -> float:
     """Return driving, weighted lateness and the cost of what is left, in s.
 
     Parameters
@@ -123,7 +123,7 @@ def objective(data: Sequence, routes: Routes) -> float:
     return math.fsum(parts)
 
 
-def violations(data: Sequence, routes: Routes) -> list[str]:
+def violations(data: TaskSequence, routes: Routes) -> list[str]:
     """Say what is wrong with routes; empty if nothing is.
 
     Parameters

@@ -9,9 +9,9 @@ from __future__ import annotations
 from itertools import permutations, product
 
 import numpy as np
+from pile_on_sample import Size, snapshot
 
 from rmfs.solvers.models.pile_on.data import PileOn
-from rmfs.solvers.models.pile_on.sample import Size, snapshot
 from rmfs.solvers.models.pile_on.variant import Variant, Weights
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from pile_on_oracle import optimum, small_site, tiny
+from pile_on_sample import Size, snapshot
 
 from rmfs.solvers.models import Limits
 from rmfs.solvers.models.pile_on import (
@@ -12,7 +13,6 @@ from rmfs.solvers.models.pile_on import (
     Pruning,
     Variant,
     Weights,
-    attribute,
     cp_sat,
     everything,
     greedy,
@@ -27,7 +27,6 @@ from rmfs.solvers.models.pile_on import (
 from rmfs.solvers.models.pile_on.program import formulate
 from rmfs.solvers.models.pile_on.relaxation import PileOnRelaxation, bound
 from rmfs.solvers.models.pile_on.restrict import compact, part
-from rmfs.solvers.models.pile_on.sample import Size, snapshot
 from rmfs.solvers.models.pile_on.values import called_supply, demand, uncovered
 
 
@@ -118,27 +117,6 @@ def test_a_part_leaves_orders_that_are_split_beyond_it_as_they_are() -> None:
         gained = objective(stage.data, start) - better.objective
         assert objective(data, values) - objective(data, merged) == pytest.approx(gained)
     assert split > 3
-
-
-@pytest.mark.parametrize("variant", Variant)
-def test_attribution_covers_every_line_from_stock_that_is_there(variant: Variant) -> None:
-    for seed in range(40):
-        data = tiny(seed, variant)
-        values = cp_sat.solve(data).required
-        picks = attribute(data, values)
-        units = np.bincount(picks.line, picks.units, minlength=data.lines)
-        covered = values.line_station >= 0
-        assert np.array_equal(units, np.where(covered, data.line_units, 0))
-        taken = np.zeros_like(data.stock)
-        np.add.at(taken, (picks.pod, data.line_sku[picks.line]), picks.units)
-        assert (taken <= data.stock).all()
-        station = np.maximum(data.inbound, values.pod_station)
-        assert np.array_equal(station[picks.pod], values.line_station[picks.line])
-        # What remains still covers the open demand that the decision says it covers.
-        kept = np.zeros_like(data.open_units)
-        here = np.flatnonzero(station >= 0)
-        np.add.at(kept, station[here], (data.stock - taken)[here])
-        assert (kept >= data.open_units - uncovered(data, values)).all()
 
 
 def test_supply_and_demand_of_a_decision_agree() -> None:

@@ -7,20 +7,20 @@ from math import inf
 
 import numpy as np
 import pytest
+from rack_allocation_sample import site
 
 from rmfs.solvers.models import Limits, ModelError, Status
 from rmfs.solvers.models.rack_allocation import (
     Allocation,
     RackAllocation,
+    cp_sat,
+    greedy,
+    highs,
     objective,
-    solve_by_cp_sat,
-    solve_by_highs,
-    solve_greedily,
     violations,
 )
-from rmfs.solvers.models.rack_allocation.sample import site
 
-EXACT = {"cp_sat": solve_by_cp_sat, "highs": solve_by_highs}
+EXACT = {"cp_sat": cp_sat.solve, "highs": highs.solve}
 
 
 def small_case(seed: int) -> RackAllocation:
@@ -77,7 +77,7 @@ def test_back_ends_find_the_fewest_pods(part: int) -> None:
     for seed in range(30 * part, 30 * part + 30):
         data = small_case(seed)
         best = fewest_pods(data)
-        rule = solve_greedily(data)
+        rule = greedy.solve(data)
         assert rule.bound <= best
         if rule.found:
             assert violations(data, rule.required) == []
@@ -97,7 +97,7 @@ def test_back_ends_find_the_fewest_pods(part: int) -> None:
 def test_one_pod_for_two_orders() -> None:
     """By hand: pod 2 serves both orders at the one station; pods 0 and 1 would be two."""
     data = RackAllocation([[1, 0], [0, 1]], [[5, 0], [0, 5], [1, 1]], [2])
-    for solve in (*EXACT.values(), solve_greedily):
+    for solve in (*EXACT.values(), greedy.solve):
         assert solve(data).required.pod_station.tolist() == [-1, -1, 0]
 
 
@@ -108,7 +108,7 @@ def test_one_pod_does_not_serve_two_stations() -> None:
         assert solve(data).objective == 2.0
 
 
-@pytest.mark.parametrize("solve", [*EXACT.values(), solve_greedily])
+@pytest.mark.parametrize("solve", [*EXACT.values(), greedy.solve])
 def test_empty_and_degenerate(solve) -> None:
     """No stations, no slots, orders that ask for nothing, more slots than orders."""
     nothing = np.zeros((0, 2), np.int64)
@@ -138,15 +138,15 @@ def test_wrong_input_names_the_field(field: str, change: dict[str, list]) -> Non
 def test_a_start_must_be_feasible() -> None:
     data = RackAllocation([[1]], [[1]], [1])
     with pytest.raises(ModelError, match="lacks units"):
-        solve_by_cp_sat(data, start=Allocation(np.array([0]), np.array([-1])))
+        cp_sat.solve(data, start=Allocation(np.array([0]), np.array([-1])))
 
 
 def test_medium_site_with_limits() -> None:
     """Under a limit the search begins with the rule, repeats itself, and is bounded from below."""
     data = site(30, 60, 60, 3, 4, seed=1)
-    rule = solve_greedily(data)
+    rule = greedy.solve(data)
     limits = Limits(deterministic_s=0.1)
-    one, other = (solve_by_cp_sat(data, limits, start=rule.values) for _ in range(2))
+    one, other = (cp_sat.solve(data, limits, start=rule.values) for _ in range(2))
     assert one.objective == other.objective <= rule.objective
     assert 3.0 <= one.bound <= one.objective
     assert one.work == other.work

@@ -11,17 +11,17 @@ from rmfs.solvers.models.replenishment import (
     Replenishment,
     Stocking,
     best_pods,
+    cp_sat,
+    greedy,
+    highs,
     objective,
-    solve_by_cp_sat,
-    solve_by_highs,
-    solve_by_rounding,
-    solve_greedily,
+    rounding,
     violations,
 )
 from rmfs.solvers.models.replenishment.polish import polished
 
-BACKENDS = {"cp_sat": solve_by_cp_sat, "highs": solve_by_highs}
-RULES = {"greedy": solve_greedily, "rounding": solve_by_rounding}
+BACKENDS = {"cp_sat": cp_sat.solve, "highs": highs.solve}
+RULES = {"greedy": greedy.solve, "rounding": rounding.solve}
 
 
 def random_replenishment(seed: int) -> Replenishment:
@@ -117,8 +117,8 @@ def larger(seed: int) -> Replenishment:
 def test_back_ends_agree_and_rules_are_near_on_larger_cases() -> None:
     for seed in range(3):
         data = larger(seed)
-        rule = solve_by_rounding(data)
-        exact, other = solve_by_highs(data, start=rule.values), solve_by_cp_sat(data)
+        rule = rounding.solve(data)
+        exact, other = highs.solve(data, start=rule.values), cp_sat.solve(data)
         assert exact.status is other.status is Status.OPTIMAL
         assert exact.objective == pytest.approx(other.objective, abs=0.05)
         assert exact.bound - 1e-6 <= rule.objective
@@ -131,7 +131,7 @@ def test_pruning_keeps_solutions_valid_and_loses_little() -> None:
         data = larger(seed)
         pruned = best_pods(data, pods=4, stations=1)
         assert np.isfinite(pruned.worth_s).sum(axis=1).max() <= 4
-        near, best = solve_by_highs(pruned), solve_by_highs(data)
+        near, best = highs.solve(pruned), highs.solve(data)
         assert not violations(data, near.required)
         assert objective(data, near.required) == pytest.approx(near.objective)
         assert best.objective - 1e-6 <= near.objective <= 0.75 * best.objective
@@ -171,16 +171,16 @@ def test_spaces_are_rounded_to_the_safe_side() -> None:
 
 def test_limits_end_the_search_and_the_bound_stays_one() -> None:
     data = larger(5)
-    best = solve_by_highs(data).objective
-    start = solve_greedily(data).required
+    best = highs.solve(data).objective
+    start = greedy.solve(data).required
     for solve, limits in (
-        (solve_by_cp_sat, Limits(deterministic_s=0.01)),
-        (solve_by_highs, Limits(nodes=0)),
-        (solve_by_rounding, Limits(iterations=3)),
+        (cp_sat.solve, Limits(deterministic_s=0.01)),
+        (highs.solve, Limits(nodes=0)),
+        (rounding.solve, Limits(iterations=3)),
     ):
         ends = [solve(data, limits, start=start) for _ in range(2)]
         assert ends[0].bound <= best + 1e-6
-        assert solve is solve_by_rounding or ends[0].gap < 0.5
+        assert solve is rounding.solve or ends[0].gap < 0.5
         assert ends[0].objective >= best - 1e-6
         assert (ends[0].objective, ends[0].bound, ends[0].work) == (
             ends[1].objective,
@@ -208,7 +208,7 @@ def test_invalid_input_is_refused_by_field() -> None:
         Replenishment([[1.0]], [0.0], [1.0], [1.0], [[1.0]], [1.0, 2.0])
     data = Replenishment([[1.0]], [0.0], [2.0], [1.0], [[1.0]], [9.0])
     with pytest.raises(ModelError, match="start"):
-        solve_by_highs(data, start=Stocking(np.array([0]), np.array([0])))
+        highs.solve(data, start=Stocking(np.array([0]), np.array([0])))
 
 
 def test_violations_name_what_is_wrong() -> None:

@@ -17,7 +17,6 @@ from rmfs.solvers.models.run_bound import (
     objective,
     single_bounds,
     solve,
-    units_per_h_bound,
     violations,
     visit_legs,
 )
@@ -125,24 +124,24 @@ def one(**changes: object) -> RunBound:
 
 def test_each_limit_binds_alone() -> None:
     # 3600 s fit 360 gaps of 10 s, so 361 picks
-    assert units_per_h_bound(one()) == pytest.approx(361.0)
-    assert units_per_h_bound(one(unit_pick_s=20.0)) == pytest.approx(181.0)
-    assert units_per_h_bound(one(orders=Orders(units=17.0))) == pytest.approx(17.0)
-    assert units_per_h_bound(one(stock=Stock([5, 4], 9))) == pytest.approx(9.0)
+    assert solve(one()).bound == pytest.approx(361.0)
+    assert solve(one(unit_pick_s=20.0)).bound == pytest.approx(181.0)
+    assert solve(one(orders=Orders(units=17.0))).bound == pytest.approx(17.0)
+    assert solve(one(stock=Stock([5, 4], 9))).bound == pytest.approx(9.0)
     # a robot: way in and out 60 s a visit of at most 100 units
     robots = one(robots=1, order_slots=6)
     expected = (3600 + 63) / (10 + (63 - 10) / 100)
-    assert units_per_h_bound(robots) == pytest.approx(expected)
+    assert solve(robots).bound == pytest.approx(expected)
     # pods change after 2 units and the station waits for 7 s each time
     slow = one(changeover_s=14.0, stock=Stock(np.full(999, 2), 2))
-    assert units_per_h_bound(slow) == pytest.approx((3600 + 17) / (10 + 7 / 2), rel=1e-6)
+    assert solve(slow).bound == pytest.approx((3600 + 17) / (10 + 7 / 2), rel=1e-6)
 
 
 def test_refill_adds_what_bundles_bring_and_costs_robot_time() -> None:
     refill = Refill([20.0], [0.0], [0.0], 1, 10)
     # 180 gaps of 20 s, so 181 bundles of one unit
     stocked = one(stock=Stock([50], 100), refill=refill)
-    assert units_per_h_bound(stocked) == pytest.approx(231.0)
+    assert solve(stocked).bound == pytest.approx(231.0)
     shared = one(
         robots=1,
         inbound_s=0.0,
@@ -151,14 +150,14 @@ def test_refill_adds_what_bundles_bring_and_costs_robot_time() -> None:
         refill=Refill([10.0], [0.0], [0.0], 1, 10),
     )
     # without ways each unit takes the robot for 3 s, its bundle for 10 s, and one end lasts 10 s
-    assert units_per_h_bound(shared) == pytest.approx(3610 / 13)
+    assert solve(shared).bound == pytest.approx(3610 / 13)
 
 
 def test_slots_limit_visits_that_no_order_joins() -> None:
     closed = Orders(largest_order_units=2.0, join_visits=False)
     data = one(robots=1, orders=closed, order_slots=3)
     assert data.visit_units.tolist() == [6.0]
-    assert units_per_h_bound(data) == pytest.approx((3600 + 63) / (10 + (63 - 10) / 6))
+    assert solve(data).bound == pytest.approx((3600 + 63) / (10 + (63 - 10) / 6))
     assert one(robots=1, order_slots=3).visit_units.tolist() == [100.0]
 
 
@@ -166,7 +165,7 @@ def test_orders_that_need_several_visits_limit_the_pile_on() -> None:
     spread = Orders(largest_order_units=2.0, lone_units=0.0)
     data = one(robots=1, orders=spread, order_slots=3)
     visits = (3600 + 63 - 10 * 6) / (63 - 10 + 60)
-    assert units_per_h_bound(data) == pytest.approx(6 * (visits + 1), rel=1e-6)
+    assert solve(data).bound == pytest.approx(6 * (visits + 1), rel=1e-6)
 
 
 def serve_orders(rng: np.random.Generator, slots: int, largest: int) -> list[tuple[int, int]]:
@@ -213,7 +212,7 @@ def test_the_bound_is_below_what_each_resource_alone_allows() -> None:
     for seed in range(100):
         plant = random_plant(seed)
         data = bound_of(plant, 1 + seed % 5, 3600.0, plant.pods, units=float(seed * 7))
-        bound = units_per_h_bound(data)
+        bound = solve(data).bound
         for alone in single_bounds(data).values():
             assert bound <= alone * (1 + 1e-9) + 1e-9
 
@@ -222,21 +221,21 @@ def test_more_of_anything_never_lowers_the_bound() -> None:
     for seed in range(60):
         plant = random_plant(seed)
         data = bound_of(plant, 2, 1800.0, plant.pods, units=400.0)
-        bound = units_per_h_bound(data)
+        bound = solve(data).bound
         more = [
             dataclasses.replace(data, robots=3),
             dataclasses.replace(data, stock=Stock(plant.pods + 1, plant.pod_limit + 1)),
             dataclasses.replace(data, orders=Orders(units=500.0)),
         ]
         for richer in more:
-            assert units_per_h_bound(richer) >= bound * (1 - 1e-9)
+            assert solve(richer).bound >= bound * (1 - 1e-9)
 
 
 def test_the_reported_bound_is_a_dual_value_however_early_the_solver_stops() -> None:
     for seed in range(40):
         plant = random_plant(seed)
         data = bound_of(plant, 2, 1800.0, plant.pods)
-        full, stopped = solve(data), solve(data, Limits(iterations=0))
+        full, stopped = solve(data), solve(data, limits=Limits(iterations=0))
         assert full.status is Status.OPTIMAL
         assert full.objective <= full.bound * (1 + 1e-7)
         assert full.gap < 1e-6
@@ -250,7 +249,7 @@ def test_nothing_can_be_picked_without_robots_pods_stations_or_slots() -> None:
         one(order_slots=0),
         one(picking=PickStations([], [], [], [], [], [])),
     ):
-        assert units_per_h_bound(data) == pytest.approx(0.0, abs=1e-9)
+        assert solve(data).bound == pytest.approx(0.0, abs=1e-9)
         assert single_bounds(data)["stations"] >= 0.0
 
 

@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from rmfs.solvers.models import ModelError, Status
-from rmfs.solvers.models.sequencing import Plan, Sequencing, beam, cp_sat, dynamic, violations
+from rmfs.solvers.models.sequencing import (
+    Sequencing,
+    VisitSequence,
+    beam,
+    cp_sat,
+    dynamic,
+    violations,
+)
 
 METHODS = [dynamic, cp_sat, beam]
 
@@ -52,11 +59,11 @@ def test_of_two_equal_pods_the_first_comes(method: object) -> None:
 def test_violations_name_each_broken_rule() -> None:
     data = Sequencing([[1, 1], [1, 1]], np.eye(2), 1, [True, False])
     plans = {
-        "open before": Plan(np.array([0, 1]), np.array([0, -1])),
-        "never opened": Plan(np.array([0, 1]), np.array([-1, 5])),
-        "never complete": Plan(np.array([0, 1]), np.array([-1, 1])),
-        "than slots at visit 0": Plan(np.array([0, 1]), np.array([-1, 0])),
+        "open before": VisitSequence(np.array([0, 1]), np.array([0, -1])),
+        "never opened": VisitSequence(np.array([0, 1]), np.array([-1, 5])),
+        "never complete": VisitSequence(np.array([0, 1]), np.array([-1, 1])),
+        "than slots at visit 0": VisitSequence(np.array([0, 1]), np.array([-1, 0])),
     }
     for text, plan in plans.items():
         assert any(text in line for line in violations(data, plan)), text
-    assert violations(data, Plan(np.array([0, 1, 0]), np.array([-1, 1]))) == []
+    assert violations(data, VisitSequence(np.array([0, 1, 0]), np.array([-1, 1]))) == []

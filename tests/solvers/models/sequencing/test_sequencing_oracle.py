@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 from sequencing_oracle import fewest_visits, tiny
+from sequencing_sample import station
 
 from rmfs.solvers.models import Limits, Status
 from rmfs.solvers.models.sequencing import (
-    Plan,
     Sequencing,
+    VisitSequence,
     beam,
     cp_sat,
     dynamic,
@@ -15,7 +16,6 @@ from rmfs.solvers.models.sequencing import (
     violations,
 )
 from rmfs.solvers.models.sequencing.bounds import visits_bound
-from rmfs.solvers.models.sequencing.sample import station
 
 
 @pytest.mark.parametrize(("method", "cases"), [(dynamic, 400), (cp_sat, 150)])
@@ -91,6 +91,6 @@ def test_a_second_slot_saves_a_visit() -> None:
 
 def test_returning_to_the_same_pod_at_once_is_one_visit() -> None:
     data = Sequencing(np.eye(2), np.ones((1, 2)), 1)
-    plan = Plan(np.array([0, 0]), np.array([0, 1]))
+    plan = VisitSequence(np.array([0, 0]), np.array([0, 1]))
     assert violations(data, plan) == []
     assert objective(data, plan) == 1.0

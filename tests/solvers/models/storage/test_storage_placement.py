@@ -11,13 +11,13 @@ from rmfs.solvers.models import ModelError, Status
 from rmfs.solvers.models.storage.placement import (
     Placement,
     expected_visits,
+    greedy,
     objective,
     solve,
-    solve_greedily,
     violations,
 )
 
-SOLVERS = ("scipy", "min_cost_flow")
+SOLVERS = ("assignment", "flow")
 
 
 def random_placement(seed: int) -> Placement:
@@ -43,7 +43,7 @@ def test_the_placement_is_the_enumerated_optimum_and_the_bound_proves_it(solver:
     for seed in range(300):
         data = random_placement(seed)
         best = enumerated(data)
-        solution = solve(data, solver=solver)  # type: ignore[arg-type]
+        solution = solve(data, solver)
         if isinf(best):
             infeasible += 1
             assert solution.status is Status.INFEASIBLE
@@ -67,7 +67,7 @@ def test_back_ends_agree_with_networkx_on_larger_cases() -> None:
         mate = nx.bipartite.minimum_weight_full_matching(graph, top_nodes=range(12))
         best = sum(data.cost_s[pod, mate[pod] - 100] for pod in range(12))
         for solver in SOLVERS:
-            solution = solve(data, solver=solver)  # type: ignore[arg-type]
+            solution = solve(data, solver)
             assert solution.objective == pytest.approx(best, abs=1e-4)
             assert solution.gap < 1e-6
 
@@ -76,7 +76,7 @@ def test_the_greedy_rule_is_feasible_and_between_its_bound_and_the_optimum() -> 
     found = 0
     for seed in range(200):
         data = random_placement(seed)
-        best, rule = enumerated(data), solve_greedily(data)
+        best, rule = enumerated(data), greedy.solve(data)
         if rule.found:
             found += 1
             assert not violations(data, rule.required)
@@ -89,14 +89,14 @@ def test_the_greedy_rule_is_feasible_and_between_its_bound_and_the_optimum() -> 
 def test_a_pod_that_is_wanted_soon_gets_the_near_place() -> None:
     data = Placement([[10.0, 12.0], [10.0, 12.0]], [5.0, 50.0], [0.1, 3.0])
     assert solve(data).required.tolist() == [1, 0]
-    assert solve_greedily(data).required.tolist() == [1, 0]
+    assert greedy.solve(data).required.tolist() == [1, 0]
     # without visits only today's travel counts: ties go to the lowest index
-    assert solve_greedily(Placement(data.travel_s, data.access_s, [0.0, 0.0])).required[0] == 0
+    assert greedy.solve(Placement(data.travel_s, data.access_s, [0.0, 0.0])).required[0] == 0
 
 
 def test_no_pods_is_an_empty_placement() -> None:
     empty = Placement(np.zeros((0, 3)), np.zeros(3), [])
-    for solution in (solve(empty), solve(empty, solver="min_cost_flow"), solve_greedily(empty)):
+    for solution in (solve(empty), solve(empty, "flow"), greedy.solve(empty)):
         assert solution.required.shape == (0,)
         assert solution.objective == solution.bound == 0.0
 

@@ -10,16 +10,16 @@ import pytest
 from rmfs.solvers.models import Limits, ModelError, Solution, Status
 from rmfs.solvers.models.storage.stays import (
     Stays,
+    cp_sat,
+    flow,
+    greedy,
+    highs,
     objective,
     places,
-    solve_by_cp_sat,
-    solve_by_flow,
-    solve_by_highs,
-    solve_greedily,
     violations,
 )
 
-BACKENDS = {"cp_sat": solve_by_cp_sat, "highs": solve_by_highs, "flow": solve_by_flow}
+BACKENDS = {"cp_sat": cp_sat.solve, "highs": highs.solve, "flow": flow.solve}
 
 
 def random_stays(seed: int, zones: int | None = None) -> Stays:
@@ -84,11 +84,11 @@ def test_back_ends_agree_on_larger_cases() -> None:
         begin = rng.uniform(0, 600, 80)
         cost = np.sort(rng.uniform(20, 90, 2)) * rng.uniform(0.5, 1.5, (80, 2))
         data = Stays(begin, begin + rng.gamma(2, 40, 80), cost, [6, 20])
-        start = solve_greedily(data)
+        start = greedy.solve(data)
         solutions = [
-            solve_by_flow(data),
-            solve_by_highs(data, start=start.values),
-            solve_by_cp_sat(data, start=start.values),
+            flow.solve(data),
+            highs.solve(data, start=start.values),
+            cp_sat.solve(data, start=start.values),
         ]
         assert {s.status for s in solutions} == {Status.OPTIMAL}
         assert np.ptp([s.objective for s in solutions]) <= 80 / 1024
@@ -99,7 +99,7 @@ def test_the_rule_is_feasible_and_between_its_bound_and_the_optimum() -> None:
     found = 0
     for seed in range(200):
         data = random_stays(seed)
-        best, rule = enumerated(data), solve_greedily(data)
+        best, rule = enumerated(data), greedy.solve(data)
         if rule.found:
             found += 1
             assert not violations(data, rule.required)
@@ -118,7 +118,7 @@ def test_without_forbidden_zones_the_rule_finds_room_whenever_there_is_any() -> 
             np.where(np.isinf(data.cost_s), 99.0, data.cost_s),
             data.capacity,
         )
-        assert solve_greedily(free).found == (not isinf(enumerated(free)))
+        assert greedy.solve(free).found == (not isinf(enumerated(free)))
 
 
 def test_periods_are_the_maximal_sets_of_stays() -> None:
@@ -133,7 +133,7 @@ def test_places_are_never_shared() -> None:
     shared = 0
     for seed in range(150):
         data = random_stays(seed)
-        rule = solve_greedily(data)
+        rule = greedy.solve(data)
         if not rule.found:
             continue
         zone, place = rule.required, places(data, rule.required)
@@ -150,11 +150,11 @@ def test_limits_end_the_search_and_the_bound_stays_one() -> None:
     begin = rng.uniform(0, 300, 60)
     cost = rng.uniform(20, 90, (60, 5))
     data = Stays(begin, begin + rng.gamma(2, 60, 60), cost, np.full(5, 8))
-    start = solve_greedily(data).required
-    best = solve_by_highs(data).objective
+    start = greedy.solve(data).required
+    best = highs.solve(data).objective
     solvers: tuple[tuple[Callable[..., Solution[np.ndarray]], Limits], ...] = (
-        (solve_by_cp_sat, Limits(deterministic_s=0.001)),
-        (solve_by_highs, Limits(nodes=0)),
+        (cp_sat.solve, Limits(deterministic_s=0.001)),
+        (highs.solve, Limits(nodes=0)),
     )
     for solve, limits in solvers:
         stopped = solve(data, limits, start=start)
@@ -171,7 +171,7 @@ def test_limits_end_the_search_and_the_bound_stays_one() -> None:
 def test_an_infeasible_start_and_invalid_input_are_refused() -> None:
     data = Stays([0, 0], [1, 1], [[1.0, 2.0], [1.0, 2.0]], [1, 1])
     with pytest.raises(ModelError, match="start"):
-        solve_by_highs(data, start=np.array([0, 0]))
+        highs.solve(data, start=np.array([0, 0]))
     with pytest.raises(ModelError, match="zone"):
         places(data, np.array([0, 0]))
     with pytest.raises(ModelError, match="end_s"):
@@ -179,13 +179,13 @@ def test_an_infeasible_start_and_invalid_input_are_refused() -> None:
     with pytest.raises(ModelError, match="capacity"):
         Stays([1.0], [2.0], [[1.0]], [-1])
     with pytest.raises(ModelError, match="capacity"):
-        solve_by_flow(Stays([1.0], [2.0], [[1.0]], [1]))
+        flow.solve(Stays([1.0], [2.0], [[1.0]], [1]))
 
 
 def test_nothing_to_decide() -> None:
     empty = Stays([], [], np.zeros((0, 2)), [1, 1])
-    for solve in (*BACKENDS.values(), solve_greedily):
+    for solve in (*BACKENDS.values(), greedy.solve):
         assert solve(empty).objective == 0.0
     homeless = Stays([0.0], [1.0], np.zeros((1, 0)), [])
-    for solve in (solve_by_highs, solve_by_cp_sat, solve_greedily):
+    for solve in (highs.solve, cp_sat.solve, greedy.solve):
         assert solve(homeless).status is Status.INFEASIBLE

@@ -13,11 +13,11 @@ from rmfs.solvers.models.storage.zones import (
     Prices,
     ZonePlan,
     Zones,
+    greedy,
     objective,
     place_values,
     price_bound,
     solve,
-    solve_greedily,
     violations,
 )
 from rmfs.solvers.models.storage.zones.prices import expected_stay_h
@@ -118,7 +118,7 @@ def test_the_bound_holds_for_any_prices_and_any_plan() -> None:
 def test_the_rule_and_the_bound_enclose_the_optimum() -> None:
     for seed in range(100):
         data = random_zones(seed)
-        rule, best = solve_greedily(data), solve(data)
+        rule, best = greedy.solve(data), solve(data)
         assert not violations(data, rule.required)
         assert rule.bound <= best.objective + 1e-6
         assert rule.objective >= best.bound - 1e-6
@@ -185,7 +185,7 @@ def test_stopped_early_it_still_gives_a_feasible_plan_and_a_bound() -> None:
     data = random_zones(8)
     best = solve(data).objective
     for iterations in (1, 3):
-        stopped = solve(data, Limits(iterations=iterations))
+        stopped = solve(data, limits=Limits(iterations=iterations))
         assert not violations(data, stopped.required)
         assert stopped.bound <= best + 1e-6 <= stopped.objective + 2e-6
 
@@ -193,9 +193,9 @@ def test_stopped_early_it_still_gives_a_feasible_plan_and_a_bound() -> None:
 def test_too_few_places_and_no_pods() -> None:
     crowded = Zones([[1.0]], [1.0], [3], [2], [0.0])
     assert solve(crowded).status is Status.INFEASIBLE
-    assert solve_greedily(crowded).status is Status.INFEASIBLE
+    assert greedy.solve(crowded).status is Status.INFEASIBLE
     for data in (Zones([[1.0]], [1.0], [0], [2], [0.0]), Zones(np.zeros((0, 0)), [], [], [], [])):
-        assert solve(data).objective == solve_greedily(data).objective == 0.0
+        assert solve(data).objective == greedy.solve(data).objective == 0.0
 
 
 def test_invalid_input_is_refused_by_field() -> None:

@@ -9,19 +9,19 @@ import pytest
 from rmfs.solvers.models import Limits, ModelError, Status
 from rmfs.solvers.models.tasks.sequence import (
     Routes,
-    Sequence,
+    TaskSequence,
     arrivals_s,
     every_way,
+    greedy,
     objective,
     relaxed_bound,
     short_ways,
     solve,
-    solve_greedily,
     violations,
 )
 
 
-def random_sequence(seed: int) -> Sequence:
+def random_sequence(seed: int) -> TaskSequence:
     rng = np.random.default_rng(seed)
     robots, tasks, places = (int(rng.integers(0, n)) for n in (3, 4, 5))
 
@@ -29,7 +29,7 @@ def random_sequence(seed: int) -> Sequence:
         return np.where(rng.random(shape) < 0.1, inf, rng.uniform(1, 40, shape))
 
     earliest = rng.uniform(0, 60, tasks)
-    return Sequence(
+    return TaskSequence(
         rng.uniform(0, 20, robots),
         rng.random(robots) < 0.5,
         ways(robots, tasks),
@@ -46,7 +46,7 @@ def random_sequence(seed: int) -> Sequence:
     )
 
 
-def site(seed: int, robots: int, tasks: int, places: int) -> Sequence:
+def site(seed: int, robots: int, tasks: int, places: int) -> TaskSequence:
     """Points on a floor, stations along one side, distances at 1.3 m/s."""
     rng = np.random.default_rng(seed)
     floor = np.array([60.0, 40.0])
@@ -56,7 +56,7 @@ def site(seed: int, robots: int, tasks: int, places: int) -> Sequence:
     def drive(a: np.ndarray, b: np.ndarray) -> np.ndarray:
         return np.abs(a[:, None] - b[None]).sum(axis=2) / 1.3
 
-    return Sequence(
+    return TaskSequence(
         rng.uniform(0, 40, robots),
         rng.random(robots) < 0.6,
         drive(at_robot, at_pod),
@@ -72,7 +72,7 @@ def site(seed: int, robots: int, tasks: int, places: int) -> Sequence:
     )
 
 
-def driven(data: Sequence, robot: int, tasks: tuple[int, ...], places: dict[str, int]) -> float:
+def driven(data: TaskSequence, robot: int, tasks: tuple[int, ...], places: dict[str, int]) -> float:
     """Cost of one route, driven step by step; inf if it is not allowed."""
     time = data.ready_s[robot]
     cost, here = 0.0, None
@@ -93,7 +93,7 @@ def driven(data: Sequence, robot: int, tasks: tuple[int, ...], places: dict[str,
     return float(cost)
 
 
-def enumerated(data: Sequence) -> float:
+def enumerated(data: TaskSequence) -> float:
     """Least cost over all robots, orders and places; inf if nothing is feasible."""
     best = inf
     robots, tasks = range(data.robots), range(data.tasks)
@@ -142,7 +142,7 @@ def test_the_relaxed_bound_never_exceeds_the_optimum_and_is_often_close() -> Non
 def test_insertion_is_feasible_and_never_better_than_the_optimum() -> None:
     found = 0
     for data, best in CASES:
-        rule = solve_greedily(data)
+        rule = greedy.solve(data)
         if rule.found:
             found += 1
             assert not violations(data, rule.required)
@@ -155,7 +155,7 @@ def test_insertion_is_feasible_and_never_better_than_the_optimum() -> None:
 def test_short_ways_contain_the_plan_and_lose_little() -> None:
     for seed in range(3):
         data = site(seed, 3, 6, 8)
-        rule = solve_greedily(data)
+        rule = greedy.solve(data)
         assert rule.found
         ways = short_ways(data, rule.required, tasks=3, places=3)
         assert len(ways.onward) < len(every_way(data).onward)
@@ -168,11 +168,11 @@ def test_short_ways_contain_the_plan_and_lose_little() -> None:
 
 def test_a_start_is_never_made_worse_and_work_repeats() -> None:
     data = site(4, 10, 20, 30)
-    rule = solve_greedily(data)
+    rule = greedy.solve(data)
     ways = short_ways(data, rule.required, tasks=3, places=2)
     for work in (0.0, 0.05):
         ends = [
-            solve(data, Limits(deterministic_s=work), start=rule.required, ways=ways)
+            solve(data, limits=Limits(deterministic_s=work), start=rule.required, ways=ways)
             for _ in range(2)
         ]
         assert ends[0].objective <= rule.objective + 1e-9
@@ -184,7 +184,7 @@ def test_a_start_is_never_made_worse_and_work_repeats() -> None:
         assert ends[0].required.tasks == ends[1].required.tasks
 
 
-def simple(**changes: object) -> Sequence:
+def simple(**changes: object) -> TaskSequence:
     """One robot at 0 on a line, two pods at 10 and 30, their station at 20, places at 12 and 28."""
     given = {
         "ready_s": [0.0],
@@ -200,11 +200,11 @@ def simple(**changes: object) -> Sequence:
         "due_s": [inf, inf],
         "skip_s": [inf, inf],
     }
-    return Sequence(**(given | changes))  # type: ignore[arg-type]
+    return TaskSequence(**(given | changes))  # type: ignore[arg-type]
 
 
 def test_the_return_of_one_pod_is_combined_with_the_fetch_of_the_next() -> None:
-    for solver in (solve, solve_greedily):
+    for solver in (solve, greedy.solve):
         routes = solver(simple()).required
         assert routes.tasks == ((0, 1),)
         # near the next pod, not the first place in the list
@@ -229,17 +229,17 @@ def test_windows_and_due_times_decide_the_order() -> None:
 
 
 def test_nothing_to_do_and_nobody_to_do_it() -> None:
-    nobody = Sequence(
+    nobody = TaskSequence(
         [], [], np.zeros((0, 1)), np.zeros((0, 2)), np.zeros((2, 1)), [1.0], [1.0],
         np.zeros((1, 2)), [0.0], [inf], [inf], [7.0],
     )  # fmt: skip
-    for solver in (solve, solve_greedily):
+    for solver in (solve, greedy.solve):
         assert solver(nobody).objective == 7.0
-    idle = Sequence(
+    idle = TaskSequence(
         [0.0], [True], np.zeros((1, 0)), [[3.0]], np.zeros((1, 0)), [], [], np.zeros((0, 1)),
         [], [], [], [],
     )  # fmt: skip
-    for solver in (solve, solve_greedily):
+    for solver in (solve, greedy.solve):
         assert solver(idle).objective == 3.0
         assert solver(idle).required.robot_place.tolist() == [0]
 

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from rmfs.solvers.models.backends.assignment import assign
 from rmfs.solvers.models.checks import require
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_rule
 from rmfs.solvers.models.tasks.sequence.bound import relaxed_bound
-from rmfs.solvers.models.tasks.sequence.data import NONE, Routes, Sequence
+from rmfs.solvers.models.tasks.sequence.data import NONE, Routes, TaskSequence
 from rmfs.solvers.models.tasks.sequence.schedule import (
     approach_s,
     follow,
@@ -29,7 +29,7 @@ from rmfs.solvers.models.tasks.sequence.schedule import (
 
 
 def solve(
-    data: Sequence,
+    data: TaskSequence,
     limits: Limits = NO_LIMITS,
     *,
     seed: int = 0,
@@ -69,12 +69,13 @@ def solve(
                 plan.insert(task)
     routes = None if plan is None else plan.routes()
     work = 0.0 if plan is None else float(plan.scored)
-    wall_s = perf_counter() - begin
-    if routes is None or violations(data, routes):
-        status = Status.LIMIT if math.isfinite(bound) else Status.INFEASIBLE
-        return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, work)
-    value = objective(data, routes)
-    return Solution(routes, value, min(bound, value), Status.FEASIBLE, "rule", wall_s, 0.0, work)
+    return solution_of_rule(
+        None if routes is None or violations(data, routes) else routes,
+        lambda values: objective(data, values),
+        bound=bound,
+        work=work,
+        began=begin,
+    )
 
 
 class _Gap(NamedTuple):
@@ -97,7 +98,7 @@ class _Change(NamedTuple):
 class _Plan:
     """Routes under construction."""
 
-    def __init__(self, data: Sequence, routes: Routes) -> None:
+    def __init__(self, data: TaskSequence, routes: Routes) -> None:
         self._data = data
         self._tasks = [list(tasks) for tasks in routes.tasks]
         self.place = routes.place.copy()
@@ -108,7 +109,7 @@ class _Plan:
         self.scored = 0
 
     @classmethod
-    def of(cls, data: Sequence, start: Routes | None) -> _Plan | None:
+    def of(cls, data: TaskSequence, start: Routes | None) -> _Plan | None:
         """Begin with given routes, or with the cheapest places for what robots carry."""
         if start is not None:
             return cls(data, start)

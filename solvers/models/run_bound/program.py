@@ -1,4 +1,4 @@
-r"""The proven bound: a linear programme whose every inequality holds for every run.
+r"""The linear programme behind the proven bound: one whose every inequality holds for every run.
 
 A *pick* keeps station s for :math:`\tau_s` and the robot for :math:`\pi_s` seconds from its start.
 A *visit* is a stay of a pod at the head of a station; it counts if a pick starts in the window
@@ -42,18 +42,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 
-from rmfs.solvers.models.backends.safe_bound import safe_bound
 from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
-from rmfs.solvers.models.run_bound.data import RunBound, Throughput, objective
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Sense, Solution, Status
-
-_ENDLESS = 2**31 - 1
+from rmfs.solvers.models.run_bound.data import RunBound, Throughput
 
 _ROUNDING = 1e-9
 """Relative error of a quotient of times, taken to the safe side before it is cut to a whole."""
@@ -69,68 +63,6 @@ class Columns:
     bundles: NDArray[np.int64]
     refill_visits: NDArray[np.int64]
     pods: NDArray[np.int64]
-
-
-def solve(
-    data: RunBound,
-    limits: Limits = NO_LIMITS,
-    *,
-    seed: int = 0,
-    start: Throughput | None = None,
-) -> Solution[Throughput]:
-    """Bound the units per hour of every run, and show what would reach the bound.
-
-    Parameters
-    ----------
-    data
-        The warehouse.
-    limits
-        `iterations` limits the simplex; the bound is one whenever it stops.
-    seed, start
-        Not needed: a linear programme.
-
-    Returns
-    -------
-    The best point and, as `bound`, the proven units per hour; work in simplex iterations.
-    """
-    begin = perf_counter()
-    linear, columns = program(data)
-    built = perf_counter()
-    result = linprog(
-        linear.cost,
-        A_ub=linear.matrix.toarray(),
-        b_ub=linear.row_upper,
-        bounds=list(zip(linear.lower.tolist(), linear.upper.tolist(), strict=True)),
-        method="highs",
-        options={"maxiter": _ENDLESS if limits.iterations is None else limits.iterations},
-    )
-    multipliers = np.zeros(linear.rows)
-    if result.success:
-        multipliers = np.asarray(result.ineqlin.marginals)
-    bound = float(np.nextafter(-safe_bound(linear, multipliers) / data.hours, math.inf))
-    values = _values(np.asarray(result.x), columns) if result.success else None
-    return Solution(
-        values,
-        -math.inf if values is None else objective(data, values),
-        bound,
-        Status.LIMIT if values is None else Status.OPTIMAL,
-        "highs",
-        perf_counter() - begin,
-        built - begin,
-        float(result.nit),
-        Sense.MAXIMISE,
-    )
-
-
-def units_per_h_bound(data: RunBound) -> float:
-    """Return the units per hour that no run of this warehouse exceeds.
-
-    Parameters
-    ----------
-    data
-        The warehouse.
-    """
-    return solve(data).bound
 
 
 def violations(data: RunBound, values: Throughput) -> list[str]:
@@ -252,13 +184,3 @@ def _contents(data: RunBound) -> tuple[NDArray[np.float64], NDArray[np.float64]]
     """Return the different contents of pods, fullest first, and how many pods have each."""
     content, count = np.unique(data.stock.pod_units, return_counts=True)
     return content[::-1].astype(np.float64), count[::-1].astype(np.float64)
-
-
-def _values(x: NDArray[np.float64], columns: Columns) -> Throughput:
-    return Throughput(
-        units=x[columns.units],
-        visits=x[columns.visits],
-        lone_units=x[columns.lone_units],
-        bundles=x[columns.bundles],
-        refill_visits=x[columns.refill_visits],
-    )

@@ -1,4 +1,4 @@
-"""Scorers of pods: the higher, the better. Each is a model, so a file can choose and set it."""
+"""Criteria of pods: the higher, the better. Each is a model, so a file can choose and set it."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 Share = Annotated[float, pydantic.Field(ge=0, le=1)]
 
 
-class PodScorer(Parameters):
-    """Base of the scorers of pods."""
+class PodCriterion(Parameters):
+    """Base of the criteria of pods."""
 
     def prepare(self, view: View) -> None:
         """Ask for the trackers it needs; called when the controller is made."""
 
 
-class RandomScorer(PodScorer):
+class RandomCriterion(PodCriterion):
     """Any pod; those on the tiers of robot and station first if so wished."""
 
-    scorer: Literal["random"] = "random"
+    criterion: Literal["random"] = "random"
     prefer_same_tier: bool = True
     """Whether pods on the tiers of robot and station come first."""
 
@@ -48,10 +48,10 @@ class RandomScorer(PodScorer):
         return scores - candidates.other_tiers() if self.prefer_same_tier else scores
 
 
-class Nearest(PodScorer):
+class Nearest(PodCriterion):
     """Shortest way from the robot to the pod and on to the station."""
 
-    scorer: Literal["nearest"] = "nearest"
+    criterion: Literal["nearest"] = "nearest"
     metric: Metric = "time"
     """What is short: `euclidean`, `manhattan` (m), `path` (m along the waypoints) or `time` (s)."""
     estimate: bool = True
@@ -68,10 +68,10 @@ class Nearest(PodScorer):
         return -(from_robot + travel.distances_to(station, self.metric)[pods])
 
 
-class Fill(PodScorer):
+class Fill(PodCriterion):
     """The fullest, or the emptiest, pod."""
 
-    scorer: Literal["fill"] = "fill"
+    criterion: Literal["fill"] = "fill"
     prefer_fullest: bool = True
     """Whether full pods come first; otherwise empty ones."""
     binary: bool = True
@@ -89,10 +89,10 @@ class Fill(PodScorer):
         return share if self.prefer_fullest else -share
 
 
-class PickDemand(PodScorer):
+class PickDemand(PodCriterion):
     """The pod with most units that any order, at a station or waiting, still wants."""
 
-    scorer: Literal["demand"] = "demand"
+    criterion: Literal["demand"] = "demand"
 
     def prepare(self, view: View) -> None:
         """Have wanted units counted."""
@@ -105,10 +105,10 @@ class PickDemand(PodScorer):
         return scores
 
 
-class Completeable(PodScorer):
+class Completeable(PodCriterion):
     """Most orders of the station completed."""
 
-    scorer: Literal["completeable"] = "completeable"
+    criterion: Literal["completeable"] = "completeable"
     queued: bool = True
     """Whether queued orders count as well."""
 
@@ -120,7 +120,7 @@ class Completeable(PodScorer):
         return scores
 
 
-class PickWorkAmount(PodScorer):
+class PickWorkAmount(PodCriterion):
     """Most work at the station, with a price for the way ("pile-on" in later literature).
 
     The work is what the requests are worth that the pod can serve: by `metric`, one each; the time
@@ -129,7 +129,7 @@ class PickWorkAmount(PodScorer):
     three.
     """
 
-    scorer: Literal["work-amount"] = "work-amount"
+    criterion: Literal["work-amount"] = "work-amount"
     metric: RequestValue = "picks"
     """What a request is worth: `picks` (one), `age` or `lateness` (s per open request)."""
     only_positive_lateness: bool = False
@@ -191,10 +191,10 @@ class PickWorkAmount(PodScorer):
         return value_of(order, now_s, self.metric, positive=self.only_positive_lateness)
 
 
-class BundleWorkAmount(PodScorer):
+class BundleWorkAmount(PodCriterion):
     """Most bundles."""
 
-    scorer: Literal["work-amount"] = "work-amount"
+    criterion: Literal["work-amount"] = "work-amount"
     age: bool = False
     """Whether bundles count by the time since they were assigned, and not one each."""
     prefer_same_tier: bool = True
@@ -219,10 +219,10 @@ class BundleWorkAmount(PodScorer):
         return scores
 
 
-class BundleDemand(PodScorer):
+class BundleDemand(PodCriterion):
     """The pod whose bundles at the station are wanted most."""
 
-    scorer: Literal["demand"] = "demand"
+    criterion: Literal["demand"] = "demand"
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
         """Sum over the bundles of their units, at most the open requests for the SKU."""
@@ -279,27 +279,27 @@ def _seconds(
 
 
 _SHORT: dict[str, dict[str, Any]] = {
-    "pile-on": {"scorer": "work-amount", "metric": "picks"},
-    "age": {"scorer": "work-amount", "metric": "age"},
-    "lateness": {"scorer": "work-amount", "metric": "lateness"},
+    "pile-on": {"criterion": "work-amount", "metric": "picks"},
+    "age": {"criterion": "work-amount", "metric": "age"},
+    "lateness": {"criterion": "work-amount", "metric": "lateness"},
 }
 
 
 def by_name(value: Any) -> Any:
-    """Let a plain name stand for a scorer with its defaults, and three names for work amounts."""
-    given = {"scorer": value} if isinstance(value, str) else value
-    if isinstance(given, dict) and given.get("scorer") in _SHORT:
-        return {**given, **_SHORT[given["scorer"]]}
+    """Let a name stand for a criterion with its defaults, and three names for work amounts."""
+    given = {"criterion": value} if isinstance(value, str) else value
+    if isinstance(given, dict) and given.get("criterion") in _SHORT:
+        return {**given, **_SHORT[given["criterion"]]}
     return given
 
 
-PickScorer = Annotated[
-    RandomScorer | Nearest | Fill | PickDemand | Completeable | PickWorkAmount,
-    pydantic.Field(discriminator="scorer"),
+PickCriterion = Annotated[
+    RandomCriterion | Nearest | Fill | PickDemand | Completeable | PickWorkAmount,
+    pydantic.Field(discriminator="criterion"),
     pydantic.BeforeValidator(by_name),
 ]
-BundleScorer = Annotated[
-    RandomScorer | Nearest | BundleDemand | BundleWorkAmount,
-    pydantic.Field(discriminator="scorer"),
+BundleCriterion = Annotated[
+    RandomCriterion | Nearest | BundleDemand | BundleWorkAmount,
+    pydantic.Field(discriminator="criterion"),
     pydantic.BeforeValidator(by_name),
 ]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from rmfs.solvers.models.backends.flow import Network, min_cost_flow
 from rmfs.solvers.models.checks import require
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_optimum
 from rmfs.solvers.models.storage.stays.data import Stays, objective
 
 
@@ -36,7 +36,7 @@ def solve(
     data
         The problem; two zones.
     limits, seed, start
-        Not needed: the algorithm is polynomial, deterministic and starts from nothing.
+        Not needed.
 
     Returns
     -------
@@ -58,25 +58,20 @@ def solve(
     flow = None
     if not (forced_near & forced_far).any() and (network.capacity >= 0).all():
         flow = min_cost_flow(network)
-    if flow is None:
-        wall_s, build_s = perf_counter() - begin, built - begin
-        return Solution(
-            None, math.inf, math.inf, Status.INFEASIBLE, "min_cost_flow", wall_s, build_s
-        )
-    zone = np.ones(len(near), np.int64)
-    zone[forced_near] = 0
-    zone[free[flow.units[len(flow.units) - len(free) :] > 0]] = 0
-    value = objective(data, zone)
+    zone = None
+    if flow is not None:
+        zone = np.ones(len(near), np.int64)
+        zone[forced_near] = 0
+        zone[free[flow.units[len(flow.units) - len(free) :] > 0]] = 0
     fixed = math.fsum(near[forced_near]) + math.fsum(far[~forced_near])
-    return Solution(
+    return solution_of_optimum(
         zone,
-        value,
-        min(fixed + flow.bound, value),
-        Status.OPTIMAL,
-        "min_cost_flow",
-        perf_counter() - begin,
-        built - begin,
-        flow.work,
+        lambda values: objective(data, values),
+        bound=math.inf if flow is None else fixed + flow.bound,
+        backend="min_cost_flow",
+        work=0.0 if flow is None else flow.work,
+        began=begin,
+        built=built,
     )
 
 

@@ -1,4 +1,4 @@
-"""Scorers of stations to which a carried pod could go on: the higher, the better."""
+"""Criteria of stations to which a carried pod could go on: the higher, the better."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 import pydantic
 
 from rmfs.control.base import Parameters
+from rmfs.control.pps.criteria import by_name
 from rmfs.control.pps.requests import RequestValue, value_of
-from rmfs.control.pps.scorers import by_name
 from rmfs.control.travel import Metric
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 class RandomNextStation(Parameters):
     """Any station."""
 
-    scorer: Literal["random"] = "random"
+    criterion: Literal["random"] = "random"
 
     def score(
         self, view: View, robot: Robot, stations: Sequence[int], rng: np.random.Generator
@@ -37,7 +37,7 @@ class RandomNextStation(Parameters):
 class NearestNextStation(Parameters):
     """The station nearest to the robot."""
 
-    scorer: Literal["nearest"] = "nearest"
+    criterion: Literal["nearest"] = "nearest"
     metric: Metric = "euclidean"
     """What is near: `euclidean`, `manhattan` (m), `path` (m along the waypoints) or `time` (s)."""
 
@@ -53,7 +53,7 @@ class NearestNextStation(Parameters):
 class MostWork(Parameters):
     """The station with most work for the pod."""
 
-    scorer: Literal["work-amount"] = "work-amount"
+    criterion: Literal["work-amount"] = "work-amount"
     metric: RequestValue = "picks"
     """What a request is worth: `picks` (one), `age` or `lateness` (s per open request)."""
     only_positive_lateness: bool = False
@@ -99,8 +99,8 @@ class MostWork(Parameters):
         return total
 
 
-NextStationScorer = Annotated[
+NextStationCriterion = Annotated[
     RandomNextStation | NearestNextStation | MostWork,
-    pydantic.Field(discriminator="scorer"),
+    pydantic.Field(discriminator="criterion"),
     pydantic.BeforeValidator(by_name),
 ]

@@ -1,6 +1,6 @@
 """A decision in the making: what heuristics read and change, step by step.
 
-A draft only ever holds orders that are covered as a whole, which every variant allows. It answers
+It only ever holds orders that are covered as a whole, which every variant allows. It answers
 two questions for a station with array operations over its candidate pods: how much would calling
 one pod gain, and which pods would complete one order together at the least cost.
 """
@@ -58,7 +58,7 @@ class Offers:
         return cls(pod, line, units, np.cumsum(new) - 1, pod[new], order[new])
 
 
-class Draft:
+class PartialAssignment:
     """Orders placed and pods called so far.
 
     Parameters
@@ -307,7 +307,7 @@ class Draft:
         return need
 
     def _send_robot(self, pod: int) -> None:
-        """Take the nearest free robot out of the draft's fleet."""
+        """Take the nearest free robot out of the fleet."""
         assert self.data.fetch is not None
         nearest = self.data.fetch[self.robots, pod].argmin()
         self.robots = np.delete(self.robots, nearest)
@@ -321,24 +321,24 @@ class Draft:
         return np.where(self.data.needs_robot, self.data.weights.travel * nearest, 0.0)
 
 
-def decision(draft: Draft) -> Assignment:
-    """Make a decision of a draft, with the robots assigned at the least total cost.
+def decision(partial: PartialAssignment) -> Assignment:
+    """Make a decision of it, with the robots assigned at the least total cost.
 
     Parameters
     ----------
-    draft
-        The draft.
+    partial
+        The partial assignment.
     """
-    data = draft.data
+    data = partial.data
     slot = np.zeros((data.orders, data.stations), dtype=np.bool_)
-    placed = np.flatnonzero(draft.order_station >= 0)
-    slot[placed, draft.order_station[placed]] = True
+    placed = np.flatnonzero(partial.order_station >= 0)
+    slot[placed, partial.order_station[placed]] = True
     return Assignment(
         slot=slot,
-        line_station=draft.order_station[data.line_order],
-        pod_station=draft.pod_station,
-        pod_robot=assign_robots(data, draft.pod_station),
-        prospect=draft.prospect,
+        line_station=partial.order_station[data.line_order],
+        pod_station=partial.pod_station,
+        pod_robot=assign_robots(data, partial.pod_station),
+        prospect=partial.prospect,
     )
 
 
@@ -360,20 +360,20 @@ def assign_robots(data: PileOn, pod_station: Integers) -> Integers:
     return pod_robot
 
 
-def drop_idle(draft: Draft) -> None:
+def drop_idle(partial: PartialAssignment) -> None:
     """Take back called pods that nobody needs any more, dearest first.
 
     Parameters
     ----------
-    draft
-        The draft; it is changed. Robots stay taken.
+    partial
+        The partial assignment; it is changed. Robots stay taken.
     """
-    data = draft.data
-    called = np.flatnonzero(draft.pod_station >= 0)
-    cost = data.call_cost[called, draft.pod_station[called]]
+    data = partial.data
+    called = np.flatnonzero(partial.pod_station >= 0)
+    cost = data.call_cost[called, partial.pod_station[called]]
     for pod in called[np.lexsort((called, -cost))].tolist():
-        station = draft.pod_station[pod]
+        station = partial.pod_station[pod]
         # What is left without the pod must still cover all that was placed or eased.
-        if np.all(data.stock[pod] <= draft.stock_left[station]):
-            draft.stock_left[station] -= data.stock[pod]
-            draft.pod_station[pod] = -1
+        if np.all(data.stock[pod] <= partial.stock_left[station]):
+            partial.stock_left[station] -= data.stock[pod]
+            partial.pod_station[pod] = -1

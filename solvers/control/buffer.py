@@ -1,0 +1,55 @@
+"""Seconds for which decisions are collected before an optimiser is asked again."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rmfs.control.view import View
+
+
+class Buffer:
+    """Lets a controller ask at most once per `buffer_s`.
+
+    Parameters
+    ----------
+    view
+        Has the clock.
+    buffer_s
+        Seconds between two questions, at least.
+    """
+
+    def __init__(self, view: View, buffer_s: float) -> None:
+        self._view = view
+        self._buffer_s = buffer_s
+        self._asked_s = -inf
+        self._wanted = False
+
+    def is_over(self, wanted: bool = True) -> bool:
+        """Whether to ask now; if it is wanted but too early, `next_event_s` says when.
+
+        Parameters
+        ----------
+        wanted
+            Whether there is something to ask.
+        """
+        over = self._view.now_s >= self._asked_s + self._buffer_s
+        self._wanted = wanted and not over
+        return wanted and over
+
+    def begin(self, again: bool = False) -> None:
+        """Take note that the optimiser is asked now.
+
+        Parameters
+        ----------
+        again
+            Whether to ask again as soon as the buffer is over. Default: only if something happens.
+        """
+        self._asked_s = self._view.now_s
+        self._wanted = again
+
+    @property
+    def next_event_s(self) -> float:
+        """When the optimiser may be asked again, if it is to be asked; else inf."""
+        return self._asked_s + self._buffer_s if self._wanted else inf

@@ -1,0 +1,96 @@
+"""What makes all families alike: one `solve(data, method)`, over methods of one signature."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Generic, Protocol, TypeVar
+
+from rmfs.solvers.models.checks import require
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
+
+D = TypeVar("D")
+D_contra = TypeVar("D_contra", contravariant=True)
+V = TypeVar("V")
+
+
+class Method(Protocol[D_contra, V]):
+    """One way to solve a problem: the signature of `solve` in every file of a method."""
+
+    def __call__(
+        self, data: D_contra, limits: Limits = ..., *, seed: int = ..., start: V | None = ...
+    ) -> Solution[V]:
+        """Solve a problem; see `Methods`."""
+
+
+class Methods(Generic[D, V]):
+    """The methods of a family by name; called, it is the family's `solve`.
+
+    Parameters
+    ----------
+    methods
+        By the name of the file each is in.
+    default
+        Who solves if nobody is named.
+    rule
+        The quick heuristic that the others start from; empty if there is none.
+
+    Attributes
+    ----------
+    by_name
+        The methods.
+    """
+
+    def __init__(
+        self, methods: Mapping[str, Method[D, V]], *, default: str, rule: str = ""
+    ) -> None:
+        self.by_name = dict(methods)
+        self.default = default
+        self.rule = rule
+
+    def names(self) -> tuple[str, ...]:
+        """Return the names of the methods."""
+        return tuple(self.by_name)
+
+    def __call__(
+        self,
+        data: D,
+        method: str = "",
+        limits: Limits = NO_LIMITS,
+        *,
+        seed: int = 0,
+        start: V | None = None,
+        **options: Any,
+    ) -> Solution[V]:
+        """Solve a problem.
+
+        Parameters
+        ----------
+        data
+            The problem.
+        method
+            Who solves it. Default: the family's default.
+        limits
+            When to stop, in counted work; each method says which limits it knows. Default: none,
+            which for an exact method means to optimality.
+        seed
+            Seed of what is drawn, if anything is. Default 0.
+        start
+            Feasible values to start from; the result is never worse. Methods that need none ignore
+            them. Default: none.
+        options
+            Further ones of the method.
+
+        Returns
+        -------
+        The solution, with a bound and the work it took.
+
+        Raises
+        ------
+        ModelError
+            If there is no such method, or the start is not feasible.
+        WallGuardError
+            If the wall-clock guard ran out.
+        """
+        named = method or self.default
+        require(named in self.by_name, "method", f"must be one of {', '.join(self.by_name)}")
+        return self.by_name[named](data, limits, seed=seed, start=start, **options)

@@ -1,0 +1,44 @@
+"""A bound in whole pods for every back end: that of the relaxation over all stations together."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from rmfs.solvers.models.backends.backend import Backend, relax, solve_by
+from rmfs.solvers.models.rack_allocation.data import Allocation, RackAllocation, pods_needed
+from rmfs.solvers.models.rack_allocation.program import formulate, together
+from rmfs.solvers.models.solution import Limits, Solution, Status
+
+_TOLERANCE = 1e-4
+"""What a bound may be above a whole number by rounding."""
+
+
+def solve_in_whole_pods(
+    backend: Backend, data: RackAllocation, limits: Limits, seed: int, start: Allocation | None
+) -> Solution[Allocation]:
+    """Solve the integer programme, and round the bound up.
+
+    Parameters
+    ----------
+    backend
+        Who solves it.
+    data
+        The problem.
+    limits, seed, start
+        As the back ends say.
+
+    Returns
+    -------
+    Who goes where, never worse than the start.
+    """
+    found = solve_by(backend, lambda: formulate(data), limits, seed=seed, start=start)
+    if found.status is Status.INFEASIBLE:
+        return found
+    relaxed = relax(together(data))
+    bound = max(found.bound, relaxed.bound)
+    whole = float(math.ceil(bound - _TOLERANCE)) if math.isfinite(bound) else 0.0
+    proven = max(whole, pods_needed(data))
+    if found.found and proven >= found.objective:
+        found = replace(found, status=Status.OPTIMAL)
+    return replace(found, bound=proven, wall_s=found.wall_s + relaxed.wall_s)

@@ -1,0 +1,24 @@
+"""Replenishment by HiGHS."""
+
+from __future__ import annotations
+
+from rmfs.solvers.models.backends import highs
+from rmfs.solvers.models.backends.backend import solve_by, with_relaxed_bound
+from rmfs.solvers.models.replenishment.data import Replenishment, Stocking
+from rmfs.solvers.models.replenishment.program import formulate
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
+
+
+def solve(
+    data: Replenishment,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: Stocking | None = None,
+) -> Solution[Stocking]:
+    """Choose pods and stations by branch and bound; `nodes` and `gap` apply.
+
+    The bound is at least that of the relaxation.
+    """
+    backend = with_relaxed_bound(highs.solve)
+    return solve_by(backend, lambda: formulate(data, whole=False), limits, seed=seed, start=start)

@@ -1,0 +1,21 @@
+"""The best matching by OR-Tools' minimum-cost flow."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
+from rmfs.solvers.models.tasks.matching.assignment import solve_by
+from rmfs.solvers.models.tasks.matching.data import Matching
+
+
+def solve(
+    data: Matching,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: NDArray[np.int64] | None = None,
+) -> Solution[NDArray[np.int64]]:
+    """Find the robot of each task, or `LEFT`, by cost scaling on whole numbers."""
+    return solve_by(data, "min_cost_flow")
