@@ -14,7 +14,7 @@ from rmfs.errors import InputError
 from rmfs.experiments.design import planning as plans
 from rmfs.experiments.results import load
 from rmfs.experiments.statistics.paired import paired, unpaired
-from rmfs.measure.dictionary import FOOTPRINT, REAL, names, reproducible
+from rmfs.measure.dictionary import FOOTPRINT, names, reproducible
 from rmfs.measure.folder import PARAMETERS, load_run
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 ARM_SIGN = "#"
 """Between a folder and the name of one of its arms."""
 
-NUMBERS = [c.name for c in FOOTPRINT if c.dtype in (REAL, "int64", "Int64") and c.name != "seed"]
+NUMBERS = [column.name for column in FOOTPRINT if column.is_number and column.name != "seed"]
 NOT_INPUT = ("written", "machine", "check")
 """Parts of run.json that say nothing about what was simulated."""
 

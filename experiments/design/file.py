@@ -11,8 +11,7 @@ from pydantic import Field
 from rmfs import config
 from rmfs.config import Model, Table
 from rmfs.errors import InputError
-from rmfs.measure.dictionary import FOOTPRINT, REAL, TABLES
-from rmfs.measure.goals import better_of
+from rmfs.measure.dictionary import FOOTPRINT, TABLES, better_of
 
 SHIPPED = Path(__file__).resolve().parent.parent / "designs"
 """The folder of shipped designs."""
@@ -21,7 +20,7 @@ Seed = Annotated[int, Field(ge=0)]
 Share = Annotated[float, Field(gt=0, lt=1)]
 Goal = Literal["max", "min"]
 
-NUMBERS = tuple(column.name for column in FOOTPRINT if column.dtype in (REAL, "int64", "Int64"))
+NUMBERS = tuple(column.name for column in FOOTPRINT if column.is_number)
 REPRODUCIBLE = tuple(column.name for column in FOOTPRINT if not column.measured)
 
 

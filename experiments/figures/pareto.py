@@ -9,7 +9,7 @@ import numpy as np
 from rmfs.errors import InputError
 from rmfs.experiments.figures.style import COLOURS, axis_label
 from rmfs.experiments.statistics import per_arm
-from rmfs.measure.goals import better_of
+from rmfs.measure.dictionary import better_of
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rmfs.errors import InputError
 from rmfs.experiments.design import resolve
 from rmfs.experiments.running.job import Job, Outcome
-from rmfs.measure import tables
+from rmfs.measure.footprints import some_tables
 from rmfs.simulation.run import simulate
 
 if TYPE_CHECKING:
@@ -81,4 +81,4 @@ def _tables(run: Run, job: Job) -> dict[str, pd.DataFrame]:
     report = run.check() if job.check else None
     if report is not None and not report.ok:
         raise RuntimeError(f"unsafe motion: {report.summary()}")
-    return tables.some_tables(run, job.keep, report)
+    return some_tables(run, job.keep, report)

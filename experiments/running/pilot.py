@@ -10,7 +10,7 @@ import numpy as np
 
 from rmfs.errors import InputError
 from rmfs.experiments.design import resolve
-from rmfs.measure import tables
+from rmfs.measure.footprints import some_tables
 from rmfs.simulation.run import simulate
 from rmfs.simulation.simulation import StalledError
 
@@ -103,6 +103,6 @@ def _tried(job: Job) -> float:
         pacing=job.pacing,
         allow_not_well_formed=job.allow_not_well_formed,
     )
-    tables.some_tables(run, job.keep)
+    some_tables(run, job.keep)
     around_s = time.perf_counter() - begun - run.wall_s
     return around_s + run.wall_s * whole_s / part_s

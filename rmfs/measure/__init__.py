@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from rmfs.measure.checker import CheckReport
-    from rmfs.simulation.run import Run
+    from rmfs.measure.ended import Measured
 
 # pandas is imported when a table is wanted, not when a run begins
 
 
-def footprint(run: Run, report: CheckReport | None = None) -> pd.Series:
+def footprint(run: Measured, report: CheckReport | None = None) -> pd.Series:
     """Return the footprint of a run that has ended; see `rmfs.measure.dictionary`.
 
     Parameters
@@ -32,19 +32,19 @@ def footprint(run: Run, report: CheckReport | None = None) -> pd.Series:
     report
         The trace checker's verdict; without it `collisions` is empty.
     """
-    from rmfs.measure import tables
+    from rmfs.measure.footprints import some_tables
 
-    return tables.some_tables(run, (), report)["footprint"].iloc[0]
+    return some_tables(run, (), report)["footprint"].iloc[0]
 
 
-def series(run: Run) -> pd.DataFrame:
+def series(run: Measured) -> pd.DataFrame:
     """Return the course of a run, one row per minute."""
     from rmfs.measure import tables
 
     return tables.series(tables.Logs(run.recorder))
 
 
-def decisions(run: Run) -> pd.DataFrame:
+def decisions(run: Measured) -> pd.DataFrame:
     """Return the decisions of a run, one row per call of a controller."""
     from rmfs.measure import tables
 

@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 INTEGER = "int64"
 COUNT_OR_EMPTY = "Int64"
 REAL = "float64"
 TEXT = "str"
 FLAG = "bool"
+
+DTYPES = (INTEGER, COUNT_OR_EMPTY, REAL, TEXT, FLAG)
+NUMBERS = (INTEGER, COUNT_OR_EMPTY, REAL)
+"""The types of which means are taken."""
+
+Better = Literal["more", "less", "neither"]
+
+MORE: Better = "more"
+LESS: Better = "less"
+NEITHER: Better = "neither"
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +41,8 @@ class Column:
         Definition; empty cells are explained where they can occur.
     measured
         Whether it depends on the machine and the moment, and so does not repeat.
+    better
+        What a good warehouse has of it: more, less, or neither if it only describes.
     """
 
     name: str
@@ -34,3 +50,18 @@ class Column:
     unit: str
     meaning: str
     measured: bool = False
+    better: Better = NEITHER
+
+    @property
+    def is_number(self) -> bool:
+        """Whether means can be taken of it."""
+        return self.dtype in NUMBERS
+
+    def to_table(self) -> dict[str, Any]:
+        """Everything, as JSON can say it."""
+        return asdict(self)
+
+    @classmethod
+    def from_table(cls, table: Mapping[str, Any]) -> Column:
+        """Read what `to_table` gave."""
+        return cls(**table)

@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
     from rmfs.layout.model import Layout
     from rmfs.measure.checker import CheckReport
-    from rmfs.simulation.run import Run
+    from rmfs.measure.ended import Recorded
 
 FORMAT = "rmfs-run/1"
 PARAMETERS = "run.json"
 
 
 def write_run(
-    run: Run,
+    run: Recorded,
     target: Path,
     *,
     report: CheckReport | None = None,
@@ -64,7 +64,7 @@ def reserved(target: Path) -> AbstractContextManager[Path]:
 
 def fill(
     folder: Path,
-    run: Run,
+    run: Recorded,
     *,
     report: CheckReport | None = None,
     trace: bool = False,
@@ -72,8 +72,8 @@ def fill(
 ) -> None:
     """Write a run's files into an existing folder; parameters as in `write_run`."""
     from rmfs.measure.events import as_table
+    from rmfs.measure.footprints import all_tables
     from rmfs.measure.provenance import describe
-    from rmfs.measure.tables import all_tables
 
     try:
         tables = all_tables(run, report)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from rmfs.layout.model import Layout
     from rmfs.measure.checker import CheckReport
-    from rmfs.simulation.run import Run
+    from rmfs.measure.ended import Recorded
 
 PACKAGES = ("numpy", "pandas", "pyarrow", "pydantic", "scipy", "networkx", "typer")
 """Packages whose version is told; all of them are dependencies."""
@@ -41,7 +41,7 @@ KINDS: dict[str, instances.Kind] = {
 
 
 def describe(
-    run: Run, report: CheckReport | None = None, inputs: Mapping[str, str] | None = None
+    run: Recorded, report: CheckReport | None = None, inputs: Mapping[str, str] | None = None
 ) -> dict[str, Any]:
     """Return everything needed to know what was run, and to run it again.
 

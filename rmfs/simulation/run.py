@@ -13,6 +13,7 @@ from rmfs.control.pp import planner_settings
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
 from rmfs.measure.checker import Slow, check
+from rmfs.measure.measures import SHIPPED
 from rmfs.measure.provenance import MARK
 from rmfs.simulation.inputs import Overrides, load_inputs, name_of
 from rmfs.simulation.pacing import Replay, ReplayPacing, pacing_settings
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from rmfs.control.settings import ControllerSettings
     from rmfs.layout.model import Layout
     from rmfs.measure import EventLog, Recorder
+    from rmfs.measure.base import Measure
     from rmfs.measure.checker import CheckReport
     from rmfs.observer import Observer
     from rmfs.scenario import Scenario, StreamRecorder
@@ -67,7 +69,9 @@ class Run:
     statistics
         Per decision problem, how often its controller was asked and how long it took.
     recorder
-        What was measured.
+        What was written down.
+    measures
+        What makes the footprint of it.
     disturbances
         What went wrong.
     events
@@ -93,6 +97,7 @@ class Run:
     traffic: Traffic
     statistics: list[DecisionStatistics]
     recorder: Recorder
+    measures: Sequence[Measure]
     disturbances: DisturbanceSource
     events: EventLog | None = None
     interventions: Sequence[tuple[float, Choice]] = ()
@@ -194,6 +199,7 @@ def simulate(
             for note in notes:
                 remark(part, note)
     recorder = measure.Recorder()
+    measures = [kind() for kind in SHIPPED]
     if events is None and trace:
         events = measure.EventLog()
     planner = planner_settings(rules.choices[Problem.PP], seed)
@@ -205,7 +211,7 @@ def simulate(
         work,
         rules,
         seed=seed,
-        observers=[recorder, *([events] if events is not None else []), *observers],
+        observers=[recorder, *([events] if events is not None else []), *measures, *observers],
         pacing=_with_answers(pace),
         traffic=traffic,
         streams=streams,
@@ -231,6 +237,7 @@ def simulate(
         traffic=traffic,
         statistics=list(simulation.phase.statistics.values()),
         recorder=recorder,
+        measures=measures,
         disturbances=simulation.disturbances,
         events=events,
         interventions=list(simulation.interventions),

@@ -13,7 +13,9 @@ import numpy as np
 import pandas as pd
 
 from rmfs.experiments.running.job import Job, Outcome
-from rmfs.measure.dictionary import FOOTPRINT, REAL, SERIES
+from rmfs.measure.columns import REAL
+from rmfs.measure.dictionary import FOOTPRINT
+from rmfs.measure.tables import SERIES
 
 EFFECT = {"nearest": 40.0, "random": 0.0}
 ROBOTS = 10.0

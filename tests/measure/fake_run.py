@@ -20,6 +20,7 @@ from rmfs.control.problems import Problem
 from rmfs.layout.model import PickStation, ReplenishmentStation
 from rmfs.measure.checker import check
 from rmfs.measure.events import EventLog
+from rmfs.measure.measures import SHIPPED
 from rmfs.measure.recorder import Recorder
 
 WARMUP_S, END_S = 100.0, 500.0
@@ -308,6 +309,7 @@ def run():
         duration_s=END_S - WARMUP_S,
         end_s=END_S,
         wall_s=0.5,
+        measures=[kind() for kind in SHIPPED],
         recorder=recorder,
         trace=trace,
         check=lambda: check(place, trace, until_us=round(END_S * 1e6)),

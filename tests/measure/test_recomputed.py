@@ -7,7 +7,8 @@ import pandas as pd
 import pytest
 
 from rmfs.measure import load_run, write_run
-from rmfs.measure.dictionary import TABLES, TEXT
+from rmfs.measure.columns import TEXT
+from rmfs.measure.dictionary import TABLES
 from rmfs.simulation.run import simulate
 
 WARMUP_S, DURATION_S = 300.0, 1500.0

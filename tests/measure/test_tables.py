@@ -8,8 +8,10 @@ import pytest
 from fake_run import run
 
 from rmfs.control.solutions import from_text
-from rmfs.measure import decisions, footprint, series, tables
+from rmfs.measure import decisions, footprint, series
 from rmfs.measure.dictionary import TABLES, markdown, names, reproducible
+from rmfs.measure.footprints import all_tables
+from rmfs.measure.tables.motion import HEAT
 from rmfs.measure.tables.tidy import tidy
 
 
@@ -20,7 +22,7 @@ def told():
 
 @pytest.fixture(scope="module")
 def made(told):
-    return tables.all_tables(told)
+    return all_tables(told)
 
 
 EXPECTED = {
@@ -169,9 +171,9 @@ def test_dictionary_says_something_of_every_column():
 
 def test_undescribed_columns_are_refused():
     with pytest.raises(ValueError, match="colour"):
-        tidy("heat", {name: [] for name in [*names("heat"), "colour"]})
+        tidy("heat", HEAT, {name: [] for name in [*names("heat"), "colour"]})
     with pytest.raises(ValueError, match="visits"):
-        tidy("heat", {name: [] for name in names("heat") if name != "visits"})
+        tidy("heat", HEAT, {name: [] for name in names("heat") if name != "visits"})
 
 
 def test_series(told):

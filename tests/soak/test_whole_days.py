@@ -5,6 +5,7 @@ import pytest
 import rmfs
 from rmfs.measure import tables
 from rmfs.measure.checker import check
+from rmfs.measure.footprints import all_tables
 from rmfs.world import verify
 
 DAY_S = 86_400.0
@@ -45,7 +46,7 @@ def test_a_day_of_shifts():
     """Stations work from 6 h to 22 h, and the doors are open then; at night all rests."""
     controllers = [(["controllers", "sa", "name"], "work-shifts")]
     run = rmfs.simulate("basic", "shifts", "default", seed=1, overrides=controllers)
-    made = tables.all_tables(run)
+    made = all_tables(run)
     series, stations, bundles = made["series"], made["stations"], tables.Logs(run.recorder).bundles
     # the run begins at 5 h, and is measured from 6 h on for a day
     clock_h = (series["time_s"] / HOUR_S + 5.0).to_numpy()

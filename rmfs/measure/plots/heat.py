@@ -9,7 +9,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.patches import Rectangle
 
 from rmfs.errors import InputError
-from rmfs.measure.dictionary import HEAT
+from rmfs.measure.tables.motion import HEAT
 
 if TYPE_CHECKING:
     import pandas as pd

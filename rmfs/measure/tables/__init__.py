@@ -1,36 +1,50 @@
-"""The tables of a run, each made from what the recorder wrote down."""
+"""The tables of a run but the footprint, each made from what the recorder wrote down."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from rmfs.measure.tables.connections import CONNECTIONS as CONNECTIONS
+from rmfs.measure.tables.connections import EDGES as EDGES
 from rmfs.measure.tables.connections import connections as connections
 from rmfs.measure.tables.connections import edges as edges
+from rmfs.measure.tables.decisions import ANSWERS as ANSWERS
+from rmfs.measure.tables.decisions import CONTROLLERS as CONTROLLERS
+from rmfs.measure.tables.decisions import DECISIONS as DECISIONS
 from rmfs.measure.tables.decisions import answers as answers
 from rmfs.measure.tables.decisions import controllers as controllers
 from rmfs.measure.tables.decisions import decisions as decisions
-from rmfs.measure.tables.footprint import Measured as Measured
-from rmfs.measure.tables.footprint import footprint as footprint
+from rmfs.measure.tables.handled import BUNDLES as BUNDLES
+from rmfs.measure.tables.handled import PICKS as PICKS
+from rmfs.measure.tables.handled import VISITS as VISITS
 from rmfs.measure.tables.handled import bundles as bundles
 from rmfs.measure.tables.handled import picks as picks
 from rmfs.measure.tables.handled import visits as visits
 from rmfs.measure.tables.logs import Logs as Logs
+from rmfs.measure.tables.motion import HEAT as HEAT
+from rmfs.measure.tables.motion import TRIPS as TRIPS
 from rmfs.measure.tables.motion import heat as heat
 from rmfs.measure.tables.motion import trips as trips
+from rmfs.measure.tables.orders import ORDERS as ORDERS
 from rmfs.measure.tables.orders import orders as orders
+from rmfs.measure.tables.robots import ROBOTS as ROBOTS
 from rmfs.measure.tables.robots import robots as robots
+from rmfs.measure.tables.series import SERIES as SERIES
 from rmfs.measure.tables.series import series as series
+from rmfs.measure.tables.stations import STATIONS as STATIONS
 from rmfs.measure.tables.stations import stations as stations
+from rmfs.measure.tables.stock import PODS as PODS
+from rmfs.measure.tables.stock import SKUS as SKUS
 from rmfs.measure.tables.stock import pods as pods
 from rmfs.measure.tables.stock import skus as skus
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator, Sequence
 
     import pandas as pd
 
-    from rmfs.measure.checker import CheckReport
+    from rmfs.measure.columns import Column
 
 MAKERS = {
     "series": series,
@@ -51,6 +65,26 @@ MAKERS = {
     "controllers": controllers,
 }
 """How each table but the footprint is made from what happened."""
+
+DECLARED: dict[str, Sequence[Column]] = {
+    "series": SERIES,
+    "stations": STATIONS,
+    "orders": ORDERS,
+    "picks": PICKS,
+    "bundles": BUNDLES,
+    "visits": VISITS,
+    "trips": TRIPS,
+    "connections": CONNECTIONS,
+    "robots": ROBOTS,
+    "pods": PODS,
+    "skus": SKUS,
+    "heat": HEAT,
+    "edges": EDGES,
+    "decisions": DECISIONS,
+    "answers": ANSWERS,
+    "controllers": CONTROLLERS,
+}
+"""Their columns."""
 
 
 class Made(Mapping[str, "pd.DataFrame"]):
@@ -76,17 +110,3 @@ class Made(Mapping[str, "pd.DataFrame"]):
 
     def __len__(self) -> int:
         return len(MAKERS)
-
-
-def all_tables(run: Measured, report: CheckReport | None = None) -> dict[str, pd.DataFrame]:
-    """Make every table of a run, by name; `report` fills the footprint's `collisions`."""
-    return some_tables(run, MAKERS, report)
-
-
-def some_tables(
-    run: Measured, names: Iterable[str], report: CheckReport | None = None
-) -> dict[str, pd.DataFrame]:
-    """Make the footprint of a run and the tables of these names, and nothing that is not needed."""
-    logs = Logs(run.recorder)
-    made = Made(logs)
-    return {"footprint": footprint(run, logs, made, report), **{name: made[name] for name in names}}

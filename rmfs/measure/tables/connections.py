@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rmfs.measure.columns import FLAG, INTEGER, REAL, TEXT, Column
 from rmfs.measure.tables.tidy import tidy
 
 if TYPE_CHECKING:
@@ -14,6 +15,28 @@ if TYPE_CHECKING:
 
     from rmfs.layout.model import Layout
     from rmfs.measure.tables.logs import Logs
+
+
+CONNECTIONS = (
+    Column("from_waypoint", INTEGER, "", "Where trips began"),
+    Column("to_waypoint", INTEGER, "", "Where they led"),
+    Column("from_kind", TEXT, "", "pick, replenishment, storage, elevator, queue or road"),
+    Column("to_kind", TEXT, "", "Likewise"),
+    Column("trips", INTEGER, "trips", "Trips between the two, in this direction"),
+    Column("time_mean_s", REAL, "s", "Mean trip time"),
+    Column("time_variance_s2", REAL, "s²", "Population variance of the trip time"),
+    Column("time_min_s", REAL, "s", "Shortest trip time"),
+    Column("time_max_s", REAL, "s", "Longest trip time"),
+    Column("distance_mean_m", REAL, "m", "Mean distance driven"),
+)
+
+EDGES = (
+    Column("from_waypoint", INTEGER, "", "Where the edge begins"),
+    Column("to_waypoint", INTEGER, "", "Where it ends"),
+    Column("ride", FLAG, "", "Whether it is an elevator ride to another tier"),
+    Column("passages", INTEGER, "passages", "Robots that drove it"),
+    Column("loaded_passages", INTEGER, "passages", "Of these, with a pod"),
+)
 
 
 def connections(logs: Logs) -> pd.DataFrame:
@@ -34,6 +57,7 @@ def connections(logs: Logs) -> pd.DataFrame:
     kinds = waypoint_kinds(logs.layout)
     return tidy(
         "connections",
+        CONNECTIONS,
         {
             "from_waypoint": start,
             "to_waypoint": end,
@@ -54,6 +78,7 @@ def edges(logs: Logs) -> pd.DataFrame:
     told, tier = logs.recorder.edges, logs.layout.tier
     return tidy(
         "edges",
+        EDGES,
         {
             "from_waypoint": told["from_wp"],
             "to_waypoint": told["to_wp"],

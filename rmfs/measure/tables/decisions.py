@@ -7,13 +7,14 @@ from math import nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
+from rmfs.measure.columns import COUNT_OR_EMPTY, INTEGER, REAL, TEXT, Column
 from rmfs.measure.tables.tidy import tidy
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import pandas as pd
     from numpy.typing import NDArray
 
     from rmfs.control.asks import Answer, Call
@@ -31,8 +32,97 @@ _OF_ANSWERS: dict[str, Callable[[Answer], Any]] = {
 """What both tables of questions tell of an answer."""
 
 
+DECISIONS = (
+    Column(
+        "time_s",
+        REAL,
+        "s",
+        "When a controller was asked that came to a decision, or when it asked an optimiser, since "
+        "the start of the run",
+    ),
+    Column("problem", TEXT, "", "Decision problem: roa, poa, rps, pps, psa, ta, sa, mm"),
+    Column(
+        "source",
+        TEXT,
+        "",
+        "rule: one call of a controller, with the decisions it took by itself; optimiser: one "
+        "question to an optimiser, with the decisions based on the answer. What follows after "
+        "`wall_s` is empty for rules",
+    ),
+    Column("decisions", INTEGER, "decisions", "Decisions given; for optimisers applied + fallback"),
+    Column("wall_s", REAL, "s", "Wall time it took", measured=True),
+    Column("call", COUNT_OR_EMPTY, "", "Number of the question, from the start of the run"),
+    Column("sizes", TEXT, "", "How large the question was"),
+    Column("outcome", TEXT, "", "solution, nothing, failed, abandoned, or waiting at the end"),
+    Column("failure", TEXT, "", "Why it failed"),
+    Column("completed_s", REAL, "s", "When the answer took effect"),
+    Column("paced_s", REAL, "s", "completed_s - time_s"),
+    Column("backend", TEXT, "", "Who solved it"),
+    Column("status", TEXT, "", "How the solver ended: optimal, feasible, infeasible, limit"),
+    Column("objective", REAL, "", "Value of the solution, in the model's own unit"),
+    Column("bound", REAL, "", "What is proven about the best value"),
+    Column("gap", REAL, "share", "abs(objective - bound) / abs(objective)"),
+    Column("work", REAL, "", "Deterministic work, in the unit of the back end"),
+    Column("build_s", REAL, "s", "Wall time in which the solver's model was built", measured=True),
+    Column("solve_s", REAL, "s", "Wall time of the solver without that", measured=True),
+    Column("applied", COUNT_OR_EMPTY, "decisions", "Decisions of the solution that were applied"),
+    Column("stale", COUNT_OR_EMPTY, "decisions", "Decisions of it that no longer held"),
+    Column(
+        "fallback",
+        COUNT_OR_EMPTY,
+        "decisions",
+        "Decisions by the controller's rule because there was no solution",
+    ),
+)
+
+ANSWERS = (
+    Column("call", INTEGER, "", "Number of the question, from the start of the run"),
+    Column("problem", TEXT, "", "Decision problem of the controller that asked"),
+    Column("state", TEXT, "", "Hash of the question and of the state it was asked in"),
+    Column("requested_us", INTEGER, "µs", "Simulated time at which it was asked"),
+    Column("completed_us", INTEGER, "µs", "Simulated time at which it took effect; -1: not yet"),
+    Column("outcome", TEXT, "", "As in `decisions`"),
+    Column("failure", TEXT, "", "Why it failed"),
+    Column("backend", TEXT, "", "Who solved it; empty without an answer"),
+    Column("status", TEXT, "", "How the solver ended; empty without an answer"),
+    Column("objective", REAL, "", "Value of the solution"),
+    Column("bound", REAL, "", "What is proven about the best value"),
+    Column("work", REAL, "", "Deterministic work, in the unit of the back end"),
+    Column("wall_s", REAL, "s", "Wall time of solver and building", measured=True),
+    Column("build_s", REAL, "s", "Wall time of building", measured=True),
+    Column("solution", TEXT, "", "The solution as JSON; empty without one"),
+)
+
+CONTROLLERS = (
+    Column("problem", TEXT, "", "Decision problem"),
+    Column("calls", INTEGER, "calls", "How often its controller was asked"),
+    Column("decisions", INTEGER, "decisions", "Decisions given"),
+    Column("wall_s", REAL, "s", "Wall time of all calls", measured=True),
+    Column("wall_mean_s", REAL, "s", "Mean wall time of a call", measured=True),
+    Column("optimiser_calls", INTEGER, "calls", "Questions it handed to an optimiser"),
+    Column(
+        "optimiser_decisions", INTEGER, "decisions", "Decisions it took by solutions of optimisers"
+    ),
+    Column(
+        "heuristic_decisions",
+        INTEGER,
+        "decisions",
+        "Decisions it took by its own rule; 0 for a controller that never asks optimisers",
+    ),
+    Column("stale_decisions", INTEGER, "decisions", "Decisions of solutions that no longer held"),
+    Column(
+        "failed_decisions",
+        INTEGER,
+        "decisions",
+        "Decisions by its own rule because an optimiser failed or found nothing",
+    ),
+)
+
+
 def decisions(logs: Logs) -> pd.DataFrame:
     """One row per call of a controller that came to a decision, and one per question it asked."""
+    import pandas as pd
+
     calls = _calls(logs)
     names = [str(problem) for problem in logs.recorder.problems]
     rules = {
@@ -45,11 +135,11 @@ def decisions(logs: Logs) -> pd.DataFrame:
         **dict.fromkeys(("work", "build_s", "solve_s"), nan),
         **dict.fromkeys(("applied", "stale", "fallback"), pd.NA),
     }
-    by_rule = tidy("decisions", rules)
+    by_rule = tidy("decisions", DECISIONS, rules)
     asked = _measured(logs)
     if not asked:
         return by_rule
-    by_optimiser = tidy("decisions", _questions(asked))
+    by_optimiser = tidy("decisions", DECISIONS, _questions(asked))
     together = pd.concat([by_rule, by_optimiser], ignore_index=True)
     return together.sort_values("time_s", kind="stable", ignore_index=True)
 
@@ -60,6 +150,7 @@ def answers(logs: Logs) -> pd.DataFrame:
     solutions = logs.recorder.solutions
     return tidy(
         "answers",
+        ANSWERS,
         {
             "call": [call.number for call in asked],
             "problem": [str(call.problem) for call in asked],
@@ -96,6 +187,7 @@ def controllers(logs: Logs) -> pd.DataFrame:
     based = counted["optimiser_decisions"] + counted["failed_decisions"]
     return tidy(
         "controllers",
+        CONTROLLERS,
         {
             "problem": list(asked),
             "calls": calls,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rmfs.measure.columns import FLAG, INTEGER, REAL, Column
 from rmfs.measure.tables.tidy import tidy
 
 if TYPE_CHECKING:
@@ -12,9 +13,44 @@ if TYPE_CHECKING:
     from rmfs.measure.tables.logs import Logs
 
 
+PICKS = (
+    Column("time_s", REAL, "s", "When the unit left the pod"),
+    Column("order", INTEGER, "", "Order, as in the table of orders"),
+    Column("sku", INTEGER, "", "SKU"),
+    Column("pod", INTEGER, "", "Pod"),
+    Column("robot", INTEGER, "", "Robot that brought the pod"),
+    Column("station", INTEGER, "", "Pick station"),
+    Column("late_bound", FLAG, "", "Whether it was bound after the robot got its task"),
+)
+
+BUNDLES = (
+    Column("sku", INTEGER, "", "SKU"),
+    Column("units", INTEGER, "units", "Units"),
+    Column("space", REAL, "space units", "Space they need together"),
+    Column("created_s", REAL, "s", "Arrival"),
+    Column("assigned_s", REAL, "s", "When pod and station were both decided; empty if not yet"),
+    Column("stored_s", REAL, "s", "Storage; empty if not yet"),
+    Column("pod", INTEGER, "", "Pod, -1 while undecided"),
+    Column("station", INTEGER, "", "Replenishment station, -1 while undecided"),
+    Column("robot", INTEGER, "", "Robot that brought the pod, -1 before"),
+    Column("turnover_s", REAL, "s", "stored_s - created_s"),
+    Column("throughput_time_s", REAL, "s", "stored_s - assigned_s"),
+)
+
+VISITS = (
+    Column("station", INTEGER, "", "Station"),
+    Column("pod", INTEGER, "", "Pod"),
+    Column("robot", INTEGER, "", "Robot"),
+    Column("begin_s", REAL, "s", "When the robot stood at the station; may lie in the warm-up"),
+    Column("end_s", REAL, "s", "When it was told to leave; empty if not yet"),
+    Column("units", INTEGER, "units", "Units picked in the measured time"),
+    Column("bundles", INTEGER, "bundles", "Bundles stored in the measured time"),
+)
+
+
 def picks(logs: Logs) -> pd.DataFrame:
     """One row per unit picked in the measured time."""
-    return tidy("picks", logs.units_now.reset_index(drop=True))
+    return tidy("picks", PICKS, logs.units_now.reset_index(drop=True))
 
 
 def bundles(logs: Logs) -> pd.DataFrame:
@@ -24,10 +60,10 @@ def bundles(logs: Logs) -> pd.DataFrame:
     frame = frame.sort_values("created_s", kind="stable", ignore_index=True)
     frame["turnover_s"] = frame["stored_s"] - frame["created_s"]
     frame["throughput_time_s"] = frame["stored_s"] - frame["assigned_s"]
-    return tidy("bundles", frame)
+    return tidy("bundles", BUNDLES, frame)
 
 
 def visits(logs: Logs) -> pd.DataFrame:
     """One row per stay of a pod at a station that had not ended before the measured time."""
     frame = logs.visits
-    return tidy("visits", frame[~(frame["end_s"] < logs.start_s)].reset_index(drop=True))
+    return tidy("visits", VISITS, frame[~(frame["end_s"] < logs.start_s)].reset_index(drop=True))

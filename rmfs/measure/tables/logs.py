@@ -6,13 +6,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
 from rmfs.measure.recorder import bundle_row, order_row
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import pandas as pd
     from numpy.typing import NDArray
 
     from rmfs.measure.log import Log
@@ -118,6 +118,8 @@ class Logs:
 
 def framed(log: Log, more: Sequence[tuple[Any, ...]] = ()) -> pd.DataFrame:
     """Return a log as a frame, with more rows of the same columns at its end."""
+    import pandas as pd
+
     columns = log.columns()
     if more:
         added = zip(columns.items(), zip(*more, strict=True), strict=True)

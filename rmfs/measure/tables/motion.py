@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rmfs.measure.columns import FLAG, INTEGER, REAL, TEXT, Column
 from rmfs.measure.tables.tidy import tidy
 
 if TYPE_CHECKING:
@@ -18,6 +19,51 @@ if TYPE_CHECKING:
 TRIP_KINDS = np.array(["to_pod", "to_station", "to_storage", "to_rest"])
 
 
+TRIPS = (
+    Column("robot", INTEGER, "", "Robot"),
+    Column("kind", TEXT, "", "to_pod, to_station, to_storage or to_rest"),
+    Column("from_waypoint", INTEGER, "", "Where it began"),
+    Column("to_waypoint", INTEGER, "", "Where it led"),
+    Column("start_s", REAL, "s", "When the robot was told to drive"),
+    Column("end_s", REAL, "s", "Arrival (for a station: at its queue zone)"),
+    Column("station", INTEGER, "", "Station it led to, -1 for another kind"),
+    Column("loaded", FLAG, "", "Whether the robot carried a pod"),
+    Column("distance_m", REAL, "m", "Distance driven"),
+    Column(
+        "unhindered_s",
+        REAL,
+        "s",
+        "Lower bound of the time without other robots (for a station: to its queue zone)",
+    ),
+)
+
+_PURPOSES = {
+    "pick": "bound for a pick station (fetching its pod included), or at one",
+    "replenish": "bound for a replenishment station (fetching its pod included), or at one",
+    "store": "otherwise carrying a pod or fetching one",
+    "rest": "without a pod to care for",
+}
+
+HEAT = (
+    Column("waypoint", INTEGER, "", "Waypoint"),
+    Column("tier", INTEGER, "", "Floor"),
+    Column("x_m", REAL, "m", "Position"),
+    Column("y_m", REAL, "m", "Position"),
+    Column("visits", INTEGER, "visits", "Robots that passed or stopped"),
+    Column("loaded_visits", INTEGER, "visits", "Robots that passed or stopped with a pod"),
+    *(
+        Column(f"{task}_visits", INTEGER, "visits", f"Robots that passed or stopped, {what}")
+        for task, what in _PURPOSES.items()
+    ),
+    Column("waiting_s", REAL, "s", "Time that robots stood here, idle ones not counted"),
+    Column("loaded_waiting_s", REAL, "s", "Time that robots stood here with a pod"),
+    *(
+        Column(f"{task}_waiting_s", REAL, "s", f"Time that robots stood here, {what}")
+        for task, what in _PURPOSES.items()
+    ),
+)
+
+
 def trips(logs: Logs) -> pd.DataFrame:
     """Trips that ended during the measured time, by their end."""
     told = logs.recorder.trips
@@ -26,6 +72,7 @@ def trips(logs: Logs) -> pd.DataFrame:
     to_station = TRIP_KINDS[told["kind"]] == "to_station"
     return tidy(
         "trips",
+        TRIPS,
         {
             "robot": told["robot"],
             "kind": TRIP_KINDS[told["kind"]],
@@ -46,6 +93,7 @@ def heat(logs: Logs) -> pd.DataFrame:
     layout, counted = logs.layout, logs.recorder.heat
     return tidy(
         "heat",
+        HEAT,
         {
             "waypoint": np.arange(layout.waypoints),
             "tier": layout.tier,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rmfs.measure.columns import INTEGER, REAL, Column
 from rmfs.measure.tables.tidy import tidy
 
 if TYPE_CHECKING:
@@ -13,6 +14,22 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rmfs.measure.tables.logs import Logs
+
+
+ORDERS = (
+    Column("order", INTEGER, "", "Ordinal of arrival, from the start of the run"),
+    Column("station", INTEGER, "", "Pick station, -1 while waiting for one"),
+    Column("lines", INTEGER, "lines", "Order lines"),
+    Column("units", INTEGER, "units", "Units ordered"),
+    Column("created_s", REAL, "s", "Arrival"),
+    Column("due_s", REAL, "s", "Due time"),
+    Column("assigned_s", REAL, "s", "Assignment to the station; empty if not yet"),
+    Column("completed_s", REAL, "s", "Completion; empty if not yet"),
+    Column("turnover_s", REAL, "s", "completed_s - created_s"),
+    Column("throughput_time_s", REAL, "s", "completed_s - assigned_s"),
+    Column("lateness_s", REAL, "s", "completed_s - due_s; negative if early"),
+    Column("pods", INTEGER, "pods", "Pods from which units were picked for it so far"),
+)
 
 
 def orders(logs: Logs) -> pd.DataFrame:
@@ -23,7 +40,7 @@ def orders(logs: Logs) -> pd.DataFrame:
     frame["throughput_time_s"] = frame["completed_s"] - frame["assigned_s"]
     frame["lateness_s"] = frame["completed_s"] - frame["due_s"]
     frame["pods"] = _pods(logs, frame["order"])
-    return tidy("orders", frame)
+    return tidy("orders", ORDERS, frame)
 
 
 def _pods(logs: Logs, order: pd.Series[int]) -> NDArray[np.int64]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rmfs.measure.columns import INTEGER, REAL, Column
 from rmfs.measure.recorder import TASKS
 from rmfs.measure.steps import Steps
 from rmfs.measure.tables.logs import count
@@ -17,6 +18,38 @@ if TYPE_CHECKING:
     from rmfs.measure.tables.logs import Logs
 
 STATES = ("moving", "turning", "waiting", "served", "transfer", "riding", "idle", "queueing")
+
+
+ROBOTS = (
+    Column("robot", INTEGER, "", "Robot"),
+    Column("kind", INTEGER, "", "Robot kind of the layout"),
+    Column("distance_m", REAL, "m", "Distance driven"),
+    Column("loaded_distance_m", REAL, "m", "Distance driven with a pod"),
+    *(
+        Column(f"{state}_s", REAL, "s", f"Time {what}")
+        for state, what in {
+            "moving": "driving",
+            "turning": "turning on the spot",
+            "waiting": "standing with a way to go",
+            "served": "standing at a station",
+            "transfer": "lifting or setting down",
+            "riding": "in an elevator",
+            "idle": "standing without anything to do",
+            "queueing": "from a queue zone's border to its station (overlaps with the others)",
+        }.items()
+    ),
+    *(
+        column
+        for task in ("pick", "replenish", "park", "reposition", "rest")
+        for column in (
+            Column(f"tasks_{task}", INTEGER, "tasks", f"Tasks {task} started"),
+            Column(f"task_{task}_s", REAL, "s", f"Time with a task {task}"),
+        )
+    ),
+    Column("pods_lifted", INTEGER, "lifts", "Pods lifted"),
+    Column("units_picked", INTEGER, "units", "Units picked from pods it brought"),
+    Column("bundles_stored", INTEGER, "bundles", "Bundles stored in pods it brought"),
+)
 
 
 def robots(logs: Logs) -> pd.DataFrame:
@@ -40,7 +73,7 @@ def robots(logs: Logs) -> pd.DataFrame:
     columns["pods_lifted"] = count(logs.lifts_now["robot"], number)
     columns["units_picked"] = count(logs.units_now["robot"], number)
     columns["bundles_stored"] = count(logs.stored_now["robot"], number)
-    return tidy("robots", columns)
+    return tidy("robots", ROBOTS, columns)
 
 
 def with_task(logs: Logs, task: str) -> Steps:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rmfs.layout.model import PickStation
+from rmfs.measure.columns import INTEGER, REAL, Column
 from rmfs.measure.recorder import TASKS
 from rmfs.measure.steps import Steps, counts
 from rmfs.measure.tables.robots import STATES, with_task
@@ -20,6 +21,51 @@ if TYPE_CHECKING:
     from rmfs.measure.tables.logs import Logs
 
     Floats = NDArray[np.float64]
+
+
+SERIES = (
+    Column("time_s", REAL, "s", "End of the interval, since the start of the run"),
+    Column(
+        "interval_s", REAL, "s", "Length of the interval: a minute, the last one may be shorter"
+    ),
+    Column("units_picked", INTEGER, "units", "Units picked in the interval"),
+    Column("lines_picked", INTEGER, "lines", "Lines finished in the interval"),
+    Column("orders_created", INTEGER, "orders", "Orders that arrived in the interval"),
+    Column("orders_completed", INTEGER, "orders", "Orders completed in the interval"),
+    Column("bundles_created", INTEGER, "bundles", "Bundles that arrived in the interval"),
+    Column("bundles_stored", INTEGER, "bundles", "Bundles stored in the interval"),
+    Column("distance_m", REAL, "m", "Distance driven in the interval"),
+    Column("backlog_orders", INTEGER, "orders", "Orders that wait for a station, at the end"),
+    Column("open_orders", INTEGER, "orders", "Orders open at stations, at the end"),
+    Column(
+        "backlog_bundles", INTEGER, "bundles", "Bundles not yet given pod and station, at the end"
+    ),
+    Column("inventory_share", REAL, "share", "Space used / capacity of all pods, at the end"),
+    Column("pick_station_busy_share", REAL, "share", "Pick stations' time spent handling units"),
+    Column(
+        "replenishment_station_busy_share",
+        REAL,
+        "share",
+        "Replenishment stations' time spent handling bundles",
+    ),
+    *(
+        Column(f"robots_task_{task}", INTEGER, "robots", f"Robots with the task {task}, at the end")
+        for task in ("pick", "replenish", "park", "reposition", "rest")
+    ),
+    *(
+        Column(f"robots_{state}", REAL, "robots", f"Mean number of robots {what} in the interval")
+        for state, what in {
+            "moving": "driving",
+            "turning": "turning",
+            "waiting": "standing with a way to go",
+            "served": "standing at a station",
+            "transfer": "lifting or setting down",
+            "riding": "in an elevator",
+            "idle": "with nothing to do",
+            "queueing": "in queue zones (overlaps with the others)",
+        }.items()
+    ),
+)
 
 
 def series(logs: Logs) -> pd.DataFrame:
@@ -50,7 +96,7 @@ def series(logs: Logs) -> pd.DataFrame:
         columns[f"robots_task_{task}"] = with_task(logs, task).at(ends)
     for state in STATES:
         columns[f"robots_{state}"] = driven[f"{state}_s"] / length
-    return tidy("series", columns)
+    return tidy("series", SERIES, columns)
 
 
 def motion_per_interval(logs: Logs) -> dict[str, Floats]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.layout.model import PickStation
+from rmfs.measure.columns import INTEGER, REAL, TEXT, Column
 from rmfs.measure.steps import Steps, covered
 from rmfs.measure.tables.at_pile_on import units_per_h
 from rmfs.measure.tables.logs import count
@@ -20,6 +21,43 @@ if TYPE_CHECKING:
     from rmfs.measure.tables.logs import Logs
 
     Station = PickStation | ReplenishmentStation
+
+
+STATIONS = (
+    Column("station", INTEGER, "", "Number in the common numbering: pick stations come first"),
+    Column("kind", TEXT, "", "pick or replenishment"),
+    Column("waypoint", INTEGER, "", "Where the robot stands while its pod is served"),
+    Column("tier", INTEGER, "", "Floor"),
+    Column("x_m", REAL, "m", "Position"),
+    Column("y_m", REAL, "m", "Position"),
+    Column(
+        "queue_places", INTEGER, "places", "Places in the queue, the one at the station included"
+    ),
+    Column("visits", INTEGER, "visits", "Stays of a pod in which something was handled"),
+    Column("visit_time_mean_s", REAL, "s", "Mean length of the visits that ended"),
+    Column("units_picked", INTEGER, "units", "Units picked"),
+    Column("late_bound_units", INTEGER, "units", "Of these, bound after the robot got its task"),
+    Column("lines_picked", INTEGER, "lines", "Lines finished"),
+    Column("orders_completed", INTEGER, "orders", "Orders completed"),
+    Column("bundles_stored", INTEGER, "bundles", "Bundles stored"),
+    Column("busy_s", REAL, "s", "Time spent handling units or bundles"),
+    Column("idle_share", REAL, "share", "1 - busy_s / duration"),
+    Column("active_share", REAL, "share", "Time switched on / duration"),
+    Column(
+        "units_per_h_at_pile_on", REAL, "1/h", "See footprint; empty for replenishment stations"
+    ),
+    Column("units_per_visit", REAL, "units", "Pile-on: units_picked / visits"),
+    Column("orders_per_visit", REAL, "orders", "orders_completed / visits"),
+    Column("bundles_per_visit", REAL, "bundles", "bundles_stored / visits"),
+    Column("order_slots", INTEGER, "orders", "Orders open at once; 0 for replenishment stations"),
+    Column("capacity", REAL, "space units", "Bundles assigned at once; empty for pick stations"),
+    Column(
+        "without_work_share",
+        REAL,
+        "share",
+        "Share of the time in which no order (bundle) was assigned to it",
+    ),
+)
 
 
 def stations(logs: Logs) -> pd.DataFrame:
@@ -36,6 +74,7 @@ def stations(logs: Logs) -> pd.DataFrame:
     busy = np.array([np.diff(busy_until(logs, one, edges))[0] for one in range(number)])
     return tidy(
         "stations",
+        STATIONS,
         {
             "station": np.arange(number),
             "kind": [_kind(station) for station in layout.stations],

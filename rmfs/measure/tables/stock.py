@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rmfs.measure.columns import INTEGER, REAL, Column
 from rmfs.measure.tables.logs import count
 from rmfs.measure.tables.tidy import tidy
 
@@ -15,11 +16,36 @@ if TYPE_CHECKING:
     from rmfs.measure.tables.logs import Logs
 
 
+PODS = (
+    Column("pod", INTEGER, "", "Pod"),
+    Column("capacity", REAL, "space units", "Capacity"),
+    Column("used_end", REAL, "space units", "Space used by stored units at the end"),
+    Column("waypoint_end", INTEGER, "", "Where it stands at the end; -1 if carried"),
+    Column("lifts", INTEGER, "lifts", "How often it was lifted"),
+    Column("pick_visits", INTEGER, "visits", "Visits to pick stations with units picked"),
+    Column("replenishment_visits", INTEGER, "visits", "Visits with bundles stored"),
+    Column("units_picked", INTEGER, "units", "Units picked from it"),
+    Column("bundles_stored", INTEGER, "bundles", "Bundles stored in it"),
+)
+
+SKUS = (
+    Column("sku", INTEGER, "", "SKU"),
+    Column("popularity", REAL, "", "Weight in the scenario"),
+    Column("space", REAL, "space units", "Space of one unit"),
+    Column("lines_picked", INTEGER, "lines", "Order lines finished"),
+    Column("units_picked", INTEGER, "units", "Units picked"),
+    Column("bundles_stored", INTEGER, "bundles", "Bundles stored"),
+    Column("units_end", INTEGER, "units", "Units on pods at the end"),
+    Column("pods_end", INTEGER, "pods", "Pods that hold it at the end"),
+)
+
+
 def pods(logs: Logs) -> pd.DataFrame:
     """One row per pod."""
     number, visits = logs.layout.pods, logs.visits
     return tidy(
         "pods",
+        PODS,
         {
             "pod": np.arange(number),
             "capacity": logs.world.inventory.capacity,
@@ -40,6 +66,7 @@ def skus(logs: Logs) -> pd.DataFrame:
     number, contained = len(known), logs.world.inventory.contained
     return tidy(
         "skus",
+        SKUS,
         {
             "sku": np.arange(number),
             "popularity": known.popularity,

@@ -1,41 +1,49 @@
-"""Bringing a table into the order and the types that the data dictionary promises."""
+"""Bringing a table into the order and the types that its declaration promises."""
 
 from __future__ import annotations
 
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-import pandas as pd
-
-from rmfs.measure.dictionary import TABLES
-
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
+
+    import pandas as pd
+
+    from rmfs.measure.columns import Column
 
 
 @cache
 def _dtype(name: str) -> Any:
     """Return the type of that name; to look it up takes pandas longer than to convert to it."""
+    import pandas as pd
+
     return pd.api.types.pandas_dtype(name)
 
 
-def tidy(table: str, columns: Mapping[str, Any] | pd.DataFrame) -> pd.DataFrame:
-    """Return a frame with exactly the columns of the dictionary.
+def tidy(
+    table: str, declared: Sequence[Column], columns: Mapping[str, Any] | pd.DataFrame
+) -> pd.DataFrame:
+    """Return a frame with exactly the columns declared.
 
     Each column is brought into its type by itself, so that a long table takes little more memory
     while it is made than afterwards.
 
     Parameters
     ----------
+    table
+        Its name, for errors.
     columns
         Arrays, lists or series of one length; a single value stands for a column of it.
 
     Raises
     ------
     ValueError
-        If a column is missing or not in the dictionary: nothing is written that is not described.
+        If a column is missing or not declared: nothing is written that is not described.
     """
-    described = {column.name: _dtype(column.dtype) for column in TABLES[table]}
+    import pandas as pd
+
+    described = {column.name: _dtype(column.dtype) for column in declared}
     wrong = described.keys() ^ set(columns.keys())
     if wrong:
         raise ValueError(f"table {table} and its dictionary differ in {', '.join(sorted(wrong))}")

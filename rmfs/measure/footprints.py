@@ -1,0 +1,80 @@
+"""From a run that has ended to its footprint and its tables."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.errors import InputError
+from rmfs.measure.dictionary import footprint_columns
+from rmfs.measure.ended import EndedRun
+from rmfs.measure.tables import MAKERS
+from rmfs.measure.tables.tidy import tidy
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    import pandas as pd
+
+    from rmfs.measure.base import Measure
+    from rmfs.measure.checker import CheckReport
+    from rmfs.measure.ended import Measured
+
+
+def footprint(run: EndedRun, measures: Sequence[Measure]) -> pd.DataFrame:
+    """Return the table of one row.
+
+    Raises
+    ------
+    InputError
+        If a measure returns other columns than it declares, or what does not fit their types.
+    """
+    values: dict[str, Any] = {}
+    for measure in measures:
+        values |= _values(measure, measure.footprint(run))
+    row = {name: [value] for name, value in values.items()}
+    columns = footprint_columns(measures)
+    try:
+        return tidy("footprint", columns, row)
+    except (TypeError, ValueError, OverflowError) as error:
+        wrong = next(iter(_misfits(columns, row)), None)
+        if wrong is None:
+            raise
+        owner = next(type(m).__qualname__ for m in measures if wrong in {c.name for c in m.columns})
+        raise InputError(
+            f"measure {owner}: {wrong}: {values[wrong]!r} does not fit its type ({error})"
+        ) from None
+
+
+def all_tables(run: Measured, report: CheckReport | None = None) -> dict[str, pd.DataFrame]:
+    """Make every table of a run, by name; `report` fills the footprint's `collisions`."""
+    return some_tables(run, MAKERS, report)
+
+
+def some_tables(
+    run: Measured, names: Iterable[str], report: CheckReport | None = None
+) -> dict[str, pd.DataFrame]:
+    """Make the footprint of a run and the tables of these names, and nothing that is not needed."""
+    ended = EndedRun(run, report)
+    made = {"footprint": footprint(ended, run.measures)}
+    return made | {name: ended.tables[name] for name in names}
+
+
+def _values(measure: Measure, told: Mapping[str, Any]) -> dict[str, Any]:
+    """Check that a measure said what it promised to say."""
+    declared = {column.name for column in measure.columns}
+    wrong = sorted(declared ^ set(told))
+    if wrong:
+        raise InputError(
+            f"measure {type(measure).__qualname__}: {', '.join(wrong)}: must be both declared in "
+            "`columns` and returned by `footprint`"
+        )
+    return dict(told)
+
+
+def _misfits(columns: Sequence[Any], row: Mapping[str, Any]) -> Iterable[str]:
+    """Yield the columns whose value is not of their type."""
+    for column in columns:
+        try:
+            tidy("footprint", [column], {column.name: row[column.name]})
+        except (TypeError, ValueError, OverflowError):
+            yield column.name

@@ -1,0 +1,115 @@
+"""Who decided, and how long that took."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import INTEGER, LESS, NEITHER, REAL, Column
+from rmfs.measure.measures.reckoning import ratio
+
+if TYPE_CHECKING:
+    from rmfs.measure.ended import EndedRun
+
+SOURCES = {
+    "optimiser": "by solutions of optimisers",
+    "heuristic": "by the own rule of controllers that ask optimisers",
+    "stale": "of solutions that no longer held",
+    "failed": "by the own rule because an optimiser failed or found nothing",
+}
+"""Where decisions come from if somebody asks optimisers."""
+
+
+class Decisions(Measure):
+    """Decisions of all controllers."""
+
+    columns = (
+        Column("decisions", INTEGER, "decisions", "Decisions given by all controllers"),
+        Column(
+            "decision_wall_s",
+            REAL,
+            "s",
+            "Wall time spent in controllers, also where they came to no decision",
+            measured=True,
+            better=LESS,
+        ),
+        *(
+            Column(
+                f"{source}_decision_share",
+                REAL,
+                "share",
+                f"Decisions {what} / all of these four kinds; empty if nobody asks optimisers",
+                better=LESS if source in ("stale", "failed") else NEITHER,
+            )
+            for source, what in SOURCES.items()
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Add up decisions by their source."""
+        controllers = run.tables["controllers"]
+        counts = {source: int(controllers[f"{source}_decisions"].sum()) for source in SOURCES}
+        total = sum(counts.values())
+        return {
+            "decisions": int(run.tables["decisions"]["decisions"].sum()),
+            "decision_wall_s": sum(wall_s for _, wall_s in run.recorder.asked.values()),
+            **{f"{source}_decision_share": ratio(n, total) for source, n in counts.items()},
+        }
+
+
+class Optimisers(Measure):
+    """Questions to optimisers."""
+
+    columns = (
+        Column("optimiser_calls", INTEGER, "calls", "Decision problems handed to an optimiser"),
+        Column(
+            "optimiser_gap_mean",
+            REAL,
+            "share",
+            "Mean relative gap between value and bound of the optimisers' solutions; empty without",
+            better=LESS,
+        ),
+        Column(
+            "paced_s",
+            REAL,
+            "s",
+            "Simulated time from questions to optimisers to their answers, added up",
+            better=LESS,
+        ),
+        Column(
+            "optimiser_failures",
+            INTEGER,
+            "calls",
+            "Questions whose optimiser died, hung or raised",
+            better=LESS,
+        ),
+        Column(
+            "optimiser_wall_s",
+            REAL,
+            "s",
+            "Wall time of all optimisers",
+            measured=True,
+            better=LESS,
+        ),
+        Column(
+            "optimiser_wall_median_s",
+            REAL,
+            "s",
+            "Wall time of an optimiser, median",
+            measured=True,
+            better=LESS,
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Look at the questions."""
+        decisions = run.tables["decisions"]
+        asked = decisions[decisions["source"] == "optimiser"]
+        return {
+            "optimiser_calls": len(asked),
+            "optimiser_gap_mean": asked["gap"].mean(),
+            "paced_s": asked["paced_s"].sum(),
+            "optimiser_failures": int((asked["outcome"] == "failed").sum()),
+            "optimiser_wall_s": asked["wall_s"].sum(),
+            "optimiser_wall_median_s": asked["wall_s"].median(),
+        }

@@ -1,0 +1,39 @@
+"""What went wrong while the warehouse ran."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import INTEGER, REAL, Column
+
+if TYPE_CHECKING:
+    from rmfs.measure.ended import EndedRun
+
+
+class Disturbances(Measure):
+    """Number and length of disturbances."""
+
+    columns = (
+        Column(
+            "disturbances",
+            INTEGER,
+            "disturbances",
+            "Breakdowns, slow robots, closed waypoints and elevators out of use in the measured "
+            "time",
+        ),
+        Column(
+            "disturbed_s",
+            REAL,
+            "s",
+            "How long these lasted, added up, within the measured time",
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Take what was written down when the run ended."""
+        counters = run.recorder.counters
+        return {
+            "disturbances": int(counters["disturbances"]),
+            "disturbed_s": counters["disturbed_s"],
+        }

@@ -1,0 +1,48 @@
+"""What was simulated: the columns that tell one run from another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import INTEGER, LESS, REAL, TEXT, Column
+
+if TYPE_CHECKING:
+    from rmfs.measure.ended import EndedRun
+
+
+class Heading(Measure):
+    """Names, seed, times, and the size of the warehouse: what does as much with less is better."""
+
+    columns = (
+        Column("layout", TEXT, "", "Name of the layout"),
+        Column("scenario", TEXT, "", "Name of the scenario"),
+        Column("controllers", TEXT, "", "Name of the set of controllers, and exchanges by hand"),
+        Column("seed", INTEGER, "", "Seed of all random streams of the run"),
+        Column("warmup_s", REAL, "s", "Simulated time before the measured time"),
+        Column("duration_s", REAL, "s", "Measured time"),
+        Column("tiers", INTEGER, "tiers", "Floors of the layout"),
+        Column("robots", INTEGER, "robots", "Robots", better=LESS),
+        Column("pods", INTEGER, "pods", "Pods", better=LESS),
+        Column("pick_stations", INTEGER, "stations", "Pick stations", better=LESS),
+        Column(
+            "replenishment_stations", INTEGER, "stations", "Replenishment stations", better=LESS
+        ),
+        Column("skus", INTEGER, "SKUs", "SKUs of the scenario"),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Say what was simulated."""
+        layout = run.layout
+        return {
+            **dict(zip(("layout", "scenario", "controllers"), run.names, strict=True)),
+            "seed": run.seed,
+            "warmup_s": run.warmup_s,
+            "duration_s": run.duration_s,
+            "tiers": len(layout.tiers),
+            "robots": layout.robots,
+            "pods": layout.pods,
+            "pick_stations": len(layout.pick_stations),
+            "replenishment_stations": len(layout.replenishment_stations),
+            "skus": len(run.world.skus),
+        }

@@ -1,0 +1,114 @@
+"""How far and how long robots drove, and what they did otherwise."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import INTEGER, LESS, REAL, Column
+from rmfs.measure.measures.reckoning import ratio
+from rmfs.measure.recorder import TASKS
+from rmfs.measure.tables.robots import STATES
+
+if TYPE_CHECKING:
+    from rmfs.measure.ended import EndedRun
+
+BUSY = ("pick", "replenish", "park", "reposition")
+"""The tasks in which a robot counts as busy."""
+
+
+class Motion(Measure):
+    """Distances and trips."""
+
+    columns = (
+        Column("distance_m", REAL, "m", "Distance driven by all robots", better=LESS),
+        Column("distance_per_robot_m", REAL, "m", "distance_m / robots", better=LESS),
+        Column("distance_per_unit_m", REAL, "m", "distance_m / units_picked", better=LESS),
+        Column("loaded_distance_m", REAL, "m", "Distance driven with a pod", better=LESS),
+        Column(
+            "trips",
+            INTEGER,
+            "trips",
+            "Trips that ended: to a pod, to a station (ending at its queue zone), to a storage "
+            "place, or to a resting place",
+        ),
+        Column(
+            "trip_time_mean_s",
+            REAL,
+            "s",
+            "Mean time from the start to the end of a trip",
+            better=LESS,
+        ),
+        Column(
+            "trip_delay_mean_s",
+            REAL,
+            "s",
+            "Mean of trip time less a lower bound of the time the trip takes without other robots; "
+            "trips to stations are left out, since the bound there depends on the queue place",
+            better=LESS,
+        ),
+        Column("pods_lifted", INTEGER, "lifts", "Pods lifted"),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Add up what traffic counted."""
+        motion, trips = run.recorder.motion, run.tables["trips"]
+        lasted = trips["end_s"] - trips["start_s"]
+        delay = (lasted - trips["unhindered_s"])[trips["kind"] != "to_station"]
+        distance_m = float(motion["distance_m"].sum())
+        return {
+            "distance_m": distance_m,
+            "distance_per_robot_m": ratio(distance_m, run.layout.robots),
+            "distance_per_unit_m": ratio(distance_m, run.handled("units_picked")),
+            "loaded_distance_m": float(motion["loaded_distance_m"].sum()),
+            "trips": len(trips),
+            "trip_time_mean_s": lasted.mean(),
+            "trip_delay_mean_s": delay.mean(),
+            "pods_lifted": len(run.logs.lifts_now),
+        }
+
+
+class RobotTime(Measure):
+    """Shares of the robots' time, and their tasks."""
+
+    columns = (
+        Column(
+            "robot_busy_share",
+            REAL,
+            "share",
+            "Robot time with a task other than resting (pick, replenish, park, reposition)",
+        ),
+        Column("robot_moving_share", REAL, "share", "Robot time driving"),
+        Column(
+            "robot_queueing_share",
+            REAL,
+            "share",
+            "Robot time from entering a station's queue zone to standing at the station; overlaps "
+            "with the other shares",
+            better=LESS,
+        ),
+        Column(
+            "robot_waiting_share",
+            REAL,
+            "share",
+            "Robot time standing with a way to go, or in a queue",
+            better=LESS,
+        ),
+        Column("robot_turning_share", REAL, "share", "Robot time turning on the spot"),
+        Column("robot_served_share", REAL, "share", "Robot time standing at a station"),
+        Column("robot_transfer_share", REAL, "share", "Robot time lifting or setting down a pod"),
+        Column("robot_riding_share", REAL, "share", "Robot time in an elevator"),
+        Column("robot_idle_share", REAL, "share", "Robot time standing without anything to do"),
+        *(Column(f"tasks_{task}", INTEGER, "tasks", f"Tasks {task} started") for task in TASKS),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Add up the robots' table."""
+        robots = run.tables["robots"]
+        robot_time = run.layout.robots * run.logs.duration_s
+        busy = sum(robots[f"task_{task}_s"].sum() for task in BUSY)
+        return {
+            "robot_busy_share": ratio(busy, robot_time),
+            **{f"robot_{one}_share": ratio(robots[f"{one}_s"].sum(), robot_time) for one in STATES},
+            **{f"tasks_{task}": int(robots[f"tasks_{task}"].sum()) for task in TASKS},
+        }

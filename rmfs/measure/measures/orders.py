@@ -1,0 +1,117 @@
+"""What became of pick orders, and how long it took."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import INTEGER, LESS, REAL, Column
+from rmfs.measure.measures.reckoning import ratio, spread, spread_columns
+from rmfs.measure.steps import Steps
+from rmfs.measure.tables.orders import completed
+
+if TYPE_CHECKING:
+    from rmfs.measure.ended import EndedRun
+
+
+class OrderTimes(Measure):
+    """Turnover, throughput time and lateness of completed orders."""
+
+    columns = (
+        Column(
+            "order_turnover_mean_s",
+            REAL,
+            "s",
+            "Mean time from arrival to completion of an order",
+            better=LESS,
+        ),
+        Column("order_turnover_median_s", REAL, "s", "Median of the same", better=LESS),
+        Column(
+            "order_turnover_lower_quartile_s",
+            REAL,
+            "s",
+            "First quartile of order turnover",
+            better=LESS,
+        ),
+        Column(
+            "order_turnover_upper_quartile_s",
+            REAL,
+            "s",
+            "Third quartile of order turnover",
+            better=LESS,
+        ),
+        *spread_columns("order_throughput_time", "time from an order's assignment to completion"),
+        Column(
+            "late_share",
+            REAL,
+            "share",
+            "Completed orders that were completed after their due time",
+            better=LESS,
+        ),
+        Column(
+            "orders_late", INTEGER, "orders", "Orders completed after their due time", better=LESS
+        ),
+        *spread_columns("order_lateness", "completion less due time, negative if early"),
+        *spread_columns("late_by", "completion less due time of the late orders"),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Look at the completed orders."""
+        done = completed(run.tables["orders"])
+        lateness = done["lateness_s"]
+        late = lateness[lateness > 0]
+        return {
+            **spread("order_turnover", done["turnover_s"]),
+            **spread("order_throughput_time", done["throughput_time_s"]),
+            "late_share": ratio(len(late), len(done)),
+            "orders_late": len(late),
+            **spread("order_lateness", lateness),
+            **spread("late_by", late),
+        }
+
+
+class Backlog(Measure):
+    """Orders that came, and those that wait."""
+
+    columns = (
+        Column(
+            "backlog_orders_mean",
+            REAL,
+            "orders",
+            "Time average of the number of orders that wait for a station",
+            better=LESS,
+        ),
+        Column(
+            "backlog_orders_end",
+            INTEGER,
+            "orders",
+            "Orders that wait for a station at the end",
+            better=LESS,
+        ),
+        Column("open_orders_mean", REAL, "orders", "Time average of the orders open at stations"),
+        Column("orders_created", INTEGER, "orders", "Orders that arrived"),
+        Column("order_redraws", INTEGER, "draws", "Drawn orders that the stock could not serve"),
+        Column(
+            "orders_short",
+            INTEGER,
+            "orders",
+            "Orders for which stock was short when they arrived: there was less than they and the "
+            "orders before them want; they wait",
+            better=LESS,
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Follow the number of orders that wait, and that are open, over time."""
+        orders, counters = run.logs.orders, run.recorder.counters
+        measured = (run.start_s, run.end_s)
+        waiting = Steps.between(orders["created_s"], orders["assigned_s"])
+        open_ones = Steps.between(orders["assigned_s"], orders["completed_s"])
+        return {
+            "backlog_orders_mean": waiting.mean(*measured),
+            "backlog_orders_end": int(waiting.at(run.end_s)),
+            "open_orders_mean": open_ones.mean(*measured),
+            "orders_created": int((orders["created_s"] >= run.start_s).sum()),
+            "order_redraws": int(counters["order_redraws"]),
+            "orders_short": int(counters["orders_short"]),
+        }

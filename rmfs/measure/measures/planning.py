@@ -1,0 +1,63 @@
+"""How paths were planned, and whether they were safe."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import COUNT_OR_EMPTY, INTEGER, LESS, REAL, Column
+
+if TYPE_CHECKING:
+    from rmfs.measure.ended import EndedRun
+
+
+class Planning(Measure):
+    """Counts of the path planner."""
+
+    columns = (
+        Column("plans", INTEGER, "plans", "Paths planned and accepted"),
+        Column("plan_failures", INTEGER, "plans", "Searches that found no path yet", better=LESS),
+        Column(
+            "replans",
+            INTEGER,
+            "plans",
+            "Paths changed before they were driven to the end",
+        ),
+        Column("expansions", INTEGER, "labels", "Labels expanded by the path planner"),
+        Column(
+            "planning_wall_s",
+            REAL,
+            "s",
+            "Wall time spent in path planning",
+            measured=True,
+            better=LESS,
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Take what traffic counted."""
+        counters = run.recorder.counters
+        names = ("plans", "plan_failures", "replans", "expansions")
+        return {
+            **{name: int(counters[name]) for name in names},
+            "planning_wall_s": counters["planning_s"],
+        }
+
+
+class Safety(Measure):
+    """What the independent checker found."""
+
+    columns = (
+        Column(
+            "collisions",
+            COUNT_OR_EMPTY,
+            "events",
+            "Overlaps of two bodies found by the independent trace checker, warm-up included; "
+            "empty where it did not run",
+            better=LESS,
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Count the overlaps."""
+        return {"collisions": None if run.report is None else run.report.collisions}

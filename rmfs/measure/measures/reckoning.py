@@ -1,0 +1,41 @@
+"""What several measures reckon with: ratios, and spreads of times."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.columns import LESS, REAL, Column
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+NOTHING = float("nan")
+
+
+def ratio(amount: float, by: float) -> float:
+    """Divide; empty where there is nothing to divide by."""
+    return amount / by if by else NOTHING
+
+
+def spread_columns(name: str, meaning: str) -> tuple[Column, ...]:
+    """Declare mean, median and quartiles of some times, of which less is better."""
+    told = {
+        "mean": "Mean of",
+        "median": "Median of",
+        "lower_quartile": "First quartile of",
+        "upper_quartile": "Third quartile of",
+    }
+    return tuple(
+        Column(f"{name}_{key}_s", REAL, "s", f"{what} {meaning}", better=LESS)
+        for key, what in told.items()
+    )
+
+
+def spread(name: str, values: pd.Series[float]) -> dict[str, Any]:
+    """Return mean, median and quartiles of some times; empty without any."""
+    return {
+        f"{name}_mean_s": values.mean(),
+        f"{name}_median_s": values.median(),
+        f"{name}_lower_quartile_s": values.quantile(0.25),
+        f"{name}_upper_quartile_s": values.quantile(0.75),
+    }

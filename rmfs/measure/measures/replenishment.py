@@ -1,0 +1,67 @@
+"""What became of bundles, and how full the pods are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import INTEGER, LESS, REAL, Column
+from rmfs.measure.measures.reckoning import spread, spread_columns
+from rmfs.measure.steps import Steps
+from rmfs.measure.tables.series import inventory_share
+
+if TYPE_CHECKING:
+    from rmfs.measure.ended import EndedRun
+
+
+class Replenishment(Measure):
+    """Times and backlog of bundles."""
+
+    columns = (
+        *spread_columns("bundle_turnover", "time from a bundle's arrival to its storage"),
+        *spread_columns("bundle_throughput_time", "time from a bundle's assignment to its storage"),
+        Column("bundles_created", INTEGER, "bundles", "Bundles that arrived"),
+        Column(
+            "backlog_bundles_mean",
+            REAL,
+            "bundles",
+            "Time average of the bundles not yet given pod and station",
+            better=LESS,
+        ),
+        Column(
+            "backlog_bundles_end",
+            INTEGER,
+            "bundles",
+            "Bundles not yet given both at the end",
+            better=LESS,
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Look at the bundles stored, and at those that wait over time."""
+        stored, bundles = run.logs.stored_now, run.logs.bundles
+        waiting = Steps.between(bundles["created_s"], bundles["assigned_s"])
+        return {
+            **spread("bundle_turnover", stored["time_s"] - stored["created_s"]),
+            **spread("bundle_throughput_time", stored["time_s"] - stored["assigned_s"]),
+            "bundles_created": int((bundles["created_s"] >= run.start_s).sum()),
+            "backlog_bundles_mean": waiting.mean(run.start_s, run.end_s),
+            "backlog_bundles_end": int(waiting.at(run.end_s)),
+        }
+
+
+class Inventory(Measure):
+    """How full the pods are."""
+
+    columns = (
+        Column(
+            "inventory_share_mean",
+            REAL,
+            "share",
+            "Time average of the space that stored units use / capacity of all pods",
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Take the mean over time."""
+        return {"inventory_share_mean": inventory_share(run.logs).mean(run.start_s, run.end_s)}

@@ -1,0 +1,52 @@
+"""How busy the stations were."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import LESS, REAL, Column
+from rmfs.measure.measures.reckoning import NOTHING
+
+if TYPE_CHECKING:
+    from rmfs.measure.ended import EndedRun
+
+KINDS = ("pick", "replenishment")
+
+
+class Stations(Measure):
+    """Shares of the stations' time."""
+
+    columns = (
+        Column(
+            "pick_station_idle_share",
+            REAL,
+            "share",
+            "1 - time in which the stations handle a unit / (pick stations x duration)",
+            better=LESS,
+        ),
+        Column(
+            "replenishment_station_idle_share",
+            REAL,
+            "share",
+            "1 - time in which the stations handle a bundle / (replenishment stations x duration)",
+        ),
+        Column(
+            "pick_station_active_share", REAL, "share", "Pick stations' time switched on / duration"
+        ),
+        Column(
+            "replenishment_station_active_share",
+            REAL,
+            "share",
+            "Replenishment stations' time switched on / duration",
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Take means over the stations of each kind; empty where there are none."""
+        stations = run.tables["stations"]
+        told: dict[str, float] = {}
+        for share in ("idle", "active"):
+            means = {kind: own[f"{share}_share"].mean() for kind, own in stations.groupby("kind")}
+            told |= {f"{kind}_station_{share}_share": means.get(kind, NOTHING) for kind in KINDS}
+        return told

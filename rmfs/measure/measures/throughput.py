@@ -1,0 +1,94 @@
+"""How much was done: counts, rates, and how near they come to what is possible."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.bound import units_per_h_bound, warn_if_exceeded
+from rmfs.measure.columns import INTEGER, MORE, REAL, Column
+from rmfs.measure.measures.reckoning import ratio
+
+if TYPE_CHECKING:
+    from rmfs.measure.ended import EndedRun
+
+
+class Throughput(Measure):
+    """Orders, lines, units and bundles handled, in all and per hour."""
+
+    columns = (
+        Column(
+            "orders_completed",
+            INTEGER,
+            "orders",
+            "Pick orders whose last unit was picked",
+            better=MORE,
+        ),
+        Column(
+            "lines_picked",
+            INTEGER,
+            "lines",
+            "Order lines whose last unit was picked",
+            better=MORE,
+        ),
+        Column("units_picked", INTEGER, "units", "Units picked from pods into orders", better=MORE),
+        Column(
+            "bundles_stored",
+            INTEGER,
+            "bundles",
+            "Replenishment bundles put into pods",
+            better=MORE,
+        ),
+        Column("orders_per_h", REAL, "1/h", "orders_completed / duration", better=MORE),
+        Column("lines_per_h", REAL, "1/h", "lines_picked / duration", better=MORE),
+        Column("units_per_h", REAL, "1/h", "units_picked / duration", better=MORE),
+        Column("bundles_per_h", REAL, "1/h", "bundles_stored / duration", better=MORE),
+        Column("units_stored", INTEGER, "units", "Units in the stored bundles", better=MORE),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Count what was handled, which happens at stations."""
+        handled = ("orders_completed", "lines_picked", "units_picked", "bundles_stored")
+        counts = {name: run.handled(name) for name in handled}
+        hours = run.logs.duration_s / 3600.0
+        rates = {
+            f"{name.partition('_')[0]}_per_h": ratio(count, hours) for name, count in counts.items()
+        }
+        return {**counts, **rates, "units_stored": int(run.logs.stored_now["units"].sum())}
+
+
+class Potential(Measure):
+    """What the stations could have picked at most."""
+
+    columns = (
+        Column(
+            "units_per_h_bound",
+            REAL,
+            "1/h",
+            "No run of this layout with these SKUs picks more in such a time, under any "
+            "controllers, demand or seed: proven (see bounds)",
+        ),
+        Column(
+            "units_score", REAL, "share", "units_per_h / units_per_h_bound; at most 1", better=MORE
+        ),
+        Column(
+            "units_per_h_at_pile_on",
+            REAL,
+            "1/h",
+            "What the pick stations would pick with the pile-on of this run, never waiting for a "
+            "pod longer than motion needs (see measures): sum over stations",
+            better=MORE,
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Compare with what no run can exceed, and with stations that never wait."""
+        duration_s = run.logs.duration_s
+        bound = units_per_h_bound(run.layout, run.world.skus, run.recorder.traffic, duration_s)
+        rate = ratio(run.handled("units_picked") * 3600.0, duration_s)
+        warn_if_exceeded(rate, bound)
+        return {
+            "units_per_h_bound": bound,
+            "units_score": ratio(rate, bound),
+            "units_per_h_at_pile_on": run.tables["stations"]["units_per_h_at_pile_on"].sum(),
+        }

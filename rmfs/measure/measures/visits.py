@@ -1,0 +1,67 @@
+"""What a pod's stay at a station is worth."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import INTEGER, MORE, REAL, Column
+from rmfs.measure.measures.reckoning import ratio
+
+if TYPE_CHECKING:
+    from rmfs.measure.ended import EndedRun
+
+
+class Visits(Measure):
+    """Visits of pods, and what was handled in one."""
+
+    columns = (
+        Column(
+            "pick_visits",
+            INTEGER,
+            "visits",
+            "Stays of a pod at a pick station in which at least one unit was picked; a pod that "
+            "keeps its place for further requests makes one visit",
+        ),
+        Column(
+            "units_per_visit", REAL, "units", "Pile-on: units_picked / pick_visits", better=MORE
+        ),
+        Column("lines_per_visit", REAL, "lines", "lines_picked / pick_visits", better=MORE),
+        Column("orders_per_visit", REAL, "orders", "orders_completed / pick_visits", better=MORE),
+        Column(
+            "bundles_per_visit",
+            REAL,
+            "bundles",
+            "bundles_stored / replenishment_visits",
+            better=MORE,
+        ),
+        Column(
+            "replenishment_visits",
+            INTEGER,
+            "visits",
+            "Stays of a pod at a replenishment station in which at least one bundle was stored",
+        ),
+        Column(
+            "late_bound_units_per_visit",
+            REAL,
+            "units",
+            "Units picked that were bound to the pod after its robot had got the task / "
+            "pick_visits",
+            better=MORE,
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Count the visits in which something was handled, and divide by them."""
+        picks = int((run.logs.visits["units"] > 0).sum())
+        refills = int((run.logs.visits["bundles"] > 0).sum())
+        late_bound = int(run.logs.units_now["late_bound"].sum())
+        return {
+            "pick_visits": picks,
+            "replenishment_visits": refills,
+            "units_per_visit": ratio(run.handled("units_picked"), picks),
+            "lines_per_visit": ratio(run.handled("lines_picked"), picks),
+            "orders_per_visit": ratio(run.handled("orders_completed"), picks),
+            "bundles_per_visit": ratio(run.handled("bundles_stored"), refills),
+            "late_bound_units_per_visit": ratio(late_bound, picks),
+        }
