@@ -2,6 +2,8 @@
 
 An `InputError` carries one line for the user: which file, which key, what would be valid. The
 command line prints it and exits with code 2; everything else is a defect and keeps its traceback.
+An `InternalError` is a defect that the program has noticed itself; the command line writes a file
+that tells how to come to it again, and exits with code 1.
 """
 
 from __future__ import annotations
@@ -32,3 +34,13 @@ class LayoutError(InputError):
         self.source = source
         self.problems = problems
         super().__init__(f"{source}: {'; '.join(problems)}")
+
+
+class InternalError(RuntimeError):
+    """A defect of rmfs itself, not of what it was given; what it happened in is of no more use.
+
+    Parameters
+    ----------
+    message
+        What happened, and where in the sources.
+    """

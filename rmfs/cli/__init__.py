@@ -1,8 +1,8 @@
 """The command line: the one place that may import everything.
 
 Whatever a user does wrong ends in one line on the standard error stream and exit code 2; an
-interruption ends in exit code 130. Imports are made inside the commands, so that help and errors
-come at once.
+interruption ends in exit code 130; a defect that is noticed in one line, a file to report and exit
+code 1. Imports are made inside the commands, so that help and errors come at once.
 """
 
 from __future__ import annotations
@@ -13,12 +13,13 @@ from typing import Annotated
 
 import typer
 
-from rmfs.cli.exit_codes import INTERRUPTED, WRONG_INPUT
+from rmfs.cli.defects import told
+from rmfs.cli.exit_codes import DEFECT, INTERRUPTED, WRONG_INPUT
 from rmfs.cli.groups import LazyGroup
 from rmfs.cli.results import compare, plot, report, view
 from rmfs.cli.simulate import run
 from rmfs.cli.terminal import step
-from rmfs.errors import InputError
+from rmfs.errors import InputError, InternalError
 
 app = typer.Typer(
     cls=LazyGroup,
@@ -47,6 +48,9 @@ def main(arguments: list[str] | None = None) -> int:
         code = command.main(args=arguments, prog_name="rmfs", standalone_mode=False)
     except InputError as error:
         return _complain(str(error))
+    except InternalError as error:
+        _say(told(error, arguments))
+        return DEFECT
     except typer.TyperException as error:
         # without a message, a group was called without a command and has shown its help
         return _complain(error.format_message()) if error.format_message() else 0
@@ -60,8 +64,12 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _complain(message: str) -> int:
     """Tell the user in one line what is wrong."""
-    print(f"rmfs: {' '.join(message.split())}", file=sys.stderr)
+    _say(message)
     return WRONG_INPUT
+
+
+def _say(message: str) -> None:
+    print(f"rmfs: {' '.join(message.split())}", file=sys.stderr)
 
 
 @app.callback()

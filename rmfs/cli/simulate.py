@@ -11,7 +11,7 @@ import typer
 
 from rmfs.cli.exit_codes import GIVEN_UP, UNSAFE
 from rmfs.cli.terminal import progress, step, terminable
-from rmfs.errors import InputError
+from rmfs.errors import InputError, InternalError
 
 if TYPE_CHECKING:
     from rmfs.measure.checker import CheckReport
@@ -148,12 +148,16 @@ def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
     def told(part: str, note: str) -> None:
         print(f"rmfs: {inputs[part]}: {note}", file=sys.stderr)
 
-    with progress(f"simulating {', '.join(inputs.values())}, seed {seed}") as advance:
+    what = f"simulating {', '.join(inputs.values())}, seed {seed}"
+    with progress(what) as advance:
         try:
             return simulate(*inputs.values(), seed=seed, progress=advance, remark=told, **options)
         except (StalledError, OptimiserError, ReplayError) as error:
             print(f"rmfs: {error}", file=sys.stderr)
             raise typer.Exit(GIVEN_UP) from None
+        except InternalError as error:
+            error.add_note(what)
+            raise
 
 
 def default_name(inputs: dict[str, str], seed: int) -> str:

@@ -93,7 +93,7 @@ def to_bytes(core: Core, options: Options) -> bytes:
         "slow_shares": list(options.slow_shares),
         "code_bytes": len(code),
     }
-    return json.dumps(head).encode() + b"\n" + code + core.to_bytes()
+    return json.dumps(head).encode() + b"\n" + code + core.save()
 
 
 def from_bytes(layout: Layout, saved: bytes) -> tuple[Core, Options]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from rmfs.cli import main
-from rmfs.errors import InputError, LayoutError
+from rmfs.errors import InputError, InternalError, LayoutError
 from rmfs.measure import load_run
 
 
@@ -179,3 +179,23 @@ def test_a_stalled_run_ends_with_its_report(calls, capsys, monkeypatch):
     assert main(["run"]) == 1
     assert capsys.readouterr().err.splitlines()[-1] == "robot 0: waits"
     assert files() == []
+
+
+def test_a_defect_leaves_a_file_to_report(monkeypatch, tmp_path, capsys):
+    """Exit code 1, one line with run, seed and file, no run folder; the file has the traceback."""
+
+    def simulate(*inputs, **options):
+        raise InternalError("a defect of the traffic core: src/here.rs:1:2: oh")
+
+    monkeypatch.setattr("rmfs.simulation.run.simulate", simulate)
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "--seed", "31", "--layout", "small"]) == 1
+    line = one_line(capsys)
+    assert "small, default, default, seed 31" in line
+    assert "src/here.rs:1:2" in line
+    (file,) = tmp_path.glob("rmfs-defect-*.txt")
+    assert str(file) in line
+    told = file.read_text()
+    assert "rmfs run --seed 31 --layout small" in told
+    assert "Traceback" in told and "src/here.rs:1:2" in told
+    assert [path for path in files() if path.startswith("results/")] == []

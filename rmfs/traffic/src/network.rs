@@ -38,6 +38,35 @@ pub struct Plan {
     pub extra_headings: Vec<MicroTurn>,
 }
 
+/// Headings are counted in bytes.
+const MOST_HEADINGS: usize = 256;
+
+impl Plan {
+    /// Whether all arrays belong together and name waypoints that exist.
+    fn check(&self) -> Result<(), String> {
+        let nodes = self.x.len();
+        let lengths = [self.y.len(), self.tier.len(), self.storage.len(), self.queue.len()];
+        let starts = &self.edge_start;
+        let ends_well = starts.last().is_some_and(|&end| end as usize == self.edge_target.len());
+        if lengths != [nodes; 4] || starts.len() != nodes + 1 || !starts.is_sorted() || !ends_well {
+            return Err("the arrays of the waypoints and edges do not fit together".into());
+        }
+        if let Some(station) = self.stations.iter().position(Vec::is_empty) {
+            return Err(format!("station {station} has no waypoint"));
+        }
+        if let Some(elevator) = self.elevators.iter().position(Vec::is_empty) {
+            return Err(format!("elevator {elevator} has no waypoint"));
+        }
+        let places = self.stations.iter().chain(&self.elevators).flatten();
+        let ends = self.lifts.iter().flat_map(|lift| [&lift.from, &lift.to]);
+        let mut named = self.edge_target.iter().chain(places).chain(ends);
+        match named.find(|&&waypoint| waypoint as usize >= nodes) {
+            Some(waypoint) => Err(format!("there is no waypoint {waypoint}")),
+            None => Ok(()),
+        }
+    }
+}
+
 /// The immutable graph.
 #[derive(Clone, Debug)]
 pub struct Network {
@@ -83,6 +112,7 @@ impl Network {
     /// # Errors
     /// If a waypoint has two edges in one direction.
     pub fn new(plan: Plan) -> Result<Self, String> {
+        plan.check()?;
         let nodes = plan.x.len();
         let angle = |v: usize, w: usize| heading_of(plan.x[w] - plan.x[v], plan.y[w] - plan.y[v]);
         let targets = |v: usize| {
@@ -95,6 +125,12 @@ impl Network {
         }
         headings.sort_unstable();
         headings.dedup();
+        if headings.len() > MOST_HEADINGS {
+            let found = headings.len();
+            return Err(format!(
+                "edges have {found} directions; at most {MOST_HEADINGS} are known"
+            ));
+        }
         let count = headings.len();
         let mut next = vec![NONE; nodes * count];
         let mut length = vec![0.0; nodes * count];

@@ -121,22 +121,22 @@ impl Fleet {
         let state = &self.robots[robot as usize];
         let (phase, place) = (state.phase, state.place);
         self.adopt(robot, kept, Vec::new());
-        let stop = self.robots[robot as usize].destination().0;
+        let state = &mut self.robots[robot as usize];
+        // also who lifts, or has given up its goal, may have had a plan
+        state.phase = phase;
+        let stop = state.destination().0;
         if let Some((station, _)) = place {
             let places = &self.network.stations[station as usize];
             if let Some(at) = places.iter().position(|&node| node == stop) {
                 // it stays in the queue and moves up from there
-                self.robots[robot as usize].place = Some((station, at));
+                self.take_place(robot, station, at);
                 return;
             }
             self.leave_queue(robot, station);
         }
-        if self.rolling.is_none() {
-            let waits = phase == Phase::Driving;
-            self.robots[robot as usize].phase = if waits { Phase::Blocked } else { phase };
-            if waits {
-                self.blocked.push(robot);
-            }
+        if self.rolling.is_none() && phase == Phase::Driving {
+            self.robots[robot as usize].phase = Phase::Blocked;
+            self.blocked.push(robot);
         }
     }
 

@@ -145,7 +145,7 @@ impl Fleet {
     /// Puts robots `(waypoint, heading, kind)` on a network.
     ///
     /// # Errors
-    /// If two robots stand on one waypoint.
+    /// If two robots stand on one waypoint, or on none, or are of a kind that does not exist.
     pub fn new(
         network: Network,
         kinds: Vec<Kind>,
@@ -155,6 +155,12 @@ impl Fleet {
         cost_bytes: usize,
         with_trace: bool,
     ) -> Result<Self, String> {
+        let known = |&&(node, _, kind): &&(u32, u8, u8)| {
+            (node as usize) < network.nodes && (kind as usize) < kinds.len()
+        };
+        if let Some(robot) = robots.iter().position(|robot| !known(&robot)) {
+            return Err(format!("robot {robot} has no waypoint, or no kind"));
+        }
         let (per_leg, rolling): (Box<dyn Planner>, _) = match Rolling::of(planner, robots.len()) {
             Ok(rolling) => {
                 (Box::new(TimeWindows { budget, improvement: 0, swift: None }), Some(rolling))

@@ -31,9 +31,7 @@ impl Fleet {
             return self.set_off_rolling(robot);
         }
         if !self.plan_step(robot) {
-            self.robots[robot as usize].phase = Phase::Blocked;
-            self.blocked.push(robot);
-            self.schedule_retry();
+            self.wait_for_a_way(robot);
         }
     }
 
@@ -110,9 +108,29 @@ impl Fleet {
         let state = &mut self.robots[robot as usize];
         if state.moves.is_empty() {
             self.begin(robot);
+        } else if self.gets_there(robot) {
+            self.robots[robot as usize].phase = Phase::Driving;
         } else {
-            state.phase = Phase::Driving;
+            // its plan has been cut short while it was lifting
+            self.wait_for_a_way(robot);
         }
+    }
+
+    /// Whether the robot's plan ends where the first step of its program wants to be.
+    fn gets_there(&self, robot: u32) -> bool {
+        let state = &self.robots[robot as usize];
+        match state.program.front() {
+            Some(&Step::Drive(goal)) => state.destination().0 == goal,
+            Some(&Step::Station(station)) => state.queues_at(station),
+            _ => false,
+        }
+    }
+
+    /// The robot goes to the end of the plan it has, and tries again and again to get on.
+    pub(super) fn wait_for_a_way(&mut self, robot: u32) {
+        self.robots[robot as usize].phase = Phase::Blocked;
+        self.blocked.push(robot);
+        self.schedule_retry();
     }
 
     pub(super) fn leg_ended(&mut self, robot: u32) {
@@ -128,8 +146,10 @@ impl Fleet {
         }
         match state.program.front().copied() {
             Some(Step::Drive(goal)) if state.anchor == goal => self.arrived(robot, goal),
-            Some(Step::Station(station)) => self.stopped_in_queue(robot, station),
-            _ => unreachable!("a leg ends where the step wants to be"),
+            Some(Step::Station(station)) if state.queues_at(station) => {
+                self.stopped_in_queue(robot, station);
+            }
+            _ => self.wait_for_a_way(robot),
         }
     }
 

@@ -144,6 +144,15 @@ impl Fleet {
         }
     }
 
+    /// Notes that the robot has a place in the queue: one that nobody else has.
+    pub(super) fn take_place(&mut self, robot: u32, station: u32, place: usize) {
+        self.queues[station as usize].retain(|&other| other != robot);
+        let queue = &self.queues[station as usize];
+        let rank = queue.partition_point(|&other| self.place_of(other) < place);
+        self.queues[station as usize].insert(rank, robot);
+        self.robots[robot as usize].place = Some((station, place));
+    }
+
     pub(super) fn leave_queue(&mut self, robot: u32, station: u32) {
         self.robots[robot as usize].place = None;
         self.leave_queue_list(robot, station);

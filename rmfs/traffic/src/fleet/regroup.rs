@@ -93,11 +93,16 @@ impl Fleet {
     fn begin_again(&mut self) {
         self.blocked.clear();
         for robot in 0..self.robots.len() as u32 {
-            if !matches!(self.robots[robot as usize].phase, Phase::Driving | Phase::Blocked) {
+            let phase = self.robots[robot as usize].phase;
+            if phase == Phase::Idle {
                 continue;
             }
+            // who lifts may have planned its way to a place
             if let Some((station, _)) = self.robots[robot as usize].place.take() {
                 self.queues[station as usize].retain(|&other| other != robot);
+            }
+            if phase == Phase::Transferring {
+                continue;
             }
             if self.rolling.is_some() {
                 self.set_off_rolling(robot);

@@ -119,10 +119,7 @@ impl Fleet {
         if let Some((old, _)) = self.robots[robot as usize].place {
             self.leave_queue(robot, old);
         }
-        let queue = &self.queues[station as usize];
-        let rank = queue.partition_point(|&other| self.place_of(other) < place);
-        self.queues[station as usize].insert(rank, robot);
-        self.robots[robot as usize].place = Some((station, place));
+        self.take_place(robot, station, place);
         self.rolling.as_mut().expect("a rolling planner").replace(robot, Vec::new());
         self.stopped_in_queue(robot, station);
         self.move_up(station);

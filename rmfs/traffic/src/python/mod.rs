@@ -1,5 +1,6 @@
 //! The Python face of the crate: arrays in, arrays and events out.
 
+mod guard;
 mod motion;
 mod planner;
 mod tables;
@@ -19,6 +20,7 @@ use crate::planner::{Planner, Rhythm, Settings, build};
 use crate::robot::Step;
 use crate::units::{Us, from_radians, to_radians};
 
+use guard::{guarded, internal_error};
 use motion::Motion;
 use planner::{Along, Conflict, Fault, PlannerInPython, Reserved, Search, Way};
 
@@ -60,22 +62,57 @@ struct Core {
     /// How often a planner written in Python is asked, if there is one, and what it has raised.
     in_python: Option<Rhythm>,
     fault: Fault,
+    /// The defect met before, if there was one: since then the fleet may be anything.
+    defect: Option<String>,
 }
 
 impl Core {
-    fn robot(&self, robot: usize) -> PyResult<&crate::robot::Robot> {
-        self.fleet
-            .robots
-            .get(robot)
-            .ok_or_else(|| PyValueError::new_err(format!("no robot {robot}")))
+    fn over(fleet: Fleet, in_python: Option<Rhythm>, fault: Fault) -> Self {
+        Self { fleet, in_python, fault, defect: None }
     }
 
-    fn seconds(&self, entries: &[u32]) -> Vec<f64> {
-        entries
-            .iter()
-            .map(|&entry| costs::time(entry).map_or(f64::INFINITY, |t| t as f64 / 1e6))
-            .collect()
+    /// Does something with the fleet.
+    fn with<T>(&mut self, work: impl FnOnce(&mut Fleet) -> T) -> PyResult<T> {
+        if let Some(said) = &self.defect {
+            return Err(internal_error(said));
+        }
+        guarded(|| work(&mut self.fleet)).map_err(|said| {
+            let error = internal_error(&said);
+            self.defect = Some(said);
+            error
+        })
     }
+
+    /// Does something that can be refused.
+    fn try_with<T>(&mut self, work: impl FnOnce(&mut Fleet) -> Result<T, String>) -> PyResult<T> {
+        self.with(work)?.map_err(PyValueError::new_err)
+    }
+
+    /// Does something with one robot.
+    fn with_robot<T>(&mut self, robot: u32, work: impl FnOnce(&mut Fleet) -> T) -> PyResult<T> {
+        self.robot(robot as usize)?;
+        self.with(work)
+    }
+
+    fn robot(&self, robot: usize) -> PyResult<&crate::robot::Robot> {
+        let missing = || PyValueError::new_err(format!("no robot {robot}"));
+        self.fleet.robots.get(robot).ok_or_else(missing)
+    }
+
+    fn check_place(&self, waypoint: u32, kind: u8) -> PyResult<()> {
+        if waypoint as usize >= self.fleet.network.nodes {
+            return Err(PyValueError::new_err(format!("no waypoint {waypoint}")));
+        }
+        if kind as usize >= self.fleet.kinds.len() {
+            return Err(PyValueError::new_err(format!("no kind {kind}")));
+        }
+        Ok(())
+    }
+}
+
+/// Times of a table in seconds; infinite where there is no way.
+fn seconds(entries: impl Iterator<Item = u32>) -> Vec<f64> {
+    entries.map(|entry| costs::time(entry).map_or(f64::INFINITY, |t| t as f64 / 1e6)).collect()
 }
 
 #[pymethods]
@@ -113,46 +150,47 @@ impl Core {
             lifts: lifts.into_iter().map(|(from, to, travel)| Lift { from, to, travel }).collect(),
             extra_headings: robots.iter().map(|robot| from_radians(robot.1)).collect(),
         };
-        let network = Network::new(plan).map_err(PyValueError::new_err)?;
-        let place = |&(node, angle, kind): &(u32, f64, u8)| {
-            let heading =
-                network.headings.binary_search(&from_radians(angle)).expect("given to the network");
-            (node, heading as u8, kind)
-        };
-        let robots: Vec<(u32, u8, u8)> = robots.iter().map(place).collect();
-        let kinds = kinds.into_iter().map(kind_of).collect();
+        let kinds: Vec<Kind> = kinds.into_iter().map(kind_of).collect();
         let (name, parameters, seed, code) = planner;
         let settings = Settings { name, parameters: parameters.into_iter().collect(), seed };
         let fault = Fault::default();
         let in_python = code.as_ref().map(|_| settings.rhythm()).transpose();
         let in_python = in_python.map_err(PyValueError::new_err)?;
-        let planner = match (code, in_python) {
-            (Some(code), Some(rhythm)) => in_python_with(code, rhythm, &network, &fault),
-            _ => build(&settings, &network).map_err(PyValueError::new_err)?,
-        };
-        let fleet = Fleet::new(network, kinds, &robots, planner, budget, cost_bytes, with_trace);
-        fleet.map(|fleet| Self { fleet, in_python, fault }).map_err(PyValueError::new_err)
+        let fleet = guarded(|| {
+            let network = Network::new(plan)?;
+            let robots = placed(&network, &robots)?;
+            let planner = match (code, in_python) {
+                (Some(code), Some(rhythm)) => in_python_with(code, rhythm, &network, &fault),
+                _ => build(&settings, &network)?,
+            };
+            Fleet::new(network, kinds, &robots, planner, budget, cost_bytes, with_trace)
+        });
+        let fleet = fleet.map_err(|said| internal_error(&said))?;
+        Ok(Self::over(fleet.map_err(PyValueError::new_err)?, in_python, fault))
     }
 
     /// An independent copy; a planner written in Python comes as a copy of its own.
-    fn fork(&self, code: Option<Py<PyAny>>) -> Self {
-        let mut fleet = self.fleet.clone();
+    fn fork(&mut self, code: Option<Py<PyAny>>) -> PyResult<Self> {
+        let in_python = self.in_python;
         let fault = Fault::default();
-        if let (Some(code), Some(rhythm)) = (code, self.in_python) {
-            fleet.exchange_planner(in_python_with(code, rhythm, &fleet.network, &fault));
-        }
-        Self { fleet, in_python: self.in_python, fault }
+        let fleet = self.with(|fleet| {
+            let mut fleet = fleet.clone();
+            if let (Some(code), Some(rhythm)) = (code, in_python) {
+                fleet.exchange_planner(in_python_with(code, rhythm, &fleet.network, &fault));
+            }
+            fleet
+        })?;
+        Ok(Self::over(fleet, in_python, fault))
     }
 
     /// All that moves and all that is remembered of it, but for the network and the settings.
-    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = self.fleet.to_bytes().map_err(PyValueError::new_err)?;
-        Ok(PyBytes::new(py, &bytes))
+    fn save<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &self.try_with(|fleet| fleet.to_bytes())?))
     }
 
     /// Goes on from the bytes of another one, built in the same way.
     fn restore(&mut self, bytes: &[u8]) -> PyResult<()> {
-        self.fleet.restore(bytes).map_err(PyValueError::new_err)
+        self.try_with(|fleet| fleet.restore(bytes))
     }
 
     #[getter]
@@ -163,13 +201,12 @@ impl Core {
     fn command(&mut self, robot: u32, program: Vec<(u8, u32)>) -> PyResult<()> {
         self.robot(robot as usize)?;
         let steps = program.into_iter().map(step_of).collect::<PyResult<Vec<Step>>>()?;
-        self.fleet.command(robot, &steps).map_err(PyValueError::new_err)
+        self.try_with(|fleet| fleet.command(robot, &steps))
     }
 
     fn advance(&mut self, py: Python<'_>, until: Us) -> PyResult<Vec<(Us, i64, u32, u32)>> {
-        let fleet = &mut self.fleet;
-        let events = py.detach(|| fleet.advance(until));
-        if let Some(error) = self.fault.lock().expect("nobody panics with it").take() {
+        let events = py.detach(|| self.with(|fleet| fleet.advance(until)))?;
+        if let Some(error) = self.fault.lock().ok().and_then(|mut fault| fault.take()) {
             return Err(error);
         }
         let plain = |event: Event| (event.time, event.kind as i64, event.robot, event.value);
@@ -194,42 +231,46 @@ impl Core {
         waypoint: u32,
         kind: u8,
         loaded: bool,
-    ) -> Bound<'py, PyAny> {
-        let fleet = &mut self.fleet;
-        let count = fleet.network.heading_count();
-        let table = fleet.costs.towards(&fleet.network, waypoint, kind, loaded);
-        let best: Vec<u32> = table
-            .chunks(count)
-            .map(|headings| headings.iter().copied().min().expect("a heading"))
-            .collect();
-        self.seconds(&best).into_pyarray(py).into_any()
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.check_place(waypoint, kind)?;
+        let times = self.with(|fleet| {
+            let count = fleet.network.heading_count();
+            let table = fleet.costs.towards(&fleet.network, waypoint, kind, loaded);
+            let best = |headings: &[u32]| headings.iter().copied().min();
+            seconds(table.chunks(count).map(|at| best(at).unwrap_or(costs::UNREACHABLE)))
+        })?;
+        Ok(times.into_pyarray(py).into_any())
     }
 
     fn travel_times_from<'py>(
-        &self,
+        &mut self,
         py: Python<'py>,
         waypoint: u32,
         kind: u8,
         loaded: bool,
-    ) -> Bound<'py, PyAny> {
-        let times = self.fleet.costs.away_from(&self.fleet.network, waypoint, kind, loaded);
-        self.seconds(&times).into_pyarray(py).into_any()
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.check_place(waypoint, kind)?;
+        let times = self.with(|fleet| {
+            let times = fleet.costs.away_from(&fleet.network, waypoint, kind, loaded);
+            seconds(times.into_iter())
+        })?;
+        Ok(times.into_pyarray(py).into_any())
     }
 
     /// Totals per robot since the last reset, at the current time.
     fn motion<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        tables::motion(py, &self.fleet.totals())
+        tables::motion(py, &self.with(|fleet| fleet.totals())?)
     }
 
     /// Visits and standing time since the last reset.
     fn heat<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.fleet.settle_all();
+        self.with(|fleet| fleet.settle_all())?;
         tables::heat(py, &self.fleet.record.heat)
     }
 
     /// Edges and elevator rides used since the last reset.
     fn edges<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.fleet.settle_all();
+        self.with(|fleet| fleet.settle_all())?;
         tables::edges(py, &self.fleet.record.heat.edges(&self.fleet.network))
     }
 
@@ -245,10 +286,8 @@ impl Core {
         py: Python<'py>,
         known: usize,
     ) -> PyResult<(Bound<'py, PyDict>, usize)> {
-        let (rows, count) = self
-            .fleet
-            .trace(known)
-            .ok_or_else(|| PyValueError::new_err("the trace is not recorded"))?;
+        let not_recorded = || "the trace is not recorded".to_owned();
+        let (rows, count) = self.try_with(|fleet| fleet.trace(known).ok_or_else(not_recorded))?;
         Ok((tables::trace(py, &self.fleet.network, &rows)?, count))
     }
 
@@ -268,30 +307,29 @@ impl Core {
 
     /// Wall time of each call of the planner since the last reset, in nanoseconds.
     fn call_times<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        self.fleet.counters.calls.iter().copied().collect::<Vec<u64>>().into_pyarray(py).into_any()
+        let calls: Vec<u64> = self.fleet.counters.calls.iter().copied().collect();
+        calls.into_pyarray(py).into_any()
     }
 
     /// The moves of a robot's plan that have not ended: from, to, heading (radians), start, end and
     /// whether it is an elevator ride.
     fn plan(&mut self, robot: u32) -> PyResult<Vec<PlannedMove>> {
-        self.robot(robot as usize)?;
-        self.fleet.settle_all();
+        self.with_robot(robot, |fleet| fleet.settle_all())?;
         let heading = |h: u8| to_radians(self.fleet.network.headings[h as usize]);
         let moves = self.fleet.robots[robot as usize].moves.iter();
         Ok(moves.map(|m| (m.from, m.to, heading(m.heading), m.start, m.end, m.ride)).collect())
     }
 
     fn delay(&mut self, robot: u32, by: Us, begun: bool) -> PyResult<bool> {
-        self.robot(robot as usize)?;
         if by < 0 {
             return Err(PyValueError::new_err(format!("a delay of {by} us")));
         }
-        Ok(self.fleet.delay(robot, by, if begun { Shift::Begun } else { Shift::Planned }))
+        let shift = if begun { Shift::Begun } else { Shift::Planned };
+        self.with_robot(robot, |fleet| fleet.delay(robot, by, shift))
     }
 
     fn clearance(&mut self, robot: u32) -> PyResult<Vec<u32>> {
-        self.robot(robot as usize)?;
-        Ok(self.fleet.clearance(robot))
+        self.with_robot(robot, |fleet| fleet.clearance(robot))
     }
 
     /// Puts robots at rest at `(waypoint, heading in radians, time)` and plans anew.
@@ -305,38 +343,37 @@ impl Core {
             Ok(Some(Rest { waypoint, heading: heading as u8, time }))
         };
         let rests = rests.iter().map(rest).collect::<PyResult<Vec<Option<Rest>>>>()?;
-        self.fleet.regroup(&rests).map_err(PyValueError::new_err)
+        self.try_with(|fleet| fleet.regroup(&rests))
     }
 
     fn hold(&mut self, robot: u32, by: Us) -> PyResult<Option<Us>> {
-        self.robot(robot as usize)?;
-        Ok(self.fleet.hold(robot, by))
+        if by < 0 {
+            return Err(PyValueError::new_err(format!("a stop of {by} us")));
+        }
+        self.with_robot(robot, |fleet| fleet.hold(robot, by))
     }
 
     fn change_kind(&mut self, robot: u32, kind: u8) -> PyResult<bool> {
-        self.robot(robot as usize)?;
-        if kind as usize >= self.fleet.kinds.len() {
-            return Err(PyValueError::new_err(format!("no kind {kind}")));
-        }
-        Ok(self.fleet.change_kind(robot, kind))
+        self.check_place(0, kind)?;
+        self.with_robot(robot, |fleet| fleet.change_kind(robot, kind))
     }
 
     fn close(&mut self, waypoints: Vec<u32>) -> PyResult<Vec<u32>> {
-        self.fleet.close(&waypoints).map_err(PyValueError::new_err)
+        self.try_with(|fleet| fleet.close(&waypoints))
     }
 
     fn reopen(&mut self, waypoints: Vec<u32>) -> PyResult<()> {
-        self.fleet.reopen(&waypoints).map_err(PyValueError::new_err)
+        self.try_with(|fleet| fleet.reopen(&waypoints))
     }
 
     /// Storage places and stations that cannot be served with what is closed.
-    fn cut_off(&mut self) -> (Vec<u32>, Vec<u32>) {
-        let CutOff { storage, stations } = self.fleet.cut_off();
-        (storage, stations)
+    fn cut_off(&mut self) -> PyResult<(Vec<u32>, Vec<u32>)> {
+        let CutOff { storage, stations } = self.with(|fleet| fleet.cut_off())?;
+        Ok((storage, stations))
     }
 
-    fn reset_statistics(&mut self) {
-        self.fleet.reset_statistics();
+    fn reset_statistics(&mut self) -> PyResult<()> {
+        self.with(|fleet| fleet.reset_statistics())
     }
 
     /// One line per robot, for reports on traffic that stands still.
@@ -347,6 +384,16 @@ impl Core {
         });
         lines.collect::<Vec<_>>().join("\n")
     }
+}
+
+/// Robots where they start: waypoint, index of the heading, kind.
+fn placed(network: &Network, robots: &[(u32, f64, u8)]) -> Result<Vec<(u32, u8, u8)>, String> {
+    let place = |&(node, angle, kind): &(u32, f64, u8)| {
+        let heading = network.headings.binary_search(&from_radians(angle));
+        let heading = heading.map_err(|_| format!("no heading of {angle} rad"))?;
+        Ok((node, heading as u8, kind))
+    };
+    robots.iter().map(place).collect()
 }
 
 #[pymodule]

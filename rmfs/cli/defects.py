@@ -1,0 +1,63 @@
+"""What becomes of a defect that the program has noticed itself: a line, and a file to report."""
+
+from __future__ import annotations
+
+import platform
+import shlex
+import sys
+import tempfile
+import traceback
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rmfs.errors import InternalError
+
+
+def told(error: InternalError, arguments: list[str] | None) -> str:
+    """Return the line for the user: what happened, in which run, and what to report.
+
+    Parameters
+    ----------
+    error
+        The defect; its notes say in which run it was met.
+    arguments
+        Of the command line; by default those of the process.
+    """
+    where = "".join(f", {note}" for note in getattr(error, "__notes__", []))
+    return f"internal error{where}: {error}; please report {written(error, arguments)}"
+
+
+def written(error: InternalError, arguments: list[str] | None) -> Path:
+    """Write all that helps to come to a defect again into a file in the working folder.
+
+    Returns
+    -------
+    The file; below the folder for temporary files if the working folder cannot be written.
+    """
+    from rmfs.measure.provenance import version
+
+    given = sys.argv[1:] if arguments is None else arguments
+    text = "\n".join(
+        [
+            f"rmfs {version()}, Python {platform.python_version()}, {platform.platform()}",
+            shlex.join(["rmfs", *given]),
+            "",
+            *traceback.format_exception(error),
+        ]
+    )
+    for folder in (Path.cwd(), None):
+        try:
+            with tempfile.NamedTemporaryFile(
+                "w",
+                encoding="utf-8",
+                prefix="rmfs-defect-",
+                suffix=".txt",
+                dir=folder,
+                delete=False,
+            ) as file:
+                file.write(text)
+        except OSError:
+            continue
+        return Path(file.name)
+    raise error
