@@ -91,6 +91,9 @@ class Observer:
     def order_assigned(self, order: Order) -> None:
         """POA put the order on a pick station (`order.station`, `order.assigned_s`)."""
 
+    def order_queued(self, order: Order) -> None:
+        """An order of the backlog joined the pool of a pick station (`order.queued_at`)."""
+
     def unit_picked(
         self,
         time_s: float,
@@ -109,8 +112,20 @@ class Observer:
     def order_completed(self, order: Order) -> None:
         """All units are picked and the station handed the order on (`order.completed_s`)."""
 
+    def slot_freed(self, order: Order) -> None:
+        """A pick station handed on an order, or its part of one: the slot is free."""
+
     def bundle_created(self, bundle: Bundle) -> None:
         """A replenishment order (bundle) joined the backlog (`bundle.created_s`)."""
+
+    def bundle_promised(self, bundle: Bundle) -> None:
+        """RPS chose the pod of a bundle (`bundle.pod`), without releasing the choice yet."""
+
+    def bundles_released(self, pod: int) -> None:
+        """RPS released what was promised to a pod."""
+
+    def bundle_sent(self, bundle: Bundle) -> None:
+        """ROA chose the station of a bundle (`bundle.station`)."""
 
     def bundle_assigned(self, bundle: Bundle) -> None:
         """ROA and RPS are both decided (`bundle.station`, `bundle.pod`, `bundle.assigned_s`)."""
@@ -129,6 +144,12 @@ class Observer:
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
         """TA gave the robot a task: pick, replenish, park, rest or reposition (station or -1)."""
+
+    def robot_free(self, robot: int) -> None:
+        """A robot's task ended: it needs a new one."""
+
+    def place_left(self, robot: int) -> None:
+        """A robot left storage places that were kept for it."""
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
         """A robot starts to lift a pod."""

@@ -1,8 +1,9 @@
-"""The agenda: what happens when, in a total order, so that a run repeats."""
+"""The agenda: the present time, and what happens when, in a total order, so that a run repeats."""
 
 from __future__ import annotations
 
 from heapq import heappop, heappush
+from math import ceil
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -11,18 +12,35 @@ if TYPE_CHECKING:
 NEVER_US = 1 << 62
 """Later than any event, in microseconds."""
 
+LAST = 9
+"""Priority of what only looks: after all that happens at the same time."""
+
+
+def us_at(time_s: float) -> int:
+    """Return the first microsecond that is not before a time."""
+    time_us = ceil(time_s * 1e6)
+    return time_us if time_us / 1e6 >= time_s else time_us + 1
+
 
 class Agenda:
     """A heap of callbacks ordered by time, priority and serial number.
 
     Of entries with equal time the one with the lower priority number comes first; of these the one
-    that was entered first.
+    that was entered first. Callbacks are bound methods, or partials of these: a simulation can be
+    copied and stored with all that is still to come.
+
+    Attributes
+    ----------
+    now_us
+        Present time in microseconds; the run loop moves it on.
     """
 
     def __init__(self) -> None:
+        self.now_us = 0
         self._heap: list[tuple[int, int, int, Callable[[], None]]] = []
-        self._cancelled: set[int] = set()
+        self._cancelled: dict[int, None] = {}
         self._serial = 0
+        self._settled: list[Callable[[], None]] = []
 
     def __len__(self) -> int:
         return len(self._heap) - len(self._cancelled)
@@ -40,20 +58,37 @@ class Agenda:
         heappush(self._heap, (time_us, priority, self._serial, callback))
         return self._serial
 
+    def after(self, us: int, callback: Callable[[], None]) -> int:
+        """Enter a callback so many microseconds from now; returns its serial number."""
+        return self.at(self.now_us + us, callback)
+
     def cancel(self, serial: int) -> None:
         """Make an entry that has not been called yet have no effect."""
-        self._cancelled.add(serial)
+        self._cancelled[serial] = None
 
-    def run_due(self, now_us: int) -> None:
-        """Call everything due, in order, with what the callbacks enter for this time."""
-        heap = self._heap
+    def run_due(self) -> None:
+        """Call everything due now, in order, with what the callbacks enter for this time."""
+        heap, now_us = self._heap, self.now_us
         while heap and heap[0][0] <= now_us:
             _, _, serial, callback = heappop(heap)
             if serial in self._cancelled:
-                self._cancelled.remove(serial)
+                del self._cancelled[serial]
             else:
                 callback()
 
+    def when_settled(self, callback: Callable[[], None]) -> None:
+        """Call back at this instant, as soon as the controllers have decided."""
+        self._settled.append(callback)
+
+    def run_settled(self) -> bool:
+        """Call what waits for the decisions of this instant; returns whether there was any."""
+        if not self._settled:
+            return False
+        callbacks, self._settled = self._settled, []
+        for callback in callbacks:
+            callback()
+        return True
+
     def _drop_cancelled(self) -> None:
         while self._heap and self._heap[0][2] in self._cancelled:
-            self._cancelled.remove(heappop(self._heap)[2])
+            del self._cancelled[heappop(self._heap)[2]]

@@ -6,6 +6,7 @@ from time import perf_counter_ns
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control.problems import Problem
+from rmfs.simulation.outside import Question
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -14,27 +15,32 @@ if TYPE_CHECKING:
     from rmfs.control.pps import PodSelection
     from rmfs.control.psa import PodStorageAssignment
     from rmfs.control.repositioning import Move, Repositioning
-    from rmfs.simulation.phase import DecisionPhase
-    from rmfs.simulation.simulation import Simulation
+    from rmfs.simulation.controller_set import ControllerSet
+    from rmfs.simulation.deciding import Deciding
+    from rmfs.simulation.outside import Outside
+    from rmfs.world import World
     from rmfs.world.robots import Robot
+
+ASKED_BY_TA = frozenset({Problem.PPS, Problem.PSA, Problem.REPOSITIONING})
+"""Problems that are decided when TA asks."""
 
 
 class PhaseConsult:
     """Passes TA's questions on to the controllers installed now, and measures them."""
 
-    def __init__(self, phase: DecisionPhase, simulation: Simulation) -> None:
-        self._phase = phase
-        self._world = simulation.world
-        self._panel = simulation.panel
+    def __init__(self, world: World, controllers: ControllerSet, deciding: Deciding) -> None:
+        self._world = world
+        self._controllers = controllers
+        self._deciding = deciding
 
     def serves(self, pod: int, station: int) -> bool:
         """Ask PPS whether there is work for a pod."""
-        pps: PodSelection[Any] = self._panel[Problem.PPS]
+        pps: PodSelection[Any] = self._controllers[Problem.PPS]
         return pps.serves(pod, station)
 
     def pod_for(self, robot: Robot, station: int) -> int:
         """Ask PPS for a pod."""
-        pps: PodSelection[Any] = self._panel.consulted(Problem.PPS)
+        pps: PodSelection[Any] = self._controllers.consulted(Problem.PPS)
         if self._world.is_pick_station(station):
             target = self._world.pick_stations[station]
             return self._number(Problem.PPS, pps, lambda: pps.pick_pod(robot, target))
@@ -46,23 +52,23 @@ class PhaseConsult:
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
         """Ask PPS for the next station of a carried pod."""
-        pps: PodSelection[Any] = self._panel.consulted(Problem.PPS)
+        pps: PodSelection[Any] = self._controllers.consulted(Problem.PPS)
         return self._number(Problem.PPS, pps, lambda: pps.next_station(robot, stations))
 
     def place_for(self, robot: Robot) -> int:
         """Ask PSA for a place."""
-        psa: PodStorageAssignment[Any] = self._panel.consulted(Problem.PSA)
+        psa: PodStorageAssignment[Any] = self._controllers.consulted(Problem.PSA)
         return self._number(Problem.PSA, psa, lambda: psa.place(robot))
 
     def move_for(self, robot: Robot) -> Move | None:
         """Ask repositioning for a pod to move, unless it would not answer now."""
-        rule: Repositioning[Any] = self._panel.consulted(Problem.REPOSITIONING)
+        rule: Repositioning[Any] = self._controllers.consulted(Problem.REPOSITIONING)
         if not rule.is_ready(robot):
             return None
         start = perf_counter_ns()
         move = rule.move(robot)
         spent_ns = perf_counter_ns() - start
-        self._phase.consulted(Problem.REPOSITIONING, rule, spent_ns, move is not None)
+        self._deciding.consulted(Problem.REPOSITIONING, rule, spent_ns, move is not None)
         return move
 
     def _number(
@@ -77,6 +83,49 @@ class PhaseConsult:
         start = perf_counter_ns()
         number = question()
         spent_ns = perf_counter_ns() - start
-        self._phase.consulted(problem, controller, spent_ns, number >= 0, modelled)
+        self._deciding.consulted(problem, controller, spent_ns, number >= 0, modelled)
         controller.basis = former
+        return number
+
+
+class OutsideConsult(PhaseConsult):
+    """The same while some of these problems are decided outside."""
+
+    def __init__(
+        self, world: World, controllers: ControllerSet, deciding: Deciding, outside: Outside
+    ) -> None:
+        super().__init__(world, controllers, deciding)
+        self._outside = outside
+
+    def pod_for(self, robot: Robot, station: int) -> int:
+        """Ask for a pod."""
+        kind = "pick pod" if self._world.is_pick_station(station) else "replenishment pod"
+        question = Question(Problem.PPS, kind, robot.index, (station,))
+        return self._asked(question, lambda: super(OutsideConsult, self).pod_for(robot, station))
+
+    def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
+        """Ask for the next station of a carried pod."""
+        question = Question(Problem.PPS, "next station", robot.index, tuple(stations))
+        return self._asked(
+            question, lambda: super(OutsideConsult, self).next_station(robot, stations)
+        )
+
+    def place_for(self, robot: Robot) -> int:
+        """Ask for a place."""
+        question = Question(Problem.PSA, "place", robot.index)
+        return self._asked(question, lambda: super(OutsideConsult, self).place_for(robot))
+
+    def move_for(self, robot: Robot) -> Move | None:
+        """Ask for a pod to move, unless repositioning would not answer now."""
+        rule: Repositioning[Any] = self._controllers.consulted(Problem.REPOSITIONING)
+        question = Question(Problem.REPOSITIONING, "move", robot.index)
+        if self._outside.is_new and not rule.is_ready(robot):
+            return None
+        move: Move | None = self._outside.answer_to(
+            question, lambda: super(OutsideConsult, self).move_for(robot)
+        )
+        return move
+
+    def _asked(self, question: Question, otherwise: Callable[[], int]) -> int:
+        number: int = self._outside.answer_to(question, otherwise)
         return number

@@ -13,14 +13,22 @@ from rmfs.control.decisions import (
     Rest,
     TaskDecision,
 )
-from rmfs.control.problems import Problem, Trigger
+from rmfs.control.problems import Problem
+from rmfs.simulation.tasks import end_task
 from rmfs.traffic import Step
 from rmfs.world.tasks import Task, TaskKind
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rmfs.control.asks import Call
     from rmfs.control.ta import Consult
-    from rmfs.simulation.simulation import Simulation
+    from rmfs.layout.model import Layout
+    from rmfs.simulation.controller_set import ControllerSet
+    from rmfs.simulation.events import Events
+    from rmfs.simulation.fleet import Fleet
+    from rmfs.simulation.service import Service
+    from rmfs.world import World
     from rmfs.world.robots import Robot
 
 # plain numbers for the hot path
@@ -37,11 +45,22 @@ class Dispatch:
     sets off when the place has been left.
     """
 
-    def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
-        self._world = simulation.world
-        self._storage = simulation.world.storage
-        self._tier: list[int] = simulation.layout.tier.tolist()
+    def __init__(
+        self,
+        layout: Layout,
+        world: World,
+        fleet: Fleet,
+        events: Events,
+        controllers: ControllerSet,
+        services: Sequence[Service],
+    ) -> None:
+        self._world = world
+        self._storage = world.storage
+        self._fleet = fleet
+        self._events = events
+        self._controllers = controllers
+        self._services = services
+        self._tier: list[int] = layout.tier.tolist()
         self._held_up: dict[int, Robot] = {}
         self._basis: dict[Task, Call] = {}
 
@@ -51,7 +70,6 @@ class Dispatch:
         """Bring a pod, or go on with the one carried, to a pick station."""
         robot = decision.robot
         task = self._world.start_pick(robot, decision.pod, decision.station)
-        self._simulation.late_binding.task_started(task)
         self._bring(robot, task)
 
     def bring_for_bundles(self, decision: BringForBundles) -> None:
@@ -87,7 +105,7 @@ class Dispatch:
         if robot.pod < 0:
             self._fetch(robot)
         elif robot.station == task.station:
-            self._simulation.services[task.station].go_on()
+            self._services[task.station].go_on()
         else:
             waypoint = self._world.stations[task.station].waypoint
             self._command(robot, waypoint, [(_STATION, task.station)])
@@ -112,7 +130,7 @@ class Dispatch:
 
     def _send_away(self, keeper: Robot) -> None:
         """Let a robot without work make room; with nowhere to go it stays until there is."""
-        place = self._simulation.panel[Problem.TA].rest_place(keeper)
+        place = self._controllers[Problem.TA].rest_place(keeper)
         if place >= 0:
             self.rest(Rest(keeper, place))
 
@@ -121,19 +139,19 @@ class Dispatch:
             self._leave_station(robot)
         robot.waypoint = goal
         robot.tier = self._tier[goal]
-        self._simulation.traffic.command(robot.index, program)
+        self._fleet.command(robot.index, program)
         self.departed(robot.index)
 
     def _leave_station(self, robot: Robot) -> None:
         station = self._world.stations[robot.station]
-        self._simulation.observers.visit_ended(
+        self._events.visit_ended(
             self._world.now_s, station.index, robot.pod, robot.index
         )
         station.robot = -1
         robot.station = -1
 
     def _tell(self, task: Task) -> None:
-        self._simulation.observers.task_started(
+        self._events.task_started(
             self._world.now_s, task.robot, task.kind.value, task.station
         )
 
@@ -156,10 +174,12 @@ class Dispatch:
     def start_prepared(self, robot: Robot, consult: Consult) -> None:
         """Start the first prepared task of a robot that is possible; pass over those before it."""
         while robot.prepared:
-            task = robot.prepared.popleft()
-            basis = self._basis.pop(task, None)
+            task = robot.prepared[0]
             if task.kind is TaskKind.PARK and task.place < 0 and robot.pod >= 0:
+                # may be asked of somebody outside: until it is answered, nothing has changed
                 task.place = consult.place_for(robot)
+            robot.prepared.popleft()
+            basis = self._basis.pop(task, None)
             if self._is_possible(robot, task, consult):
                 self._start(robot, task)
                 if basis is not None:
@@ -204,9 +224,9 @@ class Dispatch:
         robot = self._world.robots[index]
         if len(robot.places) < 2 and robot.waypoint in robot.places:
             return
-        rest = self._simulation.traffic.rest_waypoint(index)
+        rest = self._fleet.rest_waypoint(index)
         if self._storage.departed(robot, rest):
-            self._simulation.phase.place_left()
+            self._events.place_left(index)
             self._send_held_up()
 
     def _send_held_up(self) -> None:
@@ -230,10 +250,7 @@ class Dispatch:
         world.lift(robot, pod)
         robot.waypoint = world.stations[station].waypoint if station >= 0 else robot.task.place
         robot.tier = self._tier[robot.waypoint]
-        self._simulation.observers.pod_lifted(world.now_s, pod, index, place)
-        if station >= 0:
-            self._simulation.late_binding.pod_lifted(pod)
-        self._simulation.phase.signal(Trigger.POD_LIFTED, pod)
+        self._events.pod_lifted(world.now_s, pod, index, place)
 
     def at_head(self, index: int, station: int) -> None:
         """A robot has reached a station: its pod can be served."""
@@ -242,21 +259,20 @@ class Dispatch:
         robot.station = station
         reached.robot = index
         reached.visits += 1
-        self._simulation.observers.visit_started(world.now_s, station, robot.pod, index)
-        self._simulation.phase.signal(Trigger.POD_AT_STATION, station)
-        self._simulation.services[station].go_on()
+        self._events.visit_started(world.now_s, station, robot.pod, index)
+        self._services[station].go_on()
 
     def set_down(self, index: int, pod: int) -> None:
         """A pod stands at its place and may be claimed by anyone."""
         robot = self._world.robots[index]
         self._world.set_down(robot, robot.waypoint)
-        self._simulation.observers.pod_set_down(self._world.now_s, pod, index, robot.waypoint)
+        self._events.pod_set_down(self._world.now_s, pod, index, robot.waypoint)
 
     def idle(self, index: int, _waypoint: int) -> None:
         """A robot has done all it was commanded; one that stored a pod needs a task."""
         task = self._world.robots[index].task
         if task is not None and task.kind in (TaskKind.PARK, TaskKind.REPOSITION):
-            self._simulation.end_task(index)
+            end_task(self._world, self._events, index)
 
 
 def _planned(decision: TaskDecision) -> Task:

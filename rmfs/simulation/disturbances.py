@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -11,10 +12,17 @@ from rmfs.random import Stream, generator
 from rmfs.scenario.intake.rates import exponential_us
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
-    from rmfs.scenario.parameters import Disturbances
-    from rmfs.simulation.simulation import Simulation
+    from rmfs.scenario.parameters.disturbances import (
+        Breakdowns,
+        Closures,
+        Disturbances,
+        SlowRobots,
+    )
+    from rmfs.layout.model import Layout
+    from rmfs.simulation.agenda import Agenda
+    from rmfs.traffic import Traffic
 
 AGAIN_US = 1_000_000
 """When something cannot begin or end now, it is tried again so much later."""
@@ -65,15 +73,18 @@ class DisturbanceSource:
         If an elevator does not exist.
     """
 
-    def __init__(self, simulation: Simulation, given: Disturbances, seed: int) -> None:
-        elevators = len(simulation.layout.elevators)
+    def __init__(
+        self, layout: Layout, given: Disturbances, seed: int, *, agenda: Agenda, fleet: Traffic
+    ) -> None:
+        elevators = len(layout.elevators)
         for elevator, *_ in given.elevators_out:
             if elevator >= elevators:
                 raise InputError(
                     f"scenario.disturbances.elevators_out: there is no elevator {elevator} (the "
                     f"layout has {elevators}, numbered from 0)"
                 )
-        self._simulation, self._given = simulation, given
+        self._layout, self._given = layout, given
+        self._agenda, self._fleet = agenda, fleet
         self._draw = [generator(seed, Stream.DISTURBANCES, kind) for kind in range(3)]
         self._slow_since: dict[int, int] = {}
         self.begun: list[Disturbance] = []
@@ -97,50 +108,53 @@ class DisturbanceSource:
 
     def begin(self) -> None:
         """Enter what comes first of each kind."""
-        kinds = [
-            (_BREAKDOWNS, self._given.breakdowns, self._break_down),
-            (_SLOW, self._given.slow, self._slow_down),
-            (_CLOSURES, self._given.closures, self._close_somewhere),
-        ]
-        for kind, given, start in kinds:
+        for kind, given in enumerate(self._given_by_kind()):
             if given is not None:
-                self._repeat(kind, given.every_s, given.lasting_s, start)
+                self._repeat(kind)
         for elevator, begin_s, end_s in self._given.elevators_out:
-            self._elevator_out(elevator, round(begin_s * 1e6), round(end_s * 1e6))
+            lasting_us = round(end_s * 1e6) - round(begin_s * 1e6)
+            stop = partial(self._elevator_out, elevator, lasting_us)
+            self._agenda.after(round(begin_s * 1e6), stop)
 
-    def _repeat(
-        self, kind: int, every_s: float, lasting_s: float, start: Callable[[int], None]
-    ) -> None:
-        """Start one of a kind at a random time, and then the next."""
+    def _given_by_kind(self) -> tuple[Breakdowns | SlowRobots | Closures | None, ...]:
+        """What the scenario says of each kind, in the order of their numbers."""
+        return self._given.breakdowns, self._given.slow, self._given.closures
 
-        def come() -> None:
-            start(round(lasting_s * 1e6 * (0.5 + self._draw[kind].random())))
-            self._repeat(kind, every_s, lasting_s, start)
+    def _repeat(self, kind: int) -> None:
+        """Enter the next of a kind, at a random time."""
+        given = self._given_by_kind()[kind]
+        assert given is not None
+        gap_us = exponential_us(self._draw[kind].random(), 3600.0 / given.every_s)
+        self._agenda.after(gap_us, partial(self._come, kind))
 
-        gap_us = exponential_us(self._draw[kind].random(), 3600.0 / every_s)
-        self._after(gap_us, come)
-
-    def _after(self, us: int, callback: Callable[[], None]) -> None:
-        self._simulation.agenda.at(self._simulation.now_us + us, callback)
+    def _come(self, kind: int) -> None:
+        """Start one of a kind, and enter the next."""
+        given = self._given_by_kind()[kind]
+        assert given is not None
+        lasting_us = round(given.lasting_s * 1e6 * (0.5 + self._draw[kind].random()))
+        if kind == _BREAKDOWNS:
+            self._hold(self._robot(_BREAKDOWNS), lasting_us)
+        elif kind == _SLOW:
+            self._slow_down(lasting_us)
+        else:
+            self._close_somewhere(lasting_us)
+        self._repeat(kind)
 
     def _note(self, kind: str, element: int, to_us: int = FOR_EVER_US) -> int:
         """Note that something begins now; returns its number."""
-        self.begun.append(Disturbance(kind, element, self._simulation.now_us, to_us))
+        self.begun.append(Disturbance(kind, element, self._agenda.now_us, to_us))
         return len(self.begun) - 1
 
     def _end(self, number: int) -> None:
-        self.begun[number] = self.begun[number]._replace(to_us=self._simulation.now_us)
+        self.begun[number] = self.begun[number]._replace(to_us=self._agenda.now_us)
 
     def _robot(self, kind: int) -> int:
-        return int(self._draw[kind].integers(self._simulation.layout.robots))
-
-    def _break_down(self, lasting_us: int) -> None:
-        self._hold(self._robot(_BREAKDOWNS), lasting_us)
+        return int(self._draw[kind].integers(self._layout.robots))
 
     def _hold(self, robot: int, lasting_us: int) -> None:
-        until_us = self._simulation.traffic.hold(robot, lasting_us)
+        until_us = self._fleet.hold(robot, lasting_us)
         if until_us is None:
-            self._after(AGAIN_US, lambda: self._hold(robot, lasting_us))
+            self._agenda.after(AGAIN_US, partial(self._hold, robot, lasting_us))
             return
         self.begun.append(Disturbance("breakdown", robot, until_us - lasting_us, until_us))
 
@@ -152,21 +166,21 @@ class DisturbanceSource:
         self._begin_slow(robot, lasting_us)
 
     def _begin_slow(self, robot: int, lasting_us: int) -> None:
-        if not self._simulation.traffic.slow_down(robot, 1):
-            self._after(AGAIN_US, lambda: self._begin_slow(robot, lasting_us))
+        if not self._fleet.slow_down(robot, 1):
+            self._agenda.after(AGAIN_US, partial(self._begin_slow, robot, lasting_us))
             return
         self._slow_since[robot] = self._note("slow", robot)
-        self._after(lasting_us, lambda: self._end_slow(robot))
+        self._agenda.after(lasting_us, partial(self._end_slow, robot))
 
     def _end_slow(self, robot: int) -> None:
-        if not self._simulation.traffic.slow_down(robot, 0):
-            self._after(AGAIN_US, lambda: self._end_slow(robot))
+        if not self._fleet.slow_down(robot, 0):
+            self._agenda.after(AGAIN_US, partial(self._end_slow, robot))
             return
         self._end(self._slow_since.pop(robot))
 
     def _close_somewhere(self, lasting_us: int) -> None:
         """Close a waypoint without which all can still be served, if there is one."""
-        traffic, layout = self._simulation.traffic, self._simulation.layout
+        traffic, layout = self._fleet, self._layout
         shafts = [place for elevator in layout.elevators for place in elevator.waypoints]
         may_close = ~layout.is_storage & ~layout.is_queue
         may_close[shafts] = False
@@ -183,21 +197,17 @@ class DisturbanceSource:
 
     def _closed(self, waypoint: int, lasting_us: int) -> None:
         number = self._note("closure", waypoint)
-        self._after(lasting_us, lambda: self._reopen([waypoint], number))
+        self._agenda.after(lasting_us, partial(self._reopen, [waypoint], number))
 
     def _now(self, kind: str) -> list[Disturbance]:
         return [one for one in self.begun if one.kind == kind and one.to_us == FOR_EVER_US]
 
     def _reopen(self, waypoints: Sequence[int], number: int) -> None:
-        self._simulation.traffic.reopen(waypoints)
+        self._fleet.reopen(waypoints)
         self._end(number)
 
-    def _elevator_out(self, elevator: int, begin_us: int, end_us: int) -> None:
-        waypoints = self._simulation.layout.elevators[elevator].waypoints
-
-        def stop() -> None:
-            self._simulation.traffic.close(waypoints)
-            number = self._note("elevator", elevator)
-            self._after(end_us - begin_us, lambda: self._reopen(waypoints, number))
-
-        self._after(begin_us, stop)
+    def _elevator_out(self, elevator: int, lasting_us: int) -> None:
+        waypoints = self._layout.elevators[elevator].waypoints
+        self._fleet.close(waypoints)
+        number = self._note("elevator", elevator)
+        self._agenda.after(lasting_us, partial(self._reopen, waypoints, number))

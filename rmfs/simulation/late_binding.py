@@ -5,20 +5,21 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rmfs.control.problems import Problem
+from rmfs.observer import Observer
 from rmfs.world.tasks import TaskKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rmfs.control.travel import Travel
-    from rmfs.simulation.panel import Panel
+    from rmfs.simulation.controller_set import ControllerSet
     from rmfs.world import World
     from rmfs.world.orders import Bundle, Order
     from rmfs.world.stations import PickStation
     from rmfs.world.tasks import Task
 
 
-class LateBinding:
+class LateBinding(Observer):
     """Looks at what has changed: orders and bundles just assigned, pods just lifted.
 
     A task is extended only while its pod is carried and at least one of its requests is left; a pod
@@ -27,10 +28,10 @@ class LateBinding:
     requests of queued orders are bound too.
     """
 
-    def __init__(self, world: World, travel: Travel, panel: Panel) -> None:
+    def __init__(self, world: World, travel: Travel, controllers: ControllerSet) -> None:
         self._world = world
         self._travel = travel
-        self._panel = panel
+        self._controllers = controllers
         self._orders: list[Order] = []
         self._queued: list[Order] = []
         self._bundles: list[Bundle] = []
@@ -48,19 +49,23 @@ class LateBinding:
         """Remember a bundle assigned to station and pod."""
         self._bundles.append(bundle)
 
-    def pod_lifted(self, pod: int) -> None:
-        """Remember a pod that has just been lifted for a task."""
-        self._pods.append(pod)
+    def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
+        """Remember a pod that has just been lifted for a station."""
+        task = self._world.robots[robot].task
+        if task is not None and task.station >= 0:
+            self._pods.append(pod)
 
-    def task_started(self, task: Task) -> None:
+    def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
         """Give a task that has just begun the requests of queued orders, after all others."""
-        queued = self._world.pick_stations[task.station].queued
-        if queued:
-            self._bind_queued(task, queued.values(), late_bound=False)
+        task = self._world.robots[robot].task
+        if task is not None and task.kind is TaskKind.PICK:
+            queued = self._world.pick_stations[station].queued
+            if queued:
+                self._bind_queued(task, queued.values(), late_bound=False)
 
     def bind(self) -> None:
         """Extend tasks by what has come up since the last time."""
-        given = self._panel[Problem.PPS].parameters
+        given = self._controllers[Problem.PPS].parameters
         if given.late_bundles:
             for bundle in self._bundles:
                 self._extend_replenish(bundle.station, bundle.pod)
@@ -120,7 +125,7 @@ class LateBinding:
             self._bind_queued(task, [order])
 
     def _bind_queued(self, task: Task, orders: Iterable[Order], late_bound: bool = True) -> None:
-        mode = self._panel[Problem.PPS].parameters.reserve
+        mode = self._controllers[Problem.PPS].parameters.reserve
         if mode == "assigned":
             return
         whole = mode == "assigned-and-completable"

@@ -9,18 +9,28 @@ is shorter than the rest of the transfer. At a replenishment station a bundle ke
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
-from rmfs.control.problems import Trigger
+from rmfs.simulation.tasks import end_task
 from rmfs.world.tasks import TaskKind
 
 if TYPE_CHECKING:
     from rmfs.layout.model import PickStation as PickStationLayout
     from rmfs.layout.model import ReplenishmentStation as ReplenishmentStationLayout
-    from rmfs.simulation.simulation import Simulation
+    from rmfs.simulation.agenda import Agenda
+    from rmfs.simulation.events import Events
+    from rmfs.world import World
     from rmfs.world.orders import Order
     from rmfs.world.stations import PickStation, ReplenishmentStation
     from rmfs.world.tasks import Task
+
+
+class Service(Protocol):
+    """The work of one station."""
+
+    def go_on(self) -> None:
+        """Do what can be done now for the robot at the head."""
+        ...
 
 
 class PickService:
@@ -33,9 +43,15 @@ class PickService:
     """
 
     def __init__(
-        self, simulation: Simulation, station: PickStation, layout: PickStationLayout
+        self,
+        station: PickStation,
+        layout: PickStationLayout,
+        *,
+        agenda: Agenda,
+        world: World,
+        events: Events,
     ) -> None:
-        self._simulation = simulation
+        self._agenda, self._world, self._events = agenda, world, events
         self._station = station
         self._transfer_us = round(layout.unit_transfer_s * 1e6)
         self._pick_us = round(layout.unit_pick_s * 1e6)
@@ -45,69 +61,66 @@ class PickService:
 
     def go_on(self) -> None:
         """Do what can be done now for the robot at the head."""
-        simulation, station = self._simulation, self._station
-        now_us = simulation.now_us
+        station, now_us = self._station, self._agenda.now_us
         if station.robot < 0 or now_us < self._robot_until_us:
             return
-        task = simulation.world.robots[station.robot].task
+        task = self._world.robots[station.robot].task
         if task is None or task.kind is not TaskKind.PICK:
             return
         if not task.picks:
-            simulation.end_task(station.robot)
+            end_task(self._world, self._events, station.robot)
         elif now_us >= self._busy_until_us:
             if task.can_pick:
                 self._pick(task)
             else:
                 # POA may still assign one of the orders at this instant
-                simulation.after_decisions(partial(self._pick_or_leave, task))
+                self._agenda.when_settled(partial(self._pick_or_leave, task))
         elif not self._finished and not task.can_pick:
-            simulation.after_decisions(partial(self._pick_or_leave, task))
+            self._agenda.when_settled(partial(self._pick_or_leave, task))
 
     def _pick_or_leave(self, task: Task) -> None:
         """Let a pod go that is here for queued orders only; their requests are open again."""
-        robots, here = self._simulation.world.robots, self._station.robot
+        robots, here = self._world.robots, self._station.robot
         if here < 0 or robots[here].task is not task:
             return
         if not task.can_pick:
-            self._simulation.world.give_back(task)
+            self._world.give_back(task)
         self.go_on()
 
     def _pick(self, task: Task) -> None:
         """Start the next pick of a task."""
-        simulation, observers = self._simulation, self._simulation.observers
-        world, index = simulation.world, self._station.index
+        agenda, world, events = self._agenda, self._world, self._events
+        index = self._station.index
         pick = world.pick_unit(task)
         line, order = pick.line, pick.line.order
-        self._busy_until_us = simulation.now_us + self._transfer_us
-        self._robot_until_us = simulation.now_us + self._pick_us
-        simulation.agenda.at(self._busy_until_us, self._unit_transferred)
+        self._busy_until_us = agenda.now_us + self._transfer_us
+        self._robot_until_us = agenda.now_us + self._pick_us
+        agenda.at(self._busy_until_us, self._unit_transferred)
         if self._pick_us != self._transfer_us:
-            simulation.agenda.at(self._robot_until_us, self.go_on)
+            agenda.at(self._robot_until_us, self.go_on)
         now_s = world.now_s
-        observers.station_busy(index, now_s, self._busy_until_us / 1e6)
-        observers.unit_picked(now_s, order, line.sku, task.pod, task.robot, index, pick.late_bound)
+        events.station_busy(index, now_s, self._busy_until_us / 1e6)
+        events.unit_picked(now_s, order, line.sku, task.pod, task.robot, index, pick.late_bound)
         if line.picked_units == line.units:
-            observers.line_picked(now_s, order, line.sku, line.units)
+            events.line_picked(now_s, order, line.sku, line.units)
             if not order.unpicked_units:
                 self._finished.append(order)
-        simulation.phase.signal(Trigger.UNIT_PICKED, (task.pod, line.sku))
 
     def _unit_transferred(self) -> None:
         """Hand complete orders on; the station is free for the next unit."""
-        simulation = self._simulation
         if not self._finished:
             self.go_on()
             return
         for order in self._finished:
             if order.unpicked_units:
                 continue  # lines have joined this part of an order meanwhile
-            complete = simulation.world.complete_order(order)
+            complete = self._world.complete_order(order)
             if complete is not None:
-                simulation.observers.order_completed(complete)
-            simulation.phase.signal(Trigger.ORDER_COMPLETED, order)
+                self._events.order_completed(complete)
+            self._events.slot_freed(order)
         self._finished.clear()
         # an order that takes the free slot may still be added to the present task
-        simulation.after_decisions(self.go_on)
+        self._agenda.when_settled(self.go_on)
 
 
 class ReplenishmentService:
@@ -118,35 +131,37 @@ class ReplenishmentService:
 
     def __init__(
         self,
-        simulation: Simulation,
         station: ReplenishmentStation,
         layout: ReplenishmentStationLayout,
+        *,
+        agenda: Agenda,
+        world: World,
+        events: Events,
     ) -> None:
-        self._simulation = simulation
+        self._agenda, self._world, self._events = agenda, world, events
         self._station = station
         self._transfer_us = round(layout.bundle_transfer_s * 1e6)
         self._busy_until_us = 0
 
     def go_on(self) -> None:
         """Do what can be done now for the robot at the head."""
-        simulation, station = self._simulation, self._station
-        if station.robot < 0 or simulation.now_us < self._busy_until_us:
+        station = self._station
+        if station.robot < 0 or self._agenda.now_us < self._busy_until_us:
             return
-        task = simulation.world.robots[station.robot].task
+        task = self._world.robots[station.robot].task
         if task is None or task.kind is not TaskKind.REPLENISH:
             return
         if task.bundles:
             self._store(task)
         else:
-            simulation.end_task(station.robot)
+            end_task(self._world, self._events, station.robot)
 
     def _store(self, task: Task) -> None:
         """Start to put the next bundle of a task into its pod."""
-        simulation = self._simulation
-        bundle = simulation.world.store_bundle(task)
-        self._busy_until_us = simulation.now_us + self._transfer_us
-        simulation.agenda.at(self._busy_until_us, self.go_on)
-        now_s = simulation.world.now_s
-        simulation.observers.station_busy(self._station.index, now_s, self._busy_until_us / 1e6)
-        simulation.observers.bundle_stored(bundle, task.robot)
-        simulation.phase.signal(Trigger.BUNDLE_STORED, bundle)
+        agenda, events = self._agenda, self._events
+        bundle = self._world.store_bundle(task)
+        self._busy_until_us = agenda.now_us + self._transfer_us
+        agenda.at(self._busy_until_us, self.go_on)
+        now_s = self._world.now_s
+        events.station_busy(self._station.index, now_s, self._busy_until_us / 1e6)
+        events.bundle_stored(bundle, task.robot)

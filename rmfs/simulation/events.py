@@ -1,4 +1,4 @@
-"""Telling observers: each callback reaches only those that override it."""
+"""The one way in which a run tells what happens: every callback reaches those that override it."""
 
 from __future__ import annotations
 
@@ -10,36 +10,41 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 
-class Observers(Observer):
-    """Passes every callback on to several observers.
+class Events(Observer):
+    """Passes every callback on to several observers, in their order.
 
     For each callback that only one observer overrides, its method takes the place of the one here,
     and a callback nobody overrides does nothing: in a run there are tens of thousands of calls.
     """
 
-    def __init__(self, observers: Sequence[Observer]) -> None:
-        for name in _callbacks():
+    def __init__(self) -> None:
+        self._observers: list[Observer] = []
+
+    def tell(self, observers: Sequence[Observer]) -> None:
+        """Tell these, and nobody else, from now on."""
+        self._observers = list(observers)
+        for name in _CALLBACKS:
             listeners = [
                 getattr(observer, name)
                 for observer in observers
                 if getattr(type(observer), name) is not getattr(Observer, name)
             ]
+            vars(self).pop(name, None)
             if len(listeners) == 1:
                 setattr(self, name, listeners[0])
             elif listeners:
-                setattr(self, name, _ToAll(listeners))
+                setattr(self, name, _All(listeners))
 
 
-def _callbacks() -> list[str]:
-    return [name for name in vars(Observer) if not name.startswith("_")]
+class _All:
+    """Calls several methods with the same arguments."""
 
-
-class _ToAll:
-    """Calls several listeners; no closure, so that a copy calls the listeners' copies."""
-
-    def __init__(self, listeners: list[Callable[..., None]]) -> None:
-        self._listeners = listeners
+    def __init__(self, listeners: Sequence[Callable[..., None]]) -> None:
+        self._listeners = tuple(listeners)
 
     def __call__(self, *arguments: object, **named: object) -> None:
         for listener in self._listeners:
             listener(*arguments, **named)
+
+
+_CALLBACKS = [name for name in vars(Observer) if not name.startswith("_")]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _ORDER = list(Problem)
 
 
-class Panel:
+class ControllerSet:
     """The controllers installed at present, one per problem.
 
     Whoever needs a controller looks it up here each time, so that any of them can be exchanged

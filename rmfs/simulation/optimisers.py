@@ -3,51 +3,73 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from rmfs.control.asks import Call
 from rmfs.digest import digest
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rmfs.control.asks import Ask
     from rmfs.control.base import Controller
     from rmfs.control.problems import Problem
     from rmfs.simulation.pacing import Pacing
-    from rmfs.simulation.simulation import Simulation
+    from rmfs.simulation.agenda import Agenda
+    from rmfs.simulation.events import Events
     from rmfs.world import World
 
 
-class Thinking:
+class Answers(Protocol):
+    """Where answers go."""
+
+    def tell(self, call: Call) -> None:
+        """Tell the controller that asked, now."""
+        ...
+
+    def came(self, call: Call) -> None:
+        """Take note that an answer takes effect at this instant."""
+        ...
+
+
+class OptimiserGateway:
     """Passes questions to the pacing, and answers to the decision phase when they take effect.
 
     Parameters
     ----------
     pacing
         What thinking costs.
+    answers
+        Takes the answers as they take effect.
     """
 
-    def __init__(self, simulation: Simulation, pacing: Pacing) -> None:
-        self._simulation = simulation
+    def __init__(
+        self, pacing: Pacing, *, agenda: Agenda, world: World, events: Events, answers: Answers
+    ) -> None:
         self._pacing = pacing
+        self._agenda, self._world, self._events = agenda, world, events
+        self._answers = answers
         self._asked = 0
         self._asking = False
 
-    def begin(self) -> None:
-        """Get ready, before the clock counts."""
-        controllers = [
-            choice.controller for choice in self._simulation.controllers.choices.values()
-        ]
-        modules = [module for controller in controllers for module in controller.optimisers]
+    def begin(self, modules: Iterable[str]) -> None:
+        """Get ready, before the clock counts.
+
+        Parameters
+        ----------
+        modules
+            Modules with the functions that will solve the questions.
+        """
         self._pacing.begin(dict.fromkeys(modules), self._give)
 
     def ask(self, problem: Problem, controller: Controller[Any], ask: Ask[Any]) -> None:
         """Hand a question over; if the answer takes no time, it is applied before this returns."""
-        simulation = self._simulation
-        state = digest((simulation.now_us, str(problem), _tracks(simulation.world), ask.question))
-        call = Call(self._asked, problem, controller, ask, simulation.now_us, state)
+        now_us = self._agenda.now_us
+        state = digest((now_us, str(problem), _tracks(self._world), ask.question))
+        call = Call(self._asked, problem, controller, ask, now_us, state)
         self._asked += 1
         controller.in_flight += 1
-        simulation.observers.optimiser_asked(call)
+        self._events.optimiser_asked(call)
         self._asking = True
         try:
             self._pacing.ask(call)
@@ -64,12 +86,11 @@ class Thinking:
 
     def _give(self, call: Call, at_us: int) -> None:
         """Let an answer take effect at a time; one that comes at once, at once."""
-        simulation = self._simulation
-        if self._asking and at_us <= simulation.now_us:
+        if self._asking and at_us <= self._agenda.now_us:
             self._asking = False
-            simulation.phase.tell(call)
+            self._answers.tell(call)
         else:
-            simulation.agenda.at(at_us, partial(simulation.phase.answer_came, call))
+            self._agenda.at(at_us, partial(self._answers.came, call))
 
 
 def _tracks(world: World) -> tuple[object, ...]:

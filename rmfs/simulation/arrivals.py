@@ -1,45 +1,55 @@
-"""Supply: lets orders and bundles come into being, as the scenario says."""
+"""Arrivals: orders and bundles come into being, as the scenario says."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.control.problems import Trigger
 from rmfs.scenario import Site, bundle_intake, order_intake
 from rmfs.world.orders import Bundle, Order
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
 
     from rmfs.scenario import BundleArrival, OrderArrival, Scenario, StreamRecorder
-    from rmfs.simulation.simulation import Simulation
+    from rmfs.layout.model import Layout
+    from rmfs.simulation.agenda import Agenda
+    from rmfs.simulation.events import Events
+    from rmfs.world import World
     from rmfs.world.stations import PickStation, ReplenishmentStation
 
 
-class Supply:
+class ArrivalProcess:
     """Asks the scenario what comes, at the times it names and after every change.
 
     It is what the scenario sees of the run (`rmfs.scenario.State`).
 
     Parameters
     ----------
+    seed
+        Of the run.
+    wanted
+        Called when it wants to be asked.
     recorder
         Keeps all orders and bundles that come.
     """
 
     def __init__(
         self,
-        simulation: Simulation,
+        layout: Layout,
         scenario: Scenario,
         seed: int,
+        *,
+        agenda: Agenda,
+        world: World,
+        events: Events,
+        wanted: Callable[[], None],
         recorder: StreamRecorder | None = None,
     ) -> None:
-        self._simulation = simulation
-        self._world = world = simulation.world
-        layout = simulation.layout
+        self._agenda, self._world, self._events = agenda, world, events
+        self._wanted = wanted
         site = Site(
             pick_stations=len(layout.pick_stations),
             replenishment_stations=len(layout.replenishment_stations),
@@ -52,7 +62,7 @@ class Supply:
 
     def top_up(self) -> None:
         """Make the orders and bundles that come now."""
-        now_us = self._simulation.now_us
+        now_us = self._agenda.now_us
         for order in self._orders.due(now_us, self):
             self._add_order(order)
         for bundle in self._bundles.due(now_us, self):
@@ -70,8 +80,7 @@ class Supply:
             world.orders_created, world.now_s, arrival.due_s, arrival.skus, arrival.units
         )
         world.add_order(order)
-        self._simulation.observers.order_created(order)
-        self._simulation.phase.signal(Trigger.NEW_ORDER, order)
+        self._events.order_created(order)
 
     def _add_bundle(self, arrival: BundleArrival) -> None:
         world = self._world
@@ -79,14 +88,13 @@ class Supply:
             world.bundles_created, arrival.sku, arrival.units, arrival.space, world.now_s
         )
         world.add_bundle(bundle)
-        self._simulation.observers.bundle_created(bundle)
-        self._simulation.phase.signal(Trigger.NEW_BUNDLE, bundle)
+        self._events.bundle_created(bundle)
 
     def _wake_at(self, time_us: int) -> None:
         """Ask again at a time, unless that has been arranged already."""
         if time_us != self._woken_us:
             self._woken_us = time_us
-            self._simulation.agenda.at(time_us, self._simulation.phase.supply_wanted)
+            self._agenda.at(time_us, self._wanted)
 
     # --- what the scenario sees of the run ------------------------------------------------------
 

@@ -1,0 +1,78 @@
+"""Times at which controllers want to be asked."""
+
+from __future__ import annotations
+
+from functools import partial
+from math import inf
+from typing import TYPE_CHECKING
+
+from rmfs.control.base import Controller
+from rmfs.simulation.agenda import us_at
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from rmfs.control.problems import Problem
+    from rmfs.simulation.agenda import Agenda
+    from rmfs.simulation.controller_set import ControllerSet
+
+
+class Alarms:
+    """One entry of the agenda per controller that names a time itself.
+
+    Parameters
+    ----------
+    due
+        Told of a problem whose controller is to be asked because its time has come.
+
+    Attributes
+    ----------
+    overdue
+        Problems whose time has come and whose controller has not been asked since.
+    """
+
+    def __init__(
+        self, agenda: Agenda, controllers: ControllerSet, due: Callable[[Problem], None]
+    ) -> None:
+        self._agenda = agenda
+        self._controllers = controllers
+        self._due = due
+        self._set: dict[Problem, tuple[float, int]] = {}
+        self._punctual: frozenset[Problem] = frozenset()
+        self.overdue: set[Problem] = set()
+
+    def connect(self, problems: Iterable[Problem]) -> None:
+        """Take note of which of the controllers installed now name times."""
+        self._punctual = frozenset(
+            problem
+            for problem in problems
+            if type(self._controllers[problem]).next_event_s is not Controller.next_event_s
+        )
+
+    def asked(self, problem: Problem) -> None:
+        """Take note that a controller was asked: it may name another time now."""
+        if self.overdue:
+            self.overdue.discard(problem)
+        if problem in self._punctual:
+            self._enter(problem)
+
+    def cancel(self, problem: Problem) -> None:
+        """Forget the time of a controller."""
+        if problem in self._set:
+            self._agenda.cancel(self._set.pop(problem)[1])
+
+    def _enter(self, problem: Problem) -> None:
+        time_s = self._controllers[problem].next_event_s()
+        if problem in self._set and self._set[problem][0] == time_s:
+            return
+        self.cancel(problem)
+        if time_s < inf:
+            # never at the present instant, or a controller could keep it from ending
+            time_us = max(us_at(time_s), self._agenda.now_us + 1)
+            entry = self._agenda.at(time_us, partial(self._ring, problem))
+            self._set[problem] = (time_s, entry)
+
+    def _ring(self, problem: Problem) -> None:
+        del self._set[problem]
+        self.overdue.add(problem)
+        self._due(problem)

@@ -1,0 +1,103 @@
+"""What follows from a decision: the one place where decisions change the world."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.control import decisions as say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rmfs.simulation.dispatch import Dispatch
+    from rmfs.simulation.events import Events
+    from rmfs.world import World
+    from rmfs.world.orders import Bundle, Order
+
+
+class Applying:
+    """Applies decisions, each as soon as it is taken.
+
+    Parameters
+    ----------
+    others
+        What is done with decisions that concern the controllers themselves: `Prepare`, `Exchange`.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        events: Events,
+        dispatch: Dispatch,
+        others: dict[type, Callable[[Any], None]],
+    ) -> None:
+        self._world = world
+        self._events = events
+        self._how: dict[type, Callable[[Any], None]] = {
+            say.SwitchStation: self._switch_station,
+            say.PromiseBundle: self._promise_bundle,
+            say.ReleasePod: self.release_pod,
+            say.SendBundle: self._send_bundle,
+            say.AssignOrder: self._assign_order,
+            say.AssignLines: self._assign_lines,
+            say.QueueOrder: self._queue_order,
+            say.BringForPicks: dispatch.bring_for_picks,
+            say.BringForBundles: dispatch.bring_for_bundles,
+            say.Park: dispatch.park,
+            say.Reposition: dispatch.reposition,
+            say.Rest: dispatch.rest,
+            **others,
+        }
+
+    def __call__(self, decision: Any) -> None:
+        """Apply a decision.
+
+        Raises
+        ------
+        ValueError
+            If it breaks a rule of the world; nothing has changed then.
+        TypeError
+            If it is no decision.
+        """
+        how = self._how.get(type(decision))
+        if how is None:
+            raise TypeError(f"{decision!r} is no decision (see rmfs.control.decisions)")
+        how(decision)
+
+    def _switch_station(self, decision: say.SwitchStation) -> None:
+        station = self._world.stations[decision.station]
+        if station.active != decision.active:
+            station.active = decision.active
+            self._events.station_activated(self._world.now_s, station.index, decision.active)
+
+    def _promise_bundle(self, decision: say.PromiseBundle) -> None:
+        self._world.promise(decision.bundle, decision.pod)
+        self._events.bundle_promised(decision.bundle)
+
+    def release_pod(self, decision: say.ReleasePod) -> None:
+        """Release what was promised to a pod."""
+        assigned = self._world.release_bundles(decision.pod)
+        self._events.bundles_released(decision.pod)
+        for bundle in assigned:
+            self._events.bundle_assigned(bundle)
+
+    def _send_bundle(self, decision: say.SendBundle) -> None:
+        bundle: Bundle = decision.bundle
+        assigned = self._world.choose_station(bundle, decision.station)
+        self._events.bundle_sent(bundle)
+        if assigned:
+            self._events.bundle_assigned(bundle)
+
+    def _assign_order(self, decision: say.AssignOrder) -> None:
+        self._events.order_assigned(self._world.assign_order(*decision))
+
+    def _assign_lines(self, decision: say.AssignLines) -> None:
+        self._events.order_assigned(self._world.assign_lines(*decision))
+
+    def _queue_order(self, decision: say.QueueOrder) -> None:
+        order: Order = decision.order
+        if decision.station < 0:
+            self._world.unqueue_order(order)
+            return
+        self._world.queue_order(order, decision.station)
+        self._events.order_queued(order)

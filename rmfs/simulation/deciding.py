@@ -1,0 +1,160 @@
+"""Asking controllers: their decisions are applied one by one, counted, and timed."""
+
+from __future__ import annotations
+
+from time import perf_counter_ns
+from typing import TYPE_CHECKING, Any
+
+from rmfs.control.asks import Ask
+from rmfs.control.problems import Problem
+from rmfs.simulation.outside import Awaits
+from rmfs.simulation.statistics import DecisionStatistics
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from rmfs.control.asks import Call
+    from rmfs.control.base import Controller
+    from rmfs.control.choices import Choice
+    from rmfs.simulation.alarms import Alarms
+    from rmfs.simulation.controller_set import ControllerSet
+    from rmfs.simulation.events import Events
+    from rmfs.simulation.optimisers import OptimiserGateway
+    from rmfs.simulation.outside import Outside
+    from rmfs.simulation.rule_state import RuleState
+    from rmfs.world import World
+
+
+class Deciding:
+    """Asks controllers, has their decisions applied, and keeps count.
+
+    Attributes
+    ----------
+    statistics
+        Per problem whose controllers are asked.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        events: Events,
+        controllers: ControllerSet,
+        alarms: Alarms,
+        choices: Mapping[Problem, Choice],
+    ) -> None:
+        self._world = world
+        self._events = events
+        self._controllers = controllers
+        self._alarms = alarms
+        self._apply: Callable[[Any], None]
+        self._optimisers: OptimiserGateway
+        self._nested_ns = 0
+        self._unfinished = (0, 0, 0)
+        self.statistics: dict[Problem, DecisionStatistics] = {
+            problem: DecisionStatistics(str(problem), choice.name)
+            for problem, choice in choices.items()
+            if problem is not Problem.PP
+        }
+
+    def connect(self, apply: Callable[[Any], None], optimisers: OptimiserGateway) -> None:
+        """Say who applies decisions, and who takes questions for optimisers."""
+        self._apply, self._optimisers = apply, optimisers
+
+    def ask(self, problem: Problem, given: Iterable[Any], basis: Call | None = None) -> None:
+        """Apply decisions one by one, and measure the time it takes to come to them.
+
+        An answer may come while the controller that asked is still deciding: then this is nested.
+        """
+        apply, controller = self._apply, self._controllers[problem]
+        nested_ns, self._nested_ns = self._nested_ns, 0
+        former, controller.basis = controller.basis, basis
+        count = by_rule = spent_ns = 0
+        start = perf_counter_ns()
+        for decision in given:
+            spent_ns += perf_counter_ns() - start
+            if type(decision) is Ask:
+                self._optimisers.ask(problem, controller, decision)
+            else:
+                apply(decision)
+                count += 1
+                if controller.optimisers and controller.is_modelled(decision):
+                    self.decided(problem, controller)
+                by_rule += controller.basis is None
+            start = perf_counter_ns()
+        spent_ns += perf_counter_ns() - start - self._nested_ns
+        self._nested_ns, controller.basis = nested_ns, former
+        self.record(problem, spent_ns, count, by_rule)
+        self._alarms.asked(problem)
+
+    def ask_between_answers(
+        self,
+        problem: Problem,
+        decide: Callable[[], Iterable[Any]],
+        outside: Outside,
+        state: RuleState,
+    ) -> None:
+        """Ask a rule that asks the outside in the middle of its work.
+
+        Raises
+        ------
+        Awaits
+            If the outside has to answer first. The rule is as it was after its last decision, and
+            is to be asked again.
+        """
+        controller = self._controllers[problem]
+        count, by_rule, spent_ns = self._unfinished
+        nested_ns, self._nested_ns = self._nested_ns, 0
+        start = perf_counter_ns()
+        kept = state.keep(controller)
+        outside.taken = 0
+        given = iter(decide())
+        try:
+            for decision in given:
+                if type(decision) is Ask:
+                    self._optimisers.ask(problem, controller, decision)
+                else:
+                    self._apply(decision)
+                    count += 1
+                    if controller.optimisers and controller.is_modelled(decision):
+                        self.decided(problem, controller)
+                    by_rule += controller.basis is None
+                outside.begin_attempt()
+                kept = state.keep(controller)
+        except Awaits:
+            state.restore(controller, kept)
+            self._unfinished = count, by_rule, spent_ns
+            self._nested_ns = nested_ns
+            raise
+        spent_ns += perf_counter_ns() - start - self._nested_ns
+        self._nested_ns = nested_ns
+        self._unfinished = (0, 0, 0)
+        outside.begin_attempt()
+        self.record(problem, spent_ns, count, by_rule)
+        self._alarms.asked(problem)
+
+    def consulted(
+        self,
+        problem: Problem,
+        controller: Controller[Any],
+        wall_ns: int,
+        decided: bool,
+        modelled: bool = True,
+    ) -> None:
+        """Take note that TA asked another controller; `modelled`: a choice that models take."""
+        self._nested_ns += wall_ns
+        self.record(problem, wall_ns, int(decided), int(decided and controller.basis is None))
+        if decided and controller.optimisers and (modelled or controller.basis is not None):
+            self.decided(problem, controller)
+
+    def decided(self, problem: Problem, controller: Controller[Any]) -> None:
+        """Count a decision of a controller that asks optimisers: by a solution or by its rule."""
+        if controller.basis is None:
+            self._events.rule_decided(problem.value, self._world.now_s)
+        else:
+            controller.basis.count()
+
+    def record(self, problem: Problem, wall_ns: int, count: int, by_rule: int) -> None:
+        """Take note of a call; decisions by a solution are told with the question."""
+        self.statistics[problem].record(wall_ns, count)
+        now_s, wall_s = self._world.now_s, wall_ns / 1e9
+        self._events.decision(problem.value, now_s, wall_s, by_rule)

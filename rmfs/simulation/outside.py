@@ -1,0 +1,118 @@
+"""Decisions that somebody outside takes: what is asked, and how a run waits for the answer.
+
+A run that waits holds no frame of a controller: all it needs to go on is data, so that it can be
+copied and stored while it waits. A problem that the phase itself asks about is a *turn*: one
+decision after the other, until the outside declines. A question that a rule for TA asks in the
+middle of its own work ends that work (`Awaits`); when the answer is there, the rule is set back to
+where it was before, asked again, and given the answers of this attempt in their order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from rmfs.control.problems import Problem
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is to be decided.
+
+    Attributes
+    ----------
+    kind
+        `turn`: the next decision of a problem that the phase asks about. TA's questions: `pick
+        pod`, `replenishment pod` and `next station` (PPS), `place` (PSA), `move` (repositioning).
+    robot
+        Whom a question of TA is about, or -1.
+    stations
+        The station of `pick pod` and `replenishment pod`; those to choose from of `next station`.
+    """
+
+    problem: Problem
+    kind: str
+    robot: int = -1
+    stations: tuple[int, ...] = ()
+
+
+class Awaits(BaseException):  # noqa: N818 - not an error: a rule must not catch it
+    """A question for the outside came up in the middle of a controller's work."""
+
+    def __init__(self, question: Question) -> None:
+        super().__init__(question)
+        self.question = question
+
+
+@dataclass
+class Outside:
+    """Which problems are decided outside, and what is pending.
+
+    Attributes
+    ----------
+    problems
+        Decided outside.
+    pending
+        The question that waits for an answer.
+    given
+        Answers to the questions of the present attempt of TA's rule, with the questions.
+    taken
+        How many of them the attempt has used.
+    decided
+        Decisions so far in the present turn.
+    """
+
+    problems: frozenset[Problem] = frozenset()
+    pending: Question | None = None
+    given: list[tuple[Question, Any]] = field(default_factory=list)
+    taken: int = 0
+    decided: int = 0
+    advisor: Iterator[Any] | None = None
+    advised: Any = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out a rule at work as an adviser: its frames cannot be copied."""
+        return self.__dict__ | {"advisor": None, "advised": None}
+
+    @property
+    def is_new(self) -> bool:
+        """Whether the next question of TA's rule has not been asked in this attempt before."""
+        return self.taken == len(self.given)
+
+    def begin_attempt(self) -> None:
+        """A rule for TA begins, or goes on after a decision of its own was applied."""
+        if self.given:
+            self.given.clear()
+        self.taken = 0
+
+    def answer_to(self, question: Question, otherwise: Callable[[], Any]) -> Any:
+        """Return the answer to a question of TA's rule.
+
+        Parameters
+        ----------
+        otherwise
+            Asks the controller inside; its answer is kept as well, so that it is not asked twice.
+
+        Raises
+        ------
+        Awaits
+            If the outside has to answer first.
+        """
+        if self.taken < len(self.given):
+            asked, answer = self.given[self.taken]
+            if asked != question:
+                raise RuntimeError(
+                    f"TA asked {asked} at first and {question} when it was asked again: a rule "
+                    "must ask the same in the same state"
+                )
+            self.taken += 1
+            return answer
+        if question.problem in self.problems:
+            raise Awaits(question)
+        answer = otherwise()
+        self.given.append((question, answer))
+        self.taken += 1
+        return answer

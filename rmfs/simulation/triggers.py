@@ -1,0 +1,99 @@
+"""Which events of a run are triggers for controllers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.control.problems import Trigger
+from rmfs.observer import Observer
+
+if TYPE_CHECKING:
+    from rmfs.simulation.steps import Due
+    from rmfs.world.orders import Bundle, Order
+
+
+class Triggers(Observer):
+    """Makes triggers of events; each comes with the subject that is described at the trigger.
+
+    Parameters
+    ----------
+    due
+        Told of each trigger and its subject, and of places that were left.
+    """
+
+    def __init__(self, due: Due) -> None:
+        self._signal = due.signal
+        self._place_left = due.place_left
+
+    def order_created(self, order: Order) -> None:
+        """Order arrivals may be assigned."""
+        self._signal(Trigger.NEW_ORDER, order)
+
+    def order_assigned(self, order: Order) -> None:
+        """There may be work for robots."""
+        self._signal(Trigger.ORDER_ASSIGNED, order)
+
+    def order_queued(self, order: Order) -> None:
+        """Pods may be fetched ahead."""
+        self._signal(Trigger.ORDER_QUEUED, order)
+
+    def unit_picked(
+        self,
+        time_s: float,
+        order: Order,
+        sku: int,
+        pod: int,
+        robot: int,
+        station: int,
+        late_bound: bool,
+    ) -> None:
+        """There is room on a pod."""
+        self._signal(Trigger.UNIT_PICKED, (pod, sku))
+
+    def slot_freed(self, order: Order) -> None:
+        """A station can take another order."""
+        self._signal(Trigger.ORDER_COMPLETED, order)
+
+    def bundle_created(self, bundle: Bundle) -> None:
+        """A bundle wants a pod and a station."""
+        self._signal(Trigger.NEW_BUNDLE, bundle)
+
+    def bundle_promised(self, bundle: Bundle) -> None:
+        """A pod was chosen."""
+        self._signal(Trigger.BUNDLE_PROMISED, bundle)
+
+    def bundles_released(self, pod: int) -> None:
+        """The choice of a pod may be acted on."""
+        self._signal(Trigger.BUNDLE_RELEASED, pod)
+
+    def bundle_sent(self, bundle: Bundle) -> None:
+        """A station was chosen."""
+        self._signal(Trigger.BUNDLE_SENT, bundle)
+
+    def bundle_assigned(self, bundle: Bundle) -> None:
+        """There may be work for robots."""
+        self._signal(Trigger.BUNDLE_ASSIGNED, bundle)
+
+    def bundle_stored(self, bundle: Bundle, robot: int) -> None:
+        """There are more units in stock."""
+        self._signal(Trigger.BUNDLE_STORED, bundle)
+
+    def station_activated(self, time_s: float, station: int, active: bool) -> None:
+        """A station takes new work, or no longer."""
+        self._signal(Trigger.STATION_SWITCHED, station)
+
+    def robot_free(self, robot: int) -> None:
+        """A robot needs a task."""
+        self._signal(Trigger.ROBOT_FREE, robot)
+
+    def place_left(self, robot: int) -> None:
+        """A robot may wait for an empty place."""
+        self._place_left()
+
+    def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
+        """A pod is on its way."""
+        self._signal(Trigger.POD_LIFTED, pod)
+
+    def visit_started(self, time_s: float, station: int, pod: int, robot: int) -> None:
+        """A pod is at a station."""
+        self._signal(Trigger.POD_AT_STATION, station)
