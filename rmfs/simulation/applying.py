@@ -11,25 +11,16 @@ if TYPE_CHECKING:
 
     from rmfs.simulation.dispatch import Dispatch
     from rmfs.simulation.events import Events
+    from rmfs.simulation.phase import DecisionPhase
     from rmfs.world import World
     from rmfs.world.orders import Bundle, Order
 
 
 class Applying:
-    """Applies decisions, each as soon as it is taken.
-
-    Parameters
-    ----------
-    others
-        What is done with decisions that concern the controllers themselves: `Prepare`, `Exchange`.
-    """
+    """Applies decisions, each as soon as it is taken."""
 
     def __init__(
-        self,
-        world: World,
-        events: Events,
-        dispatch: Dispatch,
-        others: dict[type, Callable[[Any], None]],
+        self, world: World, events: Events, dispatch: Dispatch, phase: DecisionPhase
     ) -> None:
         self._world = world
         self._events = events
@@ -46,7 +37,8 @@ class Applying:
             say.Park: dispatch.park,
             say.Reposition: dispatch.reposition,
             say.Rest: dispatch.rest,
-            **others,
+            say.Prepare: phase.prepare,
+            say.Exchange: phase.exchange_controller,
         }
 
     def __call__(self, decision: Any) -> None:

@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from rmfs.world import World
     from rmfs.world.robots import Robot
 
-ASKED_BY_TA = frozenset({Problem.PPS, Problem.PSA, Problem.REPOSITIONING})
-"""Problems that are decided when TA asks."""
-
 
 class PhaseConsult:
     """Passes TA's questions on to the controllers installed now, and measures them."""

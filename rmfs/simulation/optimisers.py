@@ -52,6 +52,11 @@ class OptimiserGateway:
         self._asked = 0
         self._asking = False
 
+    @property
+    def waits(self) -> bool:
+        """Whether the pacing may have to wait for a solver at work: then `limit_us` binds."""
+        return self._pacing.waits
+
     def begin(self, modules: Iterable[str]) -> None:
         """Get ready, before the clock counts.
 

@@ -12,10 +12,50 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+from rmfs.control.problems import Problem
+from rmfs.errors import InputError
 
-    from rmfs.control.problems import Problem
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from rmfs.control.choices import Choice
+
+ASKED_BY_TA = frozenset({Problem.PPS, Problem.PSA, Problem.REPOSITIONING})
+"""Problems that are decided when TA asks."""
+
+
+def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) -> frozenset[Problem]:
+    """Return the problems of these names, if they can be decided outside.
+
+    Raises
+    ------
+    InputError
+        If there is no such problem, or it cannot be decided outside with these controllers.
+    """
+    valid = [str(problem) for problem in Problem if problem is not Problem.PP]
+    for name in names:
+        if name not in valid:
+            raise InputError(
+                f"outside {name}: no problem that can be decided outside; valid: "
+                f"{', '.join(valid)} (a path planner is written as docs/write-a-planner.md says)"
+            )
+    problems = frozenset(Problem(name) for name in names)
+    for problem in sorted(problems):
+        choice = choices[problem]
+        if choice.controller.is_dummy:
+            taker = next(c for c in choices.values() if problem in c.controller.decides)
+            raise InputError(
+                f"outside {problem}: {taker.problem} {taker.name} decides {problem} as well; "
+                f"choose another rule for {taker.problem}, or decide that outside"
+            )
+    task_rule = choices[Problem.TA]
+    if problems & ASKED_BY_TA and task_rule.controller.optimisers:
+        raise InputError(
+            f"outside {', '.join(sorted(problems & ASKED_BY_TA))}: TA {task_rule.name} asks these "
+            "questions while it carries out the answer of an optimiser, and cannot be interrupted; "
+            "choose a rule for TA, or decide TA outside"
+        )
+    return problems
 
 
 @dataclass(frozen=True)
@@ -81,6 +121,12 @@ class Outside:
     def is_new(self) -> bool:
         """Whether the next question of TA's rule has not been asked in this attempt before."""
         return self.taken == len(self.given)
+
+    def drop_taken(self) -> None:
+        """What was asked about tasks prepared ahead is not asked again by TA's rule."""
+        if self.taken:
+            del self.given[: self.taken]
+            self.taken = 0
 
     def begin_attempt(self) -> None:
         """A rule for TA begins, or goes on after a decision of its own was applied."""

@@ -40,3 +40,14 @@ def past_orders(scenario: Scenario, skus: SkuSet, seed: int) -> list[OrderDraft]
         stock = np.full(len(skus), _PLENTY)
         drafts = [source.draw(ordinal, stock) for ordinal in range(PAST_ORDERS)]
     return [draft for draft in drafts if draft is not None]
+
+
+class PastOrders:
+    """Draws the orders from before a run when they are wanted."""
+
+    def __init__(self, scenario: Scenario, skus: SkuSet, seed: int) -> None:
+        self._scenario, self._skus, self._seed = scenario, skus, seed
+
+    def __call__(self) -> list[OrderDraft]:
+        """Draw them; see `past_orders`."""
+        return past_orders(self._scenario, self._skus, self._seed)

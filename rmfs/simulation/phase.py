@@ -8,8 +8,8 @@ from rmfs.control import decisions as say
 from rmfs.control.asks import Outcome
 from rmfs.control.problems import Problem
 from rmfs.simulation import steps
-from rmfs.simulation.consult import ASKED_BY_TA, OutsideConsult, PhaseConsult
-from rmfs.simulation.outside import Awaits, Outside, Question
+from rmfs.simulation.consult import OutsideConsult, PhaseConsult
+from rmfs.simulation.outside import ASKED_BY_TA, Awaits, Outside, Question
 from rmfs.simulation.rule_state import RuleState
 
 if TYPE_CHECKING:
@@ -111,6 +111,10 @@ class DecisionPhase:
             self._alarms.overdue.add(problem)
             self._due.want(problem)
 
+    def exchange_controller(self, decision: say.Exchange) -> None:
+        """Install the controller that MM chose."""
+        self.exchange(decision.choice)
+
     # --- the steps --------------------------------------------------------------------------------
 
     def settle(self) -> bool:
@@ -148,6 +152,7 @@ class DecisionPhase:
         """Start tasks prepared ahead, then ask TA, with whom repositioning is asked as well."""
         world, outside = self._world, self.outside
         self._start_prepared()
+        outside.drop_taken()
         rule = self._controllers[Problem.TA]
         orders_too = Problem.POA in rule.decides
         overdue = Problem.TA in self._alarms.overdue
@@ -166,7 +171,12 @@ class DecisionPhase:
         self._alarms.asked(Problem.REPOSITIONING)
 
     def _start_prepared(self) -> None:
-        for robot in list(self._world.asking.values()):
+        world = self._world
+        robots = list(world.asking.values())
+        if self.outside.problems:
+            # one at rest has prepared tasks if somebody had to be asked about the first
+            robots += world.resting.values()
+        for robot in robots:
             if robot.prepared:
                 self._dispatch.start_prepared(robot, self._consult)
 

@@ -15,6 +15,7 @@ from rmfs.simulation.tasks import end_task
 from rmfs.world.tasks import TaskKind
 
 if TYPE_CHECKING:
+    from rmfs.layout.model import Layout
     from rmfs.layout.model import PickStation as PickStationLayout
     from rmfs.layout.model import ReplenishmentStation as ReplenishmentStationLayout
     from rmfs.simulation.agenda import Agenda
@@ -165,3 +166,16 @@ class ReplenishmentService:
         now_s = self._world.now_s
         events.station_busy(self._station.index, now_s, self._busy_until_us / 1e6)
         events.bundle_stored(bundle, task.robot)
+
+
+def services_of(layout: Layout, *, agenda: Agenda, world: World, events: Events) -> list[Service]:
+    """Make the service of every station, in the common numbering."""
+    picks = zip(world.pick_stations, layout.pick_stations, strict=True)
+    stores = zip(world.replenishment_stations, layout.replenishment_stations, strict=True)
+    return [
+        *(PickService(s, given, agenda=agenda, world=world, events=events) for s, given in picks),
+        *(
+            ReplenishmentService(s, given, agenda=agenda, world=world, events=events)
+            for s, given in stores
+        ),
+    ]

@@ -1,32 +1,41 @@
-"""The simulation: world, traffic, controllers and agenda of one run, and its loop."""
+"""The simulation: world, fleet, controllers and agenda of one run, and its loop."""
 
 from __future__ import annotations
 
-from math import ceil
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
-from rmfs.control.problems import Trigger
+from rmfs.control.problems import Problem, Trigger
 from rmfs.control.travel import Travel
 from rmfs.control.view import View
+from rmfs.errors import InputError
 from rmfs.observer import Observed
 from rmfs.scenario import initial_stock, sku_set
-from rmfs.simulation.agenda import Agenda
+from rmfs.simulation import forking
+from rmfs.simulation.agenda import LAST, NEVER_US, Agenda, us_at
+from rmfs.simulation.alarms import Alarms
+from rmfs.simulation.applying import Applying
+from rmfs.simulation.arrivals import ArrivalProcess
+from rmfs.simulation.controller_set import ControllerSet
+from rmfs.simulation.deciding import Deciding
+from rmfs.simulation.decision import Decision
 from rmfs.simulation.dispatch import Dispatch
 from rmfs.simulation.disturbances import DisturbanceSource
+from rmfs.simulation.events import Events
 from rmfs.simulation.late_binding import LateBinding
-from rmfs.simulation.observers import Observers
+from rmfs.simulation.optimisers import OptimiserGateway
+from rmfs.simulation.outside import Outside, problems_outside
 from rmfs.simulation.pacing import InstantPacing, pacing_of
-from rmfs.simulation.panel import Panel
-from rmfs.simulation.past import past_orders
+from rmfs.simulation.past import PastOrders
 from rmfs.simulation.phase import DecisionPhase
-from rmfs.simulation.service import PickService, ReplenishmentService
-from rmfs.simulation.supply import Supply
-from rmfs.simulation.thinking import Thinking
+from rmfs.simulation.service import services_of
+from rmfs.simulation.steps import Due
+from rmfs.simulation.triggers import Triggers
 from rmfs.traffic import EventKind, Traffic
 from rmfs.world import World
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from rmfs.control.choices import Choice
     from rmfs.control.settings import ControllerSettings
@@ -35,13 +44,14 @@ if TYPE_CHECKING:
     from rmfs.scenario import Scenario, StreamRecorder
     from rmfs.simulation.pacing import Paced
 
+    Limit = Callable[[int], int]
+    """Told the present time, says up to which time (us) may be simulated; waits as it likes."""
+
 SAMPLE_S = 60.0
 """Time between two samples."""
 
 STALL_S = 3600.0
 """So long nothing may move while robots wait for a way before a run is given up."""
-
-_LAST = 9  # priority of what only looks: after all that happens at the same time
 
 
 class StalledError(RuntimeError):
@@ -49,10 +59,10 @@ class StalledError(RuntimeError):
 
 
 class Simulation:
-    """One run, from its first event to its last.
+    """One run, which goes on as far as it is told.
 
     Events happen at their exact times; all that happens at one instant is handled before the
-    controllers are asked.
+    controllers are asked. How often a run stops on its way changes nothing.
 
     Parameters
     ----------
@@ -62,6 +72,9 @@ class Simulation:
         Seed of all random streams, 0 or greater.
     observers
         Told of everything that happens.
+    outside
+        Decision problems that `step` hands out, such as `["poa", "pps"]`. The controllers of these
+        problems stay installed: they say when they would be asked, and give advice.
     pacing
         What the thinking of optimisers costs in simulated time.
     traffic
@@ -71,14 +84,19 @@ class Simulation:
 
     Attributes
     ----------
-    now_us
-        Present time in microseconds; `world.now_s` is the same in seconds.
-    brakes
-        Functions of the present time that say up to which time may be simulated now, and wait as
-        long as they like: for who watches a run. How often a run stops on its way changes nothing.
-        Replaced as a whole, also by other threads while the run goes on.
+    world, view
+        The warehouse as it is, and as controllers see it.
+    agenda
+        The present time, and what is to come.
+    end_s
+        When the run ends.
     interventions
         Controllers exchanged by hand, and when (s).
+
+    Raises
+    ------
+    InputError
+        If a problem cannot be decided outside.
     """
 
     def __init__(
@@ -89,6 +107,7 @@ class Simulation:
         *,
         seed: int = 0,
         observers: Sequence[Observer] = (),
+        outside: Iterable[str] = (),
         pacing: Paced | None = None,
         traffic: Traffic | None = None,
         streams: StreamRecorder | None = None,
@@ -99,49 +118,84 @@ class Simulation:
         self.seed = seed
         self.warmup_s = scenario.warmup_s
         self.end_s = scenario.warmup_s + scenario.duration_s
-        self.now_us = 0
-        self.agenda = Agenda()
-        self.observers = Observers(observers)
-        self.brakes: tuple[Callable[[int], int], ...] = ()
         self.interventions: list[tuple[float, Choice]] = []
-        self.traffic = traffic if traffic is not None else Traffic(layout)
-        self.world = _stocked_world(layout, scenario, seed)
-        travel = Travel(layout, self.traffic)
-        self.view = View(
-            self.world,
-            travel,
-            self.end_s,
-            lambda: past_orders(scenario, self.world.skus, seed),
-            scenario.time_of_day_s,
+        self.traffic = fleet = traffic if traffic is not None else Traffic(layout)
+        self.agenda = agenda = Agenda()
+        self.world = world = _stocked_world(layout, scenario, seed)
+        self.events = events = Events()
+        past = PastOrders(scenario, world.skus, seed)
+        travel = Travel(layout, fleet)
+        self.view = View(world, travel, self.end_s, past, scenario.time_of_day_s)
+        self.controller_set = installed = ControllerSet(controllers, self.view, seed)
+        services = services_of(layout, agenda=agenda, world=world, events=events)
+        self.dispatch = Dispatch(layout, world, fleet, events, installed, services)
+        late_binding = LateBinding(world, travel, installed)
+        due = Due(world, installed)
+        alarms = Alarms(agenda, installed, due.want)
+        self.deciding = Deciding(world, events, installed, alarms, controllers.choices)
+        self.phase = DecisionPhase(
+            controllers.choices,
+            Outside(problems_outside(outside, controllers.choices)),
+            agenda=agenda,
+            world=world,
+            events=events,
+            controllers=installed,
+            due=due,
+            alarms=alarms,
+            deciding=self.deciding,
+            dispatch=self.dispatch,
+            late_binding=late_binding,
         )
-        self.panel = Panel(controllers, self.view, seed)
-        self.dispatch = Dispatch(self)
-        self.phase = DecisionPhase(self, controllers)
-        self.late_binding = LateBinding(self.world, travel, self.panel)
-        self.supply = Supply(self, scenario, seed, streams)
-        self.services: list[PickService | ReplenishmentService] = [
-            *(
-                PickService(self, station, given)
-                for station, given in zip(
-                    self.world.pick_stations, layout.pick_stations, strict=True
-                )
-            ),
-            *(
-                ReplenishmentService(self, station, given)
-                for station, given in zip(
-                    self.world.replenishment_stations, layout.replenishment_stations, strict=True
-                )
-            ),
-        ]
-        self.disturbances = DisturbanceSource(self, scenario.disturbances, seed)
-        self.thinking = Thinking(self, pacing_of(pacing or InstantPacing(), seed))
-        self._end_us = self.us_at(self.end_s)
+        self.applying = Applying(world, events, self.dispatch, self.phase)
+        self.arrivals = ArrivalProcess(
+            layout,
+            scenario,
+            seed,
+            agenda=agenda,
+            world=world,
+            events=events,
+            wanted=due.want_arrivals,
+            recorder=streams,
+        )
+        self.optimisers = OptimiserGateway(
+            pacing_of(pacing or InstantPacing(), seed),
+            agenda=agenda,
+            world=world,
+            events=events,
+            answers=self.phase,
+        )
+        self.deciding.connect(self.applying, self.optimisers)
+        self.phase.connect(self.applying, self.arrivals)
+        self.disturbances = DisturbanceSource(
+            layout, scenario.disturbances, seed, agenda=agenda, fleet=fleet
+        )
+        events.tell([late_binding, *observers, Triggers(due)])
+        self._due = due
+        self._end_us = us_at(self.end_s)
         self._moved_us = 0
-        self._afterwards: list[Callable[[], None]] = []
-        self._handlers = self._traffic_handlers()
+        self._begun = self._ended = False
+        self._unsettled = self._quiet = False
+        self._handlers = _traffic_handlers(self.dispatch)
+
+    @property
+    def now_us(self) -> int:
+        """Present time in microseconds; `world.now_s` is the same in seconds."""
+        return self.agenda.now_us
+
+    @property
+    def now_s(self) -> float:
+        """Present simulated time."""
+        return self.world.now_s
+
+    @property
+    def ended(self) -> bool:
+        """Whether the run has come to its end."""
+        return self._ended
+
+    # --- going on ---------------------------------------------------------------------------------
 
     def run(self, progress: Callable[[float, float], None] | None = None) -> None:
-        """Simulate from time zero to the end.
+        """Simulate to the end.
 
         Parameters
         ----------
@@ -150,6 +204,8 @@ class Simulation:
 
         Raises
         ------
+        RuntimeError
+            If a decision is to be taken outside: `step` hands it out.
         StalledError
             If nothing can move any more (only possible in a layout that is not well-formed).
         OptimiserError
@@ -157,101 +213,165 @@ class Simulation:
         ReplayError
             If the run that is replayed was another one.
         """
-        try:
-            self.thinking.begin()
-            self._begin(progress)
-            self._loop()
-        finally:
-            self.thinking.end()
-        self.observers.run_ended(self.end_s)
+        self.drive(progress)
 
-    def _loop(self) -> None:
-        agenda, phase, end_us = self.agenda, self.phase, self._end_us
-        advance = self.traffic.advance
-        while True:
-            # an answer that comes while this waits goes into the agenda
-            limit_us = self.thinking.limit_us(self.now_us)
-            for brake in self.brakes:
-                limit_us = min(limit_us, brake(self.now_us))
-            until_us = min(agenda.next_us, end_us, limit_us)
-            events = advance(until_us)
-            if events:
-                self._set_now(events[0][0])
-                self._moved_us = self.now_us
-                for _, kind, robot, value in events:
-                    handler = self._handlers[kind]
-                    if handler is not None:
-                        handler(robot, value)
-            else:
-                self._set_now(until_us)
-            agenda.run_due(self.now_us)
-            phase.settle()
-            while self._afterwards:
-                self._do_afterwards()
-                phase.settle()
-            if self.now_us >= end_us and not events and agenda.next_us > end_us:
-                break
+    def drive(
+        self,
+        progress: Callable[[float, float], None] | None = None,
+        limit: Limit | None = None,
+    ) -> None:
+        """Simulate to the end, as `run` does, but never past a limit that may move.
+
+        Parameters
+        ----------
+        limit
+            Asked before every instant: for who watches a run.
+        """
+        try:
+            for percent in range(101 if progress is not None else 0):
+                until_us = self._end_us * percent // 100
+                self._refuse_pending(self._go_on(until_us, limit))
+                assert progress is not None
+                progress(self.world.now_s, self.end_s)
+            self._refuse_pending(self._go_on(self._end_us, limit))
+        finally:
+            self.optimisers.end()
+
+    def run_until(self, time_s: float) -> Decision | None:
+        """Simulate up to a time, all that happens at that time included.
+
+        Returns
+        -------
+        The decision to be taken outside that comes first, if there is one before that time.
+        """
+        return self._go_on(min(us_at(time_s), self._end_us))
+
+    def step(self) -> Decision | None:
+        """Simulate up to the next decision that is taken outside.
+
+        Returns
+        -------
+        The decision, which is to be answered before the next step; until then it is this one that
+        is handed out. None if the run has come to its end.
+        """
+        return self._go_on(self._end_us)
+
+    def _go_on(self, until_us: int, limit: Limit | None = None) -> Decision | None:
+        if not self._begun:
+            self._begin()
+        agenda, end_us = self.agenda, until_us
+        waits = self.optimisers.limit_us if self.optimisers.waits else None
+        while not self._ended:
+            if not self._unsettled:
+                allowed_us = end_us
+                for one in (waits, limit):
+                    # an answer that comes while this waits goes into the agenda
+                    if one is not None:
+                        allowed_us = min(allowed_us, one(agenda.now_us))
+                self._move(min(agenda.next_us, allowed_us))
+            if not self._settle():
+                return self.decision
+            if agenda.now_us >= end_us and self._quiet and agenda.next_us > end_us:
+                if end_us >= self._end_us:
+                    self._end()
+                return None
+        return None
+
+    def _move(self, until_us: int) -> None:
+        """Let the next instant happen, up to a time."""
+        events = self.traffic.advance(until_us)
+        if events:
+            self._set_now(events[0][0])
+            self._moved_us = self.agenda.now_us
+            for _, kind, robot, value in events:
+                handler = self._handlers[kind]
+                if handler is not None:
+                    handler(robot, value)
+        else:
+            self._set_now(until_us)
+        self._quiet = not events
+        self.agenda.run_due()
+        self._unsettled = True
+
+    def _settle(self) -> bool:
+        """Let all be decided that this instant calls for; false if the outside has to."""
+        while self.phase.settle():
+            if not self.agenda.run_settled():
+                self._unsettled = False
+                return True
+        return False
+
+    def _refuse_pending(self, decision: Decision | None) -> None:
+        if decision is not None:
+            raise RuntimeError(
+                f"{decision.problem} is decided outside: step() hands its decisions out, "
+                "run() cannot take them"
+            )
+
+    def _set_now(self, now_us: int) -> None:
+        self.agenda.now_us = now_us
+        self.world.now_s = now_us / 1e6
+
+    # --- decisions ------------------------------------------------------------------------------
+
+    @property
+    def decision(self) -> Decision | None:
+        """The decision that waits to be taken outside, if there is one."""
+        question = self.phase.outside.pending
+        return None if question is None else Decision(question, self)
 
     def exchange(self, choice: Choice) -> None:
         """Exchange a controller by hand at this instant; the run remembers it."""
         self.interventions.append((self.world.now_s, choice))
         self.phase.exchange(choice)
 
-    def after_decisions(self, callback: Callable[[], None]) -> None:
-        """Call back at this instant, as soon as the controllers have decided."""
-        self._afterwards.append(callback)
+    # --- copies -----------------------------------------------------------------------------------
 
-    def _do_afterwards(self) -> None:
-        callbacks, self._afterwards = self._afterwards, []
-        for callback in callbacks:
-            callback()
+    def fork(self) -> Simulation:
+        """Copy the simulation as it is, a decision that waits included.
 
-    def end_task(self, robot: int) -> None:
-        """End a robot's task: it needs a new one."""
-        self.world.end_task(self.world.robots[robot])
-        self.phase.signal(Trigger.ROBOT_FREE, robot)
+        The copy goes on as this one would, bit for bit, and neither changes the other. Layout,
+        scenario and tables of travel times, which never change, are shared.
 
-    @staticmethod
-    def us_at(time_s: float) -> int:
-        """Return the first microsecond that is not before a time."""
-        time_us = ceil(time_s * 1e6)
-        return time_us if time_us / 1e6 >= time_s else time_us + 1
+        Raises
+        ------
+        InputError
+            If the pacing is `wall`: a solver at work cannot be copied.
+        """
+        return forking.fork(self)
 
-    def _set_now(self, now_us: int) -> None:
-        self.now_us = now_us
-        self.world.now_s = now_us / 1e6
+    def __getstate__(self) -> dict[str, Any]:
+        """Return everything, unless a solver is at work elsewhere."""
+        if self.optimisers.waits:
+            raise InputError("a run with pacing wall cannot be copied: a solver may be at work")
+        return vars(self).copy()
 
-    def _traffic_handlers(self) -> list[Callable[[int, int], None] | None]:
-        """Handler per kind of event; the others matter only to traffic itself."""
-        handlers: list[Callable[[int, int], None] | None] = [None] * len(EventKind)
-        handlers[EventKind.DEPARTED] = self.dispatch.departed
-        handlers[EventKind.ARRIVED] = self.dispatch.departed
-        handlers[EventKind.LIFT_STARTED] = self.dispatch.lift_started
-        handlers[EventKind.AT_HEAD] = self.dispatch.at_head
-        handlers[EventKind.SET_DOWN] = self.dispatch.set_down
-        handlers[EventKind.IDLE] = self.dispatch.idle
-        return handlers
+    # --- what happens at fixed times --------------------------------------------------------------
 
-    # --- what happens at fixed times --------------------------------------------------------
-
-    def _begin(self, progress: Callable[[float, float], None] | None) -> None:
+    def _begin(self) -> None:
+        self._begun = True
+        choices = self.controllers.choices.values()
+        self.optimisers.begin(m for choice in choices for m in choice.controller.optimisers)
         observed = Observed(self.layout, self.scenario, self.world, self.traffic, self.disturbances)
-        self.observers.run_started(observed)
+        self.events.run_started(observed)
         self.disturbances.begin()
-        self.supply.top_up()
-        self.phase.signal(Trigger.START)
+        self.arrivals.top_up()
+        self._due.signal(Trigger.START)
         if self.warmup_s == 0:
             self._end_warmup()
         else:
-            self.agenda.at(self.us_at(self.warmup_s), self._end_warmup, _LAST)
-        if progress is not None:
-            self._report(progress, 0)
-        self.phase.settle()
+            self.agenda.at(us_at(self.warmup_s), self._end_warmup, LAST)
+        self._unsettled = True
+
+    def _end(self) -> None:
+        self._ended = True
+        self.optimisers.end()
+        self.events.run_ended(self.end_s)
 
     def _end_warmup(self) -> None:
-        self.observers.warmup_ended(self.world.now_s)
+        self.events.warmup_ended(self.world.now_s)
         self.traffic.reset_statistics()
-        for statistics in self.phase.statistics.values():
+        for statistics in self.deciding.statistics.values():
             statistics.reset()
         self._sample_again(1)
 
@@ -259,7 +379,7 @@ class Simulation:
         """Take the next sample, counted from the end of the warm-up, if it is within the run."""
         time_s = self.warmup_s + number * SAMPLE_S
         if time_s <= self.end_s:
-            self.agenda.at(self.us_at(time_s), lambda: self._sample(number), _LAST)
+            self.agenda.at(us_at(time_s), partial(self._sample, number), LAST)
 
     def _sample(self, number: int) -> None:
         if self.now_us - self._moved_us > STALL_S * 1e6 and self.traffic.blocked():
@@ -267,14 +387,20 @@ class Simulation:
                 f"nothing has moved since {self._moved_us / 1e6:.0f} s\n"
                 f"{self.traffic.state_report()}"
             )
-        self.observers.sampled(self.world.now_s)
+        self.events.sampled(self.world.now_s)
         self._sample_again(number + 1)
 
-    def _report(self, progress: Callable[[float, float], None], percent: int) -> None:
-        progress(self.world.now_s, self.end_s)
-        if percent < 100:
-            time_us = self._end_us * (percent + 1) // 100
-            self.agenda.at(time_us, lambda: self._report(progress, percent + 1), _LAST)
+
+def _traffic_handlers(dispatch: Dispatch) -> list[Callable[[int, int], None] | None]:
+    """Handler per kind of event; the others matter only to traffic itself."""
+    handlers: list[Callable[[int, int], None] | None] = [None] * len(EventKind)
+    handlers[EventKind.DEPARTED] = dispatch.departed
+    handlers[EventKind.ARRIVED] = dispatch.departed
+    handlers[EventKind.LIFT_STARTED] = dispatch.lift_started
+    handlers[EventKind.AT_HEAD] = dispatch.at_head
+    handlers[EventKind.SET_DOWN] = dispatch.set_down
+    handlers[EventKind.IDLE] = dispatch.idle
+    return handlers
 
 
 def _stocked_world(layout: Layout, scenario: Scenario, seed: int) -> World:

@@ -31,7 +31,15 @@ if TYPE_CHECKING:
 
 
 class Pacing(Protocol):
-    """Has questions solved, and says when each answer takes effect."""
+    """Has questions solved, and says when each answer takes effect.
+
+    Attributes
+    ----------
+    waits
+        Whether a solver may be at work while the simulation goes on.
+    """
+
+    waits: bool
 
     def begin(self, modules: Iterable[str], give: Return) -> None:
         """Get ready, before the clock counts.

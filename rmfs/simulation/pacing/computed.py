@@ -46,6 +46,8 @@ back ends none."""
 class Computed(ABC):
     """Solves in this process; nothing runs beside the simulation."""
 
+    waits = False
+
     def begin(self, modules: Iterable[str], give: Callable[[Call, int], None]) -> None:
         """Remember whom to give answers to."""
         self._give = give

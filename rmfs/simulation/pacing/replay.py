@@ -27,6 +27,8 @@ class Replay:
         The rows of its table `answers`.
     """
 
+    waits = False
+
     def __init__(self, settings: ReplayPacing, answers: list[dict[str, Any]]) -> None:
         self._run = settings.run
         self._rows = answers

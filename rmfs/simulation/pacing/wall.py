@@ -56,6 +56,8 @@ class Wall:
         Speed, number of workers and patience.
     """
 
+    waits = True
+
     def __init__(self, settings: WallPacing) -> None:
         self._settings = settings
         self._us_per_s = settings.speed * 1e6

@@ -1,0 +1,187 @@
+"""A decision that somebody outside takes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.control.asks import Ask
+from rmfs.control.candidates import candidates_for
+from rmfs.control.legality import why_not
+from rmfs.control.problems import Problem
+from rmfs.simulation.outside import Awaits
+
+if TYPE_CHECKING:
+    from rmfs.control.candidates import Candidates
+    from rmfs.control.view import View
+    from rmfs.simulation.outside import Question
+    from rmfs.simulation.simulation import Simulation
+    from rmfs.world.robots import Robot
+
+
+class ImpossibleError(ValueError):
+    """An answer that is not possible; the message says why, and the question stands."""
+
+
+class Decision:
+    """One question to the outside, and how to answer it.
+
+    POA, ROA, RPS, SA, MM and TA are asked in turns: `answer` with one decision after the other, of
+    the kinds in `rmfs.control.decisions`, each applied at once, until `decline` ends the turn. PPS,
+    PSA and repositioning are asked by TA, one thing at a time: a pod, a station, a place, a `Move`.
+
+    Attributes
+    ----------
+    problem
+        The decision problem.
+    kind
+        `turn`, or what TA asks: `pick pod`, `replenishment pod`, `next station`, `place`, `move`.
+    view
+        The world as controllers see it: to be read, never to be changed.
+    """
+
+    def __init__(self, question: Question, simulation: Simulation) -> None:
+        self._question = question
+        self._simulation = simulation
+        self._candidates: Candidates | None = None
+        self.problem = question.problem
+        self.kind = question.kind
+        self.view: View = simulation.view
+
+    def __repr__(self) -> str:
+        about = "" if self.robot is None else f", robot {self.robot.index}"
+        return f"<{self.problem} {self.kind} at {self.now_s:.3f} s{about}>"
+
+    @property
+    def now_s(self) -> float:
+        """Simulated time of the decision."""
+        return self.view.now_s
+
+    @property
+    def robot(self) -> Robot | None:
+        """The robot that TA asks about."""
+        number = self._question.robot
+        return None if number < 0 else self.view.robots[number]
+
+    @property
+    def stations(self) -> tuple[int, ...]:
+        """The station a pod is wanted for; or those to choose the next one from."""
+        return self._question.stations
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it still waits for an answer."""
+        return self._simulation.phase.outside.pending is self._question
+
+    @property
+    def candidates(self) -> Candidates:
+        """Among what a rule would choose, with the numbers rules look at."""
+        if self._candidates is None:
+            self._candidates = candidates_for(self)
+        return self._candidates
+
+    def answer(self, given: Any) -> None:
+        """Answer.
+
+        Parameters
+        ----------
+        given
+            In a turn a decision of `rmfs.control.decisions`. Otherwise the number of a pod, a
+            station or a waypoint, or a `Move`. A row of `candidates` serves everywhere:
+            `decision.answer(decision.candidates[3])`.
+
+        Raises
+        ------
+        ImpossibleError
+            If that is not possible; says why. Nothing has changed, and the question stands.
+        """
+        self._refuse_answered()
+        reason = why_not(given, self)
+        if reason:
+            raise ImpossibleError(f"{self!r}: {given!r} is impossible: {reason}")
+        self._candidates = None
+        if self.kind == "turn":
+            self._take(given)
+        else:
+            self._reply(given, decided=True)
+
+    def decline(self) -> None:
+        """Decide nothing more now: end a turn, or tell TA that there is nothing to choose.
+
+        Raises
+        ------
+        ImpossibleError
+            If TA asks for the next of several stations: one of them has to be chosen.
+        """
+        self._refuse_answered()
+        if self.kind == "next station":
+            raise ImpossibleError(f"{self!r}: one of the stations {self.stations} must be chosen")
+        if self.kind == "turn":
+            self._end_turn()
+        else:
+            self._reply(None if self.kind == "move" else -1, decided=False)
+
+    def advice(self) -> Any:
+        """Return what the rule that is installed for the problem would say; None to decline.
+
+        A rule takes for granted that what it says is done: follow its advice throughout, or not
+        at all. It draws its random numbers as if it had decided.
+
+        Raises
+        ------
+        NotImplementedError
+            If it would ask an optimiser.
+        """
+        self._refuse_answered()
+        outside = self._simulation.phase.outside
+        if outside.advised is None:
+            outside.advised = (self._advised(),)
+        return outside.advised[0]
+
+    # --- inside ---------------------------------------------------------------------------------
+
+    def _advised(self) -> Any:
+        simulation = self._simulation
+        outside, rule = simulation.phase.outside, simulation.controller_set[self.problem]
+        if self.kind != "turn":
+            found = simulation.phase.inside(self._question)
+            return None if isinstance(found, int) and found < 0 else found
+        if outside.advisor is None:
+            outside.advisor = iter(simulation.phase.decide(self.problem))
+        decision = next(outside.advisor, None)
+        if isinstance(decision, Ask):
+            raise NotImplementedError(f"{self.problem} {type(rule).__name__} asks an optimiser")
+        return decision
+
+    def _take(self, given: Any) -> None:
+        """Apply a decision of a turn; the turn goes on."""
+        simulation = self._simulation
+        outside = simulation.phase.outside
+        if outside.advised is not None and outside.advised[0] is not given:
+            outside.advisor = None
+        outside.advised = None
+        try:
+            simulation.applying(given)
+        except Awaits as awaits:
+            outside.pending = awaits.question
+        outside.decided += 1
+
+    def _end_turn(self) -> None:
+        phase = self._simulation.phase
+        outside = phase.outside
+        outside.pending = outside.advisor = outside.advised = None
+        decided, outside.decided = outside.decided, 0
+        self._simulation.deciding.record(self.problem, 0, decided, decided)
+        phase.end_turn(self.problem)
+
+    def _reply(self, given: Any, *, decided: bool) -> None:
+        """Let TA go on with the answer."""
+        simulation = self._simulation
+        outside = simulation.phase.outside
+        outside.given.append((self._question, given))
+        outside.pending = outside.advised = None
+        rule = simulation.controller_set[self.problem]
+        simulation.deciding.consulted(self.problem, rule, 0, decided)
+
+    def _refuse_answered(self) -> None:
+        if not self.is_open:
+            raise ImpossibleError(f"{self!r} has been answered")
