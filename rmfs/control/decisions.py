@@ -104,6 +104,25 @@ class Rest(NamedTuple):
 TaskDecision = BringForPicks | BringForBundles | Park | Reposition | Rest
 
 
+class WorkFor(NamedTuple):
+    """TA, from outside: let a robot work for a station; PPS chooses the pod, if it carries none."""
+
+    robot: Robot
+    station: int
+
+
+class Store(NamedTuple):
+    """TA, from outside: let a robot store the pod it carries; PSA chooses the place."""
+
+    robot: Robot
+
+
+class MovePod(NamedTuple):
+    """TA, from outside: let an empty robot move a pod; repositioning chooses pod and place."""
+
+    robot: Robot
+
+
 class Prepare(NamedTuple):
     """TA: what a robot is to do after its present task, one after another; the last word counts.
 
@@ -137,6 +156,9 @@ Decision = (
     | PromiseBundle
     | ReleasePod
     | TaskDecision
+    | WorkFor
+    | Store
+    | MovePod
     | Prepare
     | SwitchStation
     | Exchange

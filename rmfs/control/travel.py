@@ -38,6 +38,24 @@ class TravelTimes(Protocol):
         ...
 
 
+class TravelTables:
+    """What has been worked out of times and distances: it holds for every copy of a run.
+
+    Attributes
+    ----------
+    paths
+        Lengths of the shortest ways.
+    distances, to, away
+        By waypoint: distances of a metric, times to it, and times from it, shape (N,) each.
+    """
+
+    def __init__(self, layout: Layout) -> None:
+        self.paths = PathLengths(layout)
+        self.distances: dict[tuple[int, Metric, bool], NDArray[np.float64]] = {}
+        self.to: dict[tuple[int, bool], NDArray[np.float64]] = {}
+        self.away: dict[tuple[int, bool], NDArray[np.float64]] = {}
+
+
 class Travel:
     """Travel times and distances between waypoints.
 
@@ -57,17 +75,16 @@ class Travel:
         Tier of each waypoint, shape (N,).
     tiers
         Number of tiers.
+    tables
+        What has been worked out so far.
     """
 
     def __init__(self, layout: Layout, times: TravelTimes) -> None:
         self._times = times
-        self._paths = PathLengths(layout)
-        self._distances: dict[tuple[int, Metric, bool], NDArray[np.float64]] = {}
+        self.tables = TravelTables(layout)
         self._x, self._y = layout.x_m, layout.y_m
         self.tier = layout.tier
         self.tiers = len(layout.tiers)
-        self._to: dict[tuple[int, bool], NDArray[np.float64]] = {}
-        self._from: dict[tuple[int, bool], NDArray[np.float64]] = {}
         kinds = layout.robot_kinds
         self._seconds_per_metre = 1 / min(kind.top_speed_m_s for kind in kinds)
         self._quarter_turn_s = max(kind.full_turn_s for kind in kinds) / 4
@@ -76,16 +93,18 @@ class Travel:
 
     def to(self, waypoint: int, *, loaded: bool) -> NDArray[np.float64]:
         """Unhindered times from all waypoints to this one, shape (N,), s."""
-        times = self._to.get((waypoint, loaded))
+        times = self.tables.to.get((waypoint, loaded))
         if times is None:
-            times = self._to[waypoint, loaded] = self._times.travel_times_to(waypoint, loaded)
+            times = self.tables.to[waypoint, loaded] = self._times.travel_times_to(waypoint, loaded)
         return times
 
     def away(self, waypoint: int, *, loaded: bool) -> NDArray[np.float64]:
         """Unhindered times from this waypoint to all, shape (N,), s."""
-        times = self._from.get((waypoint, loaded))
+        times = self.tables.away.get((waypoint, loaded))
         if times is None:
-            times = self._from[waypoint, loaded] = self._times.travel_times_from(waypoint, loaded)
+            times = self.tables.away[waypoint, loaded] = self._times.travel_times_from(
+                waypoint, loaded
+            )
         return times
 
     def distances_to(
@@ -95,7 +114,7 @@ class Travel:
         if metric == "time":
             return self.to(waypoint, loaded=loaded)
         if metric == "path":
-            return self._kept(waypoint, metric, loaded, self._paths.to)
+            return self._kept(waypoint, metric, loaded, self.tables.paths.to)
         return self._kept(waypoint, metric, True, self._straight(metric))
 
     def distances_from(
@@ -106,7 +125,7 @@ class Travel:
             return self.away(waypoint, loaded=loaded)
         if metric == "path":
             # keys of ways in the other direction are negative
-            return self._kept(~waypoint, metric, loaded, self._paths.away)
+            return self._kept(~waypoint, metric, loaded, self.tables.paths.away)
         return self._kept(waypoint, metric, True, self._straight(metric))
 
     def between(
@@ -137,11 +156,11 @@ class Travel:
         loaded: bool,
         work_out: Callable[[int, bool], NDArray[np.float64]],
     ) -> NDArray[np.float64]:
-        distances = self._distances.get((key, metric, loaded))
+        distances = self.tables.distances.get((key, metric, loaded))
         if distances is None:
             distances = work_out(max(key, ~key), loaded)
             distances.flags.writeable = False
-            self._distances[key, metric, loaded] = distances
+            self.tables.distances[key, metric, loaded] = distances
         return distances
 
     def _straight(self, metric: Metric) -> Callable[[int, bool], NDArray[np.float64]]:

@@ -55,19 +55,37 @@ class Cycle:
         return (time_us + self._gone_us) % self.length_us
 
     def times_us(self, phases_us: Sequence[int]) -> Iterator[tuple[int, int]]:
-        """Yield when given times of the cycle come, and which it is, without end.
+        """Return when given times of the cycle come, and which it is, without end.
 
         Parameters
         ----------
         phases_us
             Times of the cycle in order, each less than its length, one at least.
         """
-        start_us = -self._gone_us
+        return _Times(list(phases_us), self.length_us, -self._gone_us)
+
+
+class _Times:
+    """Times of a cycle that come again and again: an iterator that can be copied."""
+
+    def __init__(self, phases_us: list[int], length_us: int, start_us: int) -> None:
+        self._phases_us = phases_us
+        self._length_us = length_us
+        self._start_us = start_us
+        self._which = 0
+
+    def __iter__(self) -> Iterator[tuple[int, int]]:
+        return self
+
+    def __next__(self) -> tuple[int, int]:
         while True:
-            for which, phase_us in enumerate(phases_us):
-                if start_us + phase_us >= 0:
-                    yield start_us + phase_us, which
-            start_us += self.length_us
+            if self._which == len(self._phases_us):
+                self._which = 0
+                self._start_us += self._length_us
+            which = self._which
+            self._which += 1
+            if self._start_us + self._phases_us[which] >= 0:
+                return self._start_us + self._phases_us[which], which
 
 
 class Openings:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
@@ -38,7 +39,7 @@ class _Range(Block, ABC):
     def sampler(self) -> Callable[[float], int]:
         """Return the function that turns a number in [0, 1) into a count."""
         pick, least = Categorical(self.probabilities()).pick, self.min
-        return lambda uniform: least + pick(uniform)
+        return partial(_count, least, pick)
 
 
 class UniformCount(_Range):
@@ -86,3 +87,7 @@ class NormalCount(_Range):
 
 
 Counts = Annotated[UniformCount | NormalCount, pydantic.Field(discriminator="distribution")]
+
+
+def _count(least: int, pick: Callable[[float], int], uniform: float) -> int:
+    return least + pick(uniform)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from functools import partial
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import pydantic
 from pydantic import Field
@@ -29,7 +30,7 @@ class PriorityDue(Block):
     def sampler(self) -> Callable[[float], float]:
         """Return the function that turns a number in [0, 1) into an offset in seconds."""
         share, urgent, ordinary = self.urgent_share, self.urgent_offset_s, self.ordinary_offset_s
-        return lambda uniform: urgent if uniform < share else ordinary
+        return partial(_by_priority, share, urgent, ordinary)
 
 
 class NormalDue(Block):
@@ -54,10 +55,18 @@ class NormalDue(Block):
     def sampler(self) -> Callable[[float], float]:
         """Return the function that turns a number in [0, 1) into an offset in seconds."""
         quantile = self._offsets().quantile
-        return lambda uniform: round(float(quantile(uniform)), 3)
+        return partial(_in_ms, quantile)
 
     def _offsets(self) -> Normal:
         return Normal(mean=self.mean_s, sd=self.sd_s, min=self.min_s, max=self.max_s)
 
 
 Due = Annotated[PriorityDue | NormalDue, Field(discriminator="mode")]
+
+
+def _by_priority(share: float, urgent_s: float, ordinary_s: float, uniform: float) -> float:
+    return urgent_s if uniform < share else ordinary_s
+
+
+def _in_ms(quantile: Callable[[float], Any], uniform: float) -> float:
+    return round(float(quantile(uniform)), 3)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copyreg
 import pickle
 from typing import Any
 
@@ -14,17 +15,19 @@ class ArrayPickler(pickle.Pickler):
 
     def __init__(self, stream: Any) -> None:
         super().__init__(stream, protocol=5)
+        # looked up by type: nothing is called for the many small objects of a run
+        self.dispatch_table: dict[type, Any] = dict(copyreg.dispatch_table)
+        self.dispatch_table[np.ndarray] = _reduced
 
-    def reducer_override(self, thing: Any) -> Any:
-        """Reduce a view to its base, and where in it the view begins."""
-        if type(thing) is not np.ndarray or type(thing.base) is not np.ndarray:
-            return NotImplemented
-        base: NDArray[Any] = thing.base
-        if not base.flags.c_contiguous or base.dtype.hasobject:
-            return NotImplemented
-        begin = thing.__array_interface__["data"][0] - base.__array_interface__["data"][0]
-        shape = (thing.dtype.str, thing.shape, thing.strides, begin, thing.flags.writeable)
-        return _view, (base, *shape)
+
+def _reduced(array: NDArray[Any]) -> Any:
+    """Reduce a view to its base, and where in it the view begins."""
+    base = array.base
+    if type(base) is not np.ndarray or not base.flags.c_contiguous or base.dtype.hasobject:
+        return array.__reduce_ex__(5)
+    begin = array.__array_interface__["data"][0] - base.__array_interface__["data"][0]
+    shape = (array.dtype.str, array.shape, array.strides, begin, array.flags.writeable)
+    return _view, (base, *shape)
 
 
 def _view(

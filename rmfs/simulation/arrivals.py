@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from rmfs.scenario import BundleArrival, OrderArrival, Scenario, StreamRecorder
     from rmfs.layout.model import Layout
+    from rmfs.scenario import BundleArrival, OrderArrival, Scenario, StreamRecorder
     from rmfs.simulation.agenda import Agenda
     from rmfs.simulation.events import Events
     from rmfs.world import World
@@ -59,6 +59,10 @@ class ArrivalProcess:
         self._orders = order_intake(scenario, world.skus, site, seed, recorder)
         self._bundles = bundle_intake(scenario, world.skus, site, seed, recorder)
         self._woken_us = -1
+
+    def sources(self) -> list[object]:
+        """What draws orders and bundles by their number, and so is the same for every copy."""
+        return []
 
     def top_up(self) -> None:
         """Make the orders and bundles that come now."""

@@ -6,7 +6,7 @@ from time import perf_counter_ns
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control.problems import Problem
-from rmfs.simulation.outside import Question
+from rmfs.control.questions import Question
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

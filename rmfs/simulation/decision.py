@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any
 from rmfs.control.asks import Ask
 from rmfs.control.candidates import candidates_for
 from rmfs.control.legality import why_not
-from rmfs.control.problems import Problem
 from rmfs.simulation.outside import Awaits
 
 if TYPE_CHECKING:
     from rmfs.control.candidates import Candidates
+    from rmfs.control.questions import Question
     from rmfs.control.view import View
-    from rmfs.simulation.outside import Question
     from rmfs.simulation.simulation import Simulation
     from rmfs.world.robots import Robot
 
@@ -76,7 +75,9 @@ class Decision:
     def candidates(self) -> Candidates:
         """Among what a rule would choose, with the numbers rules look at."""
         if self._candidates is None:
-            self._candidates = candidates_for(self)
+            self._candidates = candidates_for(
+                self.view, self._question, self._simulation.phase.outside.refused
+            )
         return self._candidates
 
     def answer(self, given: Any) -> None:
@@ -95,7 +96,7 @@ class Decision:
             If that is not possible; says why. Nothing has changed, and the question stands.
         """
         self._refuse_answered()
-        reason = why_not(given, self)
+        reason = why_not(given, self._question, self.view)
         if reason:
             raise ImpossibleError(f"{self!r}: {given!r} is impossible: {reason}")
         self._candidates = None
@@ -143,10 +144,10 @@ class Decision:
         simulation = self._simulation
         outside, rule = simulation.phase.outside, simulation.controller_set[self.problem]
         if self.kind != "turn":
-            found = simulation.phase.inside(self._question)
+            found = simulation.phase.advice_to(self._question)
             return None if isinstance(found, int) and found < 0 else found
         if outside.advisor is None:
-            outside.advisor = iter(simulation.phase.decide(self.problem))
+            outside.advisor = simulation.phase.advice(self.problem)
         decision = next(outside.advisor, None)
         if isinstance(decision, Ask):
             raise NotImplementedError(f"{self.problem} {type(rule).__name__} asks an optimiser")
@@ -160,10 +161,9 @@ class Decision:
             outside.advisor = None
         outside.advised = None
         try:
-            simulation.applying(given)
+            simulation.phase.take(given)
         except Awaits as awaits:
             outside.pending = awaits.question
-        outside.decided += 1
 
     def _end_turn(self) -> None:
         phase = self._simulation.phase

@@ -144,16 +144,12 @@ class Dispatch:
 
     def _leave_station(self, robot: Robot) -> None:
         station = self._world.stations[robot.station]
-        self._events.visit_ended(
-            self._world.now_s, station.index, robot.pod, robot.index
-        )
+        self._events.visit_ended(self._world.now_s, station.index, robot.pod, robot.index)
         station.robot = -1
         robot.station = -1
 
     def _tell(self, task: Task) -> None:
-        self._events.task_started(
-            self._world.now_s, task.robot, task.kind.value, task.station
-        )
+        self._events.task_started(self._world.now_s, task.robot, task.kind.value, task.station)
 
     # --- tasks prepared ahead -------------------------------------------------------------------
 

@@ -14,13 +14,13 @@ from rmfs.scenario.intake.rates import exponential_us
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rmfs.layout.model import Layout
     from rmfs.scenario.parameters.disturbances import (
         Breakdowns,
         Closures,
         Disturbances,
         SlowRobots,
     )
-    from rmfs.layout.model import Layout
     from rmfs.simulation.agenda import Agenda
     from rmfs.traffic import Traffic
 

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from typing import Protocol
 
 
 class Fleet(Protocol):
     """Drives robots (`rmfs.traffic.Traffic`)."""
 
-    def command(self, robot: int, program: Sequence[tuple[int, int]], /) -> None:
+    def command(self, robot: int, program: list[tuple[int, int]], /) -> None:
         """Give a robot its next steps, each a kind of step and what it refers to."""
         ...
 

@@ -8,57 +8,66 @@ from __future__ import annotations
 
 import io
 import pickle
+from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any
 
 from rmfs.simulation.arrays import ArrayPickler
-from rmfs.traffic import Traffic
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rmfs.simulation.simulation import Simulation
 
-_FLEET = "fleet"
+_SHARED: ContextVar[Sequence[Any]] = ContextVar("_SHARED")
+"""What the copy that is being made refers to instead of having it."""
 
 
 def fork(simulation: Simulation) -> Simulation:
     """Copy a simulation; see `Simulation.fork`."""
-    shared = {id(thing): thing for thing in _never_changing(simulation)}
-    stream = io.BytesIO()
-    _Forker(stream, simulation.traffic, shared).dump(simulation)
-    copied: Simulation = _Copier(stream, shared, simulation.traffic.fork()).load()
-    return copied
+    original, copied = _never_changing(simulation), _never_changing(simulation)
+    fleet = original.index(simulation.traffic)
+    copied[fleet] = simulation.traffic.fork()
+    twin: Simulation = _copied(simulation, original, copied)
+    return twin
 
 
 def _never_changing(simulation: Simulation) -> list[Any]:
-    """What all copies of a simulation may share."""
-    view = simulation.view
+    """What all copies of a simulation may share, and the fleet, which copies itself."""
     return [
+        simulation.traffic,
         simulation.layout,
         simulation.scenario,
         simulation.controllers,
         simulation.world.skus,
-        *view.travel.tables(),
+        simulation.view.travel.tables,
+        *simulation.arrivals.sources(),
     ]
 
 
-class _Forker(ArrayPickler):
-    def __init__(self, stream: io.BytesIO, fleet: Traffic, shared: dict[int, Any]) -> None:
+def _copied(thing: Any, original: Sequence[Any], copied: Sequence[Any]) -> Any:
+    """Copy something; what is in `original` becomes what is at the same place in `copied`."""
+    stream = io.BytesIO()
+    _Referring(stream, original).dump(thing)
+    token = _SHARED.set(copied)
+    try:
+        return pickle.loads(stream.getbuffer())
+    finally:
+        _SHARED.reset(token)
+
+
+class _Referring(ArrayPickler):
+    """Refers to some objects by their number; all objects of their types must be among them."""
+
+    def __init__(self, stream: io.BytesIO, shared: Sequence[Any]) -> None:
         super().__init__(stream)
-        self._fleet = fleet
-        self._shared = shared
+        self._number = {id(thing): number for number, thing in enumerate(shared)}
+        for thing in shared:
+            self.dispatch_table[type(thing)] = self._reduced
 
-    def persistent_id(self, thing: object) -> object:
-        number = id(thing)
-        if number in self._shared:
-            return number
-        return _FLEET if thing is self._fleet else None
+    def _reduced(self, thing: Any) -> Any:
+        number = self._number.get(id(thing))
+        return thing.__reduce_ex__(5) if number is None else (_shared, (number,))
 
 
-class _Copier(pickle.Unpickler):
-    def __init__(self, stream: io.BytesIO, shared: dict[int, Any], fleet: Traffic) -> None:
-        stream.seek(0)
-        super().__init__(stream)
-        self._shared = shared
-        self._fleet = fleet
-
-    def persistent_load(self, number: Any) -> object:
-        return self._fleet if number == _FLEET else self._shared[number]
+def _shared(number: int) -> Any:
+    return _SHARED.get()[number]

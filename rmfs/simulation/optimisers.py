@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Ask
     from rmfs.control.base import Controller
     from rmfs.control.problems import Problem
-    from rmfs.simulation.pacing import Pacing
     from rmfs.simulation.agenda import Agenda
     from rmfs.simulation.events import Events
+    from rmfs.simulation.pacing import Pacing
     from rmfs.world import World
 
 

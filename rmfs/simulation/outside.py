@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from rmfs.control.choices import Choice
+    from rmfs.control.questions import Question
 
 ASKED_BY_TA = frozenset({Problem.PPS, Problem.PSA, Problem.REPOSITIONING})
 """Problems that are decided when TA asks."""
@@ -58,28 +59,7 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
     return problems
 
 
-@dataclass(frozen=True)
-class Question:
-    """What is to be decided.
-
-    Attributes
-    ----------
-    kind
-        `turn`: the next decision of a problem that the phase asks about. TA's questions: `pick
-        pod`, `replenishment pod` and `next station` (PPS), `place` (PSA), `move` (repositioning).
-    robot
-        Whom a question of TA is about, or -1.
-    stations
-        The station of `pick pod` and `replenishment pod`; those to choose from of `next station`.
-    """
-
-    problem: Problem
-    kind: str
-    robot: int = -1
-    stations: tuple[int, ...] = ()
-
-
-class Awaits(BaseException):  # noqa: N818 - not an error: a rule must not catch it
+class Awaits(BaseException):
     """A question for the outside came up in the middle of a controller's work."""
 
     def __init__(self, question: Question) -> None:
@@ -103,6 +83,12 @@ class Outside:
         How many of them the attempt has used.
     decided
         Decisions so far in the present turn.
+    doing
+        A decision of TA that is applied when PPS, PSA or repositioning have been answered.
+    refused
+        Decisions of the present turn that came to nothing: no pod, or no place, was found.
+    advisor, advised
+        The rule at work as an adviser, and its last advice.
     """
 
     problems: frozenset[Problem] = frozenset()
@@ -110,6 +96,8 @@ class Outside:
     given: list[tuple[Question, Any]] = field(default_factory=list)
     taken: int = 0
     decided: int = 0
+    doing: Any = None
+    refused: list[Any] = field(default_factory=list)
     advisor: Iterator[Any] | None = None
     advised: Any = None
 

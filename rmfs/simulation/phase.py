@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rmfs.control import decisions as say
 from rmfs.control.asks import Outcome
 from rmfs.control.problems import Problem
-from rmfs.simulation import steps
+from rmfs.control.questions import Question
+from rmfs.simulation import errands, steps
 from rmfs.simulation.consult import OutsideConsult, PhaseConsult
-from rmfs.simulation.outside import ASKED_BY_TA, Awaits, Outside, Question
+from rmfs.simulation.outside import ASKED_BY_TA, Awaits, Outside
 from rmfs.simulation.rule_state import RuleState
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from rmfs.control.asks import Call
     from rmfs.control.choices import Choice
+    from rmfs.control.view import View
     from rmfs.simulation.agenda import Agenda
     from rmfs.simulation.alarms import Alarms
     from rmfs.simulation.applying import Applying
@@ -53,6 +55,7 @@ class DecisionPhase:
         *,
         agenda: Agenda,
         world: World,
+        view: View,
         events: Events,
         controllers: ControllerSet,
         due: Due,
@@ -63,6 +66,7 @@ class DecisionPhase:
     ) -> None:
         self._agenda, self._world, self._events = agenda, world, events
         self._controllers, self._due, self._alarms = controllers, due, alarms
+        self._view = view
         self._deciding, self._dispatch, self._late_binding = deciding, dispatch, late_binding
         self._answers: list[Call] = []
         self._interrupted = -1
@@ -151,6 +155,9 @@ class DecisionPhase:
     def _give_tasks(self) -> None:
         """Start tasks prepared ahead, then ask TA, with whom repositioning is asked as well."""
         world, outside = self._world, self.outside
+        if outside.doing is not None:
+            self.do_outside()
+            raise Awaits(Question(Problem.TA, "turn"))
         self._start_prepared()
         outside.drop_taken()
         rule = self._controllers[Problem.TA]
@@ -216,9 +223,66 @@ class DecisionPhase:
 
     # --- turns of the outside ---------------------------------------------------------------------
 
+    def take(self, decision: Any) -> None:
+        """Apply a decision of a turn; what TA leaves open is asked of PPS, PSA, repositioning.
+
+        Raises
+        ------
+        Awaits
+            If one of these is decided outside as well. The decision is applied when it is answered.
+        """
+        self.outside.doing = decision
+        self.outside.begin_attempt()
+        self.do_outside()
+
+    def do_outside(self) -> None:
+        """Apply the decision of the outside that has not been applied yet."""
+        outside, decision = self.outside, self.outside.doing
+        outside.taken = 0
+        match decision:
+            case say.WorkFor():
+                whole: Any = errands.work(decision, self._view, self._consult)
+            case say.Store():
+                whole = errands.store(decision, self._consult)
+            case say.MovePod():
+                whole = errands.move_pod(decision, self._view, self._consult)
+            case _:
+                whole = decision
+        if whole is None:
+            outside.refused.append(decision)
+        else:
+            self._applying(whole)
+            outside.decided += 1
+        outside.doing = None
+        outside.begin_attempt()
+
+    def advice(self, problem: Problem) -> Iterator[Any]:
+        """Ask the rule that is installed for the decisions of a turn."""
+        rule = self._controllers[problem]
+        inside = PhaseConsult(self._world, self._controllers, self._deciding)
+        decisions: Iterable[Any] = rule.decide(inside) if problem is Problem.TA else rule.decide()
+        return iter(decisions)
+
+    def advice_to(self, question: Question) -> Any:
+        """Ask the rule that is installed what TA asks."""
+        rule = self._controllers[question.problem]
+        robot = self._world.robots[question.robot]
+        match question.kind:
+            case "pick pod":
+                return rule.pick_pod(robot, self._world.pick_stations[question.stations[0]])
+            case "replenishment pod":
+                station = self._world.replenishment_station(question.stations[0])
+                return rule.replenishment_pod(robot, station)
+            case "next station":
+                return rule.next_station(robot, question.stations)
+            case "place":
+                return rule.place(robot)
+        return rule.move(robot)
+
     def end_turn(self, problem: Problem) -> None:
         """End a turn of the outside: whatever was due before its problem has been asked now."""
         self._interrupted = -1
+        self.outside.refused.clear()
         self._alarms.asked(problem)
         if problem is Problem.TA:
             self._tasks_given()

@@ -235,7 +235,7 @@ def simulate(
         wall_s=wall_s,
         world=simulation.world,
         traffic=traffic,
-        statistics=list(simulation.phase.statistics.values()),
+        statistics=list(simulation.deciding.statistics.values()),
         recorder=recorder,
         measures=measures,
         disturbances=simulation.disturbances,

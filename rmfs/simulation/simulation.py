@@ -5,14 +5,14 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from rmfs.control.problems import Problem, Trigger
+from rmfs.control.problems import Trigger
 from rmfs.control.travel import Travel
 from rmfs.control.view import View
 from rmfs.errors import InputError
 from rmfs.observer import Observed
 from rmfs.scenario import initial_stock, sku_set
 from rmfs.simulation import forking
-from rmfs.simulation.agenda import LAST, NEVER_US, Agenda, us_at
+from rmfs.simulation.agenda import LAST, Agenda, us_at
 from rmfs.simulation.alarms import Alarms
 from rmfs.simulation.applying import Applying
 from rmfs.simulation.arrivals import ArrivalProcess
@@ -138,6 +138,7 @@ class Simulation:
             Outside(problems_outside(outside, controllers.choices)),
             agenda=agenda,
             world=world,
+            view=self.view,
             events=events,
             controllers=installed,
             due=due,

@@ -17,6 +17,7 @@ from rmfs.control.choices import check_together, choose
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
 from rmfs.measure.events import EventLog
+from rmfs.simulation.agenda import NEVER_US
 from rmfs.view import scene
 from rmfs.view.container import pack
 from rmfs.view.forms import refuse_foreign
@@ -94,6 +95,7 @@ class LiveRun:
         self._visited = False
         self._simulation: Simulation | None = None
         self._ended = ""
+        self._braking = False
         self._answered_s = time.process_time()
 
     # --- the run's thread -----------------------------------------------------------------------
@@ -106,8 +108,11 @@ class LiveRun:
             self._simulation = simulation
             self._brake(on=True)
             self._meeting.notify_all()
-        simulation.run(progress)
+        simulation.drive(progress, self._limit_us)
         self.close("the run has ended")
+
+    def _limit_us(self, now_us: int) -> int:
+        return self.limit_us(now_us) if self._braking else NEVER_US
 
     def limit_us(self, now_us: int) -> int:
         """Latest time that may be simulated now; waits as long as a page wants."""
@@ -332,8 +337,7 @@ class LiveRun:
         """Be asked how far the run may go, or not any more: a free run has nothing to ask."""
         if self._simulation is None:
             return
-        others = tuple(brake for brake in self._simulation.brakes if brake != self.limit_us)
-        self._simulation.brakes = (*others, self.limit_us) if on else others
+        self._braking = on
 
     def _leave(self, page: str) -> None:
         if self._pages.pop(page, None) is not None and not self._pages:

@@ -65,7 +65,8 @@ class TestInARun:
         tracker = simulation.view.trackers.get(PairFrequency)
         before = sum(sum(tracker.orders_with(sku)) for sku in range(1000))
         orders = []
-        simulation.observers.order_created = orders.append
+        told = simulation.events.order_created
+        simulation.events.order_created = lambda order: (orders.append(order), told(order))
         simulation.run()
         pairs = sum(len(order.lines) * (len(order.lines) - 1) for order in orders)
         assert len(orders) >= 200

@@ -14,14 +14,14 @@ from rmfs.measure.dictionary import reproducible
 from rmfs.observer import Observer
 from rmfs.scenario import StreamRecorder, export_stream, load, sku_set, write_stream
 from rmfs.scenario.clock import nearest_us
-from rmfs.simulation import supply
+from rmfs.simulation import arrivals
 
 if TYPE_CHECKING:
     from rmfs.simulation.run import Run
     from rmfs.world.orders import Order
 
 pytestmark = pytest.mark.skipif(
-    not hasattr(supply, "order_intake"), reason="the simulation does not use intakes yet"
+    not hasattr(arrivals, "order_intake"), reason="the simulation does not use intakes yet"
 )
 
 SEED = 3

@@ -7,7 +7,6 @@ from typing import Any
 from doubles import FreeTraffic, quiet_scenario, rules, small_layout
 from ledger import Ledger
 
-from rmfs.control.problems import Trigger
 from rmfs.observer import Observer
 from rmfs.simulation.pacing import PacingSettings
 from rmfs.simulation.simulation import Simulation
@@ -85,8 +84,7 @@ class HandMade:
             index = self.world.orders_created
             order = Order.of(index, self.world.now_s, due_s, skus, tuple(units.values()))
             self.world.add_order(order)
-            self.simulation.observers.order_created(order)
-            self.simulation.phase.signal(Trigger.NEW_ORDER, order)
+            self.simulation.events.order_created(order)
 
         self.at(at_s, arrive)
 
@@ -97,7 +95,7 @@ class HandMade:
             space = float(units * self.world.skus.space_per_unit[sku])
             bundle = Bundle(self.world.bundles_created, sku, units, space, self.world.now_s)
             self.world.add_bundle(bundle)
-            self.simulation.phase.signal(Trigger.NEW_BUNDLE, bundle)
+            self.simulation.events.bundle_created(bundle)
 
         self.at(at_s, arrive)
 

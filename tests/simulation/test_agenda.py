@@ -19,10 +19,12 @@ def test_by_time_then_priority_then_order_of_entry(called) -> None:
     for name, time, priority in [("d", 2, 0), ("b", 1, 1), ("a", 1, 0), ("c", 1, 1)]:
         agenda.at(time, partial(called.append, name), priority)
     assert agenda.next_us == 1
-    agenda.run_due(1)
+    agenda.now_us = 1
+    agenda.run_due()
     assert called == ["a", "b", "c"]
     assert agenda.next_us == 2
-    agenda.run_due(5)
+    agenda.now_us = 5
+    agenda.run_due()
     assert called == ["a", "b", "c", "d"]
     assert agenda.next_us == NEVER_US
 
@@ -30,7 +32,8 @@ def test_by_time_then_priority_then_order_of_entry(called) -> None:
 def test_what_callbacks_enter_for_the_same_time_is_called_as_well(called) -> None:
     agenda = Agenda()
     agenda.at(1, lambda: agenda.at(1, partial(called.append, "second")))
-    agenda.run_due(1)
+    agenda.now_us = 1
+    agenda.run_due()
     assert called == ["second"]
 
 
@@ -43,6 +46,7 @@ def test_cancelled_entries_are_not_called_and_not_next(called) -> None:
     assert agenda.next_us == 3
     agenda.cancel(second)
     assert len(agenda) == 1
-    agenda.run_due(9)
+    agenda.now_us = 9
+    agenda.run_due()
     assert called == ["third"]
     assert len(agenda) == 0

@@ -73,7 +73,7 @@ def test_a_robot_on_its_way_to_rest_can_be_given_a_task() -> None:
     assert first[2] == [(Step.DRIVE, 3)]
     assert second[0] == 500_000
     assert second[2][0] == (Step.DRIVE, 0)
-    assert made.simulation.panel[Problem.TA] is not None
+    assert made.simulation.controller_set[Problem.TA] is not None
     assert made.world.orders_completed == 1
 
 

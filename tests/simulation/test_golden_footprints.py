@@ -1,7 +1,7 @@
 """What must not change by accident: footprints and motion of many runs, as hashes.
 
-`python tests/simulation/test_golden_footprints.py` writes them again; the change log then says which
-changed and why.
+`python tests/simulation/test_golden_footprints.py` writes them again; the change log then says
+which changed and why.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ def asked(pacing: str, overrides=(), orders: int = 2, **parameters):
     for _ in range(orders):
         made.order(1.0, s0=1)
     made.run()
-    return made.simulation.panel[Problem.POA], made
+    return made.simulation.controller_set[Problem.POA], made
 
 
 def test_instant_answers_are_applied_before_the_controller_goes_on() -> None:
@@ -92,7 +92,7 @@ def test_an_exchanged_controller_is_not_told() -> None:
     made = HandMade(pacing=pacing_settings("fixed=5"), poa={"name": "asking:Asking"}, scenario={})
     made.stock(0, s0=1)
     made.order(1.0, s0=1)
-    former = made.simulation.panel[Problem.POA]
+    former = made.simulation.controller_set[Problem.POA]
     choice = choose(Problem.POA, {"name": "first-come"}, "test")
     made.at(2.0, lambda: made.simulation.phase.exchange(choice))
     made.run()

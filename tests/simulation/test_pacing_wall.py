@@ -49,7 +49,7 @@ def walled(orders_at=(1.0,), speed: float = SPEED, patience_s: float = 60.0, **p
     made.stock(0, s0=len(orders_at))
     for at_s in orders_at:
         made.order(at_s, s0=1)
-    return made, made.simulation.panel[Problem.POA]
+    return made, made.simulation.controller_set[Problem.POA]
 
 
 def test_two_seconds_of_sleep_are_two_seconds_times_speed() -> None:

@@ -215,7 +215,7 @@ def test_every_controller_can_be_exchanged_twice_in_mid_run(name) -> None:
     last = {problem: rule for entry in EXCHANGES[name] for problem, rule in named(**entry).items()}
     for problem, rule in last.items():
         if problem != "pp" and name != "mm":
-            assert simulation.phase.statistics[Problem(problem)].name == rule["name"]
+            assert simulation.deciding.statistics[Problem(problem)].name == rule["name"]
 
 
 def test_pools_are_emptied_when_poa_queue_goes() -> None:

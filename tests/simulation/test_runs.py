@@ -69,7 +69,7 @@ class IdleWatch(Observer):
     checked = 0
 
     def sampled(self, time_s) -> None:
-        view, panel = self.simulation.view, self.simulation.panel
+        view, panel = self.simulation.view, self.simulation.controller_set
         ta, pps = panel["ta"], panel["pps"]
         for robot in view.resting.values():
             station = ta._station_of[robot.index]

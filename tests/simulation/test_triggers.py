@@ -178,4 +178,4 @@ def test_a_controller_with_triggers_can_be_exchanged(asked) -> None:
     diary = made.run()
     assert asked["rps"] == [300.0, 400.0]
     assert diary.of("replenish")[0][0] == 400.0
-    assert made.simulation.phase.statistics[Problem.RPS].name == new["name"]
+    assert made.simulation.deciding.statistics[Problem.RPS].name == new["name"]

@@ -145,7 +145,7 @@ def test_mm_at_the_start_and_when_it_wishes(asked) -> None:
     made = one_pick(mm={"name": f"{HERE}:Once"})
     names = []
     for at_s in (49.0, 51.0):
-        made.at(at_s, lambda: names.append(made.simulation.phase.statistics[Problem.PSA].name))
+        made.at(at_s, lambda: names.append(made.simulation.deciding.statistics[Problem.PSA].name))
     made.run()
     assert asked["mm"] == [0.0, 50.0]
     assert names == ["nearest", "random"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
@@ -46,7 +47,17 @@ def order_rank(
 ) -> Callable[[Order], tuple[float, int]]:
     """Return the key by which orders compete one by one; the smallest comes first."""
     if tie_breaker == "random":
-        return lambda order: (float(rng.random()), order.index)
-    if tie_breaker == "due-time":
-        return lambda order: (order.due_s, order.index)
-    return lambda order: (0.0, order.index)
+        return partial(_at_random, rng)
+    return _by_due_time if tie_breaker == "due-time" else _by_arrival
+
+
+def _at_random(rng: np.random.Generator, order: Order) -> tuple[float, int]:
+    return float(rng.random()), order.index
+
+
+def _by_due_time(order: Order) -> tuple[float, int]:
+    return order.due_s, order.index
+
+
+def _by_arrival(order: Order) -> tuple[float, int]:
+    return 0.0, order.index

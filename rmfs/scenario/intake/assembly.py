@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 from rmfs.scenario.clock import Openings, first_us
 from rmfs.scenario.intake.intake import Intake, Process
 from rmfs.scenario.intake.rates import rate_of
-from rmfs.scenario.intake.thinning import Candidate, poisson
+from rmfs.scenario.intake.thinning import Candidate, Poisson
 from rmfs.scenario.substreams import Substreams
 
 if TYPE_CHECKING:
@@ -63,9 +63,12 @@ class Assembly(ABC, Generic[T]):
         """Return the times of a Poisson process up to the end of the run."""
         rate = rate_of(profile, per_h, scale, self._gone_s, self._seed)
         until_us = first_us(self._scenario.warmup_s + self._scenario.duration_s)
-        return poisson(rate, Substreams(self._seed, stream), self._openings, until_us)
+        return Poisson(rate, Substreams(self._seed, stream), self._openings, until_us)
 
     def _at_times(self, times_us: Iterable[int]) -> Iterator[Candidate]:
-        """Yield candidates at the times of a file, or when the doors open next."""
-        opens_us = map(self._openings.open_from_us, times_us)
-        return (Candidate(*which) for which in enumerate(opens_us))
+        """Return candidates at the times of a file, or when the doors open next."""
+        return map(_candidate, enumerate(map(self._openings.open_from_us, times_us)))
+
+
+def _candidate(which: tuple[int, int]) -> Candidate:
+    return Candidate(*which)

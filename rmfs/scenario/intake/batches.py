@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
 from rmfs.scenario.clock import Cycle, nearest_us
@@ -31,7 +32,11 @@ class Batch(NamedTuple):
 
 def add(time_s: float, number: int) -> Batch:
     """Return a batch of a given number of things, whatever the state."""
-    return Batch(time_s, lambda _state, come: come < number)
+    return Batch(time_s, partial(_fewer_than, number))
+
+
+def _fewer_than(number: int, _state: State, come: int) -> bool:
+    return come < number
 
 
 class Batches(Generic[T]):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rmfs.random import Stream
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.intake.thinning import Candidate
     from rmfs.scenario.parameters import Scenario
     from rmfs.scenario.skus import SkuSet
-    from rmfs.scenario.streams import StreamRecorder
+    from rmfs.scenario.streams import BundleStream, StreamRecorder
 
 
 def bundle_intake(
@@ -59,8 +60,7 @@ def bundle_intake(
     bundles = _Bundles(scenario, skus, site, seed, scenario.replenishment.down)
     if recorder is None:
         return bundles.intake(None)
-    keep = recorder.bundles.add
-    return bundles.intake(lambda bundle: keep(bundle.time_us, bundle.sku, bundle.units))
+    return bundles.intake(partial(_record, recorder))
 
 
 class _Bundles(Assembly[BundleArrival]):
@@ -88,11 +88,7 @@ class _Bundles(Assembly[BundleArrival]):
     def _from_file(self, config: StreamReplenishment) -> Timed[BundleArrival]:
         stream = bundle_stream(config, self._skus, self._site.largest_pod)
         space_per_unit: list[float] = self._skus.space_per_unit.tolist()
-
-        def make(candidate: Candidate, _state: State) -> BundleArrival:
-            sku, units = int(stream.sku[candidate.ordinal]), int(stream.units[candidate.ordinal])
-            return BundleArrival(candidate.time_us, sku, units, units * space_per_unit[sku])
-
+        make = partial(_from_stream, stream, space_per_unit)
         return Timed(self._at_times(stream.time_us.tolist()), make)
 
     def _batches(self) -> Iterator[Process[BundleArrival]]:
@@ -108,7 +104,7 @@ class _Bundles(Assembly[BundleArrival]):
             batches,
             config.cycle_s,
             self._gone_s,
-            lambda ordinal, now_us, _state: BundleArrival(now_us, *source.draw(ordinal)),
+            partial(_in_batch, source),
         )
 
     def _source(self, path: tuple[int, ...]) -> BundleSource:
@@ -121,10 +117,31 @@ class _Bundles(Assembly[BundleArrival]):
 
 def _up_to(time_s: float, load: float) -> Batch:
     """Return a batch after which the load is so many space units at least."""
-    return Batch(time_s, lambda state, _come: state.load < load)
+    return Batch(time_s, partial(_less_load, load))
+
+
+def _less_load(load: float, state: State, _come: int) -> bool:
+    return state.load < load
 
 
 def _drawn(source: BundleSource) -> Callable[[Candidate, State], BundleArrival]:
-    return lambda candidate, _state: BundleArrival(
-        candidate.time_us, *source.draw(candidate.ordinal)
-    )
+    return partial(_of_candidate, source)
+
+
+def _of_candidate(source: BundleSource, candidate: Candidate, _state: State) -> BundleArrival:
+    return BundleArrival(candidate.time_us, *source.draw(candidate.ordinal))
+
+
+def _in_batch(source: BundleSource, ordinal: int, now_us: int, _state: State) -> BundleArrival:
+    return BundleArrival(now_us, *source.draw(ordinal))
+
+
+def _from_stream(
+    stream: BundleStream, space_per_unit: list[float], candidate: Candidate, _state: State
+) -> BundleArrival:
+    sku, units = int(stream.sku[candidate.ordinal]), int(stream.units[candidate.ordinal])
+    return BundleArrival(candidate.time_us, sku, units, units * space_per_unit[sku])
+
+
+def _record(recorder: StreamRecorder, bundle: BundleArrival) -> None:
+    recorder.bundles.add(bundle.time_us, bundle.sku, bundle.units)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,8 @@ from rmfs.scenario.words import WordSource
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from numpy.typing import NDArray
 
     from rmfs.scenario.intake.state import State
     from rmfs.scenario.orders import OrderDraft
@@ -50,10 +53,10 @@ def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...])
     if isinstance(scenario.orders, WordOrders):
         assert isinstance(scenario.skus, LetterSkus)
         words = WordSource(scenario.orders, read_alphabet(scenario.skus), seed, path)
-        return lambda ordinal, _state: words.draw(ordinal)
+        return partial(_words, words)
     source = OrderSource(scenario.orders, skus, seed, scenario.name, path)
     if isinstance(scenario.demand, BacklogDemand):
-        return lambda ordinal, state: source.draw(ordinal, state.uncommitted)
+        return partial(_in_stock, source)
     ordered = int(np.count_nonzero(skus.popularity))
     if ordered < scenario.orders.lines.max:
         raise InputError(
@@ -61,4 +64,18 @@ def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...])
             f"{ordered} SKUs with a popularity above zero"
         )
     unlimited = np.full(len(skus), _UNLIMITED)
-    return lambda ordinal, _state: source.draw(ordinal, unlimited)
+    return partial(_whatever_stock, source, unlimited)
+
+
+def _words(words: WordSource, ordinal: int, _state: State) -> OrderDraft | None:
+    return words.draw(ordinal)
+
+
+def _in_stock(source: OrderSource, ordinal: int, state: State) -> OrderDraft | None:
+    return source.draw(ordinal, state.uncommitted)
+
+
+def _whatever_stock(
+    source: OrderSource, unlimited: NDArray[np.int64], ordinal: int, _state: State
+) -> OrderDraft | None:
+    return source.draw(ordinal, unlimited)

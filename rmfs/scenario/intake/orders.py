@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rmfs.random import Stream
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.intake.thinning import Candidate
     from rmfs.scenario.parameters import PoissonDemand, Scenario
     from rmfs.scenario.skus import SkuSet
-    from rmfs.scenario.streams import StreamRecorder
+    from rmfs.scenario.streams import OrderStream, StreamRecorder
 
 
 def order_intake(
@@ -56,8 +57,7 @@ def order_intake(
     orders = _Orders(scenario, skus, site, seed, scenario.demand.down)
     if recorder is None:
         return orders.intake(None)
-    keep = recorder.orders.add
-    return orders.intake(lambda order: keep(order.time_us, order.due_us, order.skus, order.units))
+    return orders.intake(partial(_record, recorder))
 
 
 class _Orders(Assembly[OrderArrival]):
@@ -86,14 +86,7 @@ class _Orders(Assembly[OrderArrival]):
         stream = order_stream(demand, self._skus)
         due = self._scenario.orders.due.sampler()
         substreams = Substreams(self._seed, Stream.ORDER_CONTENTS, DUE_TIMES)
-
-        def make(candidate: Candidate, _state: State) -> OrderArrival:
-            ordinal, time_us, _ = candidate
-            due_us = int(stream.due_us[ordinal])
-            if due_us == NO_DUE_US:
-                due_us = time_us + nearest_us(due(substreams.at(ordinal)()))
-            return OrderArrival(time_us, *stream.lines(ordinal), due_us, redraws=0)
-
+        make = partial(_from_stream, stream, due, substreams)
         return Timed(self._at_times(stream.time_us.tolist()), make)
 
     def _batches(self) -> Iterator[Process[OrderArrival]]:
@@ -101,12 +94,7 @@ class _Orders(Assembly[OrderArrival]):
         if config is None:
             return
         stations = self._site.pick_stations if config.per_station else 1
-        draw = self._contents(BATCHES)
-
-        def make(ordinal: int, now_us: int, state: State) -> OrderArrival | None:
-            draft = draw(ordinal, state)
-            return None if draft is None else OrderArrival.of(draft, now_us)
-
+        make = partial(_in_batch, self._contents(BATCHES))
         batches = [
             *(_up_to(time_s, number * stations) for time_s, number in config.fill_to),
             *(add(time_s, number * stations) for time_s, number in config.add),
@@ -119,15 +107,42 @@ class _Orders(Assembly[OrderArrival]):
 
 def _drawn(draw: Contents) -> Callable[[Candidate, State], OrderArrival]:
     """Return the function that makes orders whose contents are fixed in advance."""
+    return partial(_of_candidate, draw)
 
-    def make(candidate: Candidate, state: State) -> OrderArrival:
-        draft = draw(candidate.ordinal, state)
-        assert draft is not None
-        return OrderArrival.of(draft, candidate.time_us)
 
-    return make
+def _of_candidate(draw: Contents, candidate: Candidate, state: State) -> OrderArrival:
+    draft = draw(candidate.ordinal, state)
+    assert draft is not None
+    return OrderArrival.of(draft, candidate.time_us)
+
+
+def _from_stream(
+    stream: OrderStream,
+    due: Callable[[float], float],
+    substreams: Substreams,
+    candidate: Candidate,
+    _state: State,
+) -> OrderArrival:
+    ordinal, time_us, _ = candidate
+    due_us = int(stream.due_us[ordinal])
+    if due_us == NO_DUE_US:
+        due_us = time_us + nearest_us(due(substreams.at(ordinal)()))
+    return OrderArrival(time_us, *stream.lines(ordinal), due_us, redraws=0)
+
+
+def _in_batch(draw: Contents, ordinal: int, now_us: int, state: State) -> OrderArrival | None:
+    draft = draw(ordinal, state)
+    return None if draft is None else OrderArrival.of(draft, now_us)
+
+
+def _record(recorder: StreamRecorder, order: OrderArrival) -> None:
+    recorder.orders.add(order.time_us, order.due_us, order.skus, order.units)
 
 
 def _up_to(time_s: float, number: int) -> Batch:
     """Return a batch after which so many orders wait."""
-    return Batch(time_s, lambda state, _come: state.waiting_orders < number)
+    return Batch(time_s, partial(_fewer_waiting, number))
+
+
+def _fewer_waiting(number: int, state: State, _come: int) -> bool:
+    return state.waiting_orders < number

@@ -8,7 +8,6 @@ thinning"). What a candidate is, depends on the seed and its ordinal only.
 
 from __future__ import annotations
 
-from itertools import count
 from typing import TYPE_CHECKING, NamedTuple
 
 from rmfs.scenario.intake.rates import exponential_us
@@ -40,10 +39,8 @@ class Candidate(NamedTuple):
     needed_share: float = 0.0
 
 
-def poisson(
-    rate: Rate, substreams: Substreams, openings: Openings, until_us: int
-) -> Iterator[Candidate]:
-    """Yield the arrivals of a Poisson process with a changing rate.
+class Poisson:
+    """The arrivals of a Poisson process with a changing rate: an iterator that can be copied.
 
     The ordinal is that of the candidate, so that two runs in which different candidates are
     accepted still agree in the contents of those that both accept.
@@ -57,15 +54,31 @@ def poisson(
     until_us
         The last time of interest.
     """
-    if rate.peak_per_h == 0:
-        return
-    time_us = 0
-    for ordinal in count():
-        uniform = substreams.at(ordinal)
-        time_us += exponential_us(uniform(), rate.peak_per_h)
-        if time_us > until_us:
-            return
-        level = uniform() * rate.peak_per_h
-        present = rate.per_h(time_us)
-        if level < present and openings.is_open(time_us):
-            yield Candidate(ordinal, time_us, level / present)
+
+    def __init__(
+        self, rate: Rate, substreams: Substreams, openings: Openings, until_us: int
+    ) -> None:
+        self._rate = rate
+        self._substreams = substreams
+        self._openings = openings
+        self._until_us = until_us
+        self._time_us = 0 if rate.peak_per_h else until_us + 1
+        self._ordinal = 0
+
+    def __iter__(self) -> Iterator[Candidate]:
+        return self
+
+    def __next__(self) -> Candidate:
+        rate = self._rate
+        while self._time_us <= self._until_us:
+            ordinal = self._ordinal
+            uniform = self._substreams.at(ordinal)
+            self._ordinal += 1
+            self._time_us = time_us = self._time_us + exponential_us(uniform(), rate.peak_per_h)
+            if time_us > self._until_us:
+                break
+            level = uniform() * rate.peak_per_h
+            present = rate.per_h(time_us)
+            if level < present and self._openings.is_open(time_us):
+                return Candidate(ordinal, time_us, level / present)
+        raise StopIteration

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from rmfs.scenario.clock import NEVER_US
@@ -55,14 +56,18 @@ class Timed(Generic[T]):
 
 
 def at_zero(number: int) -> Iterator[Candidate]:
-    """Yield a number of arrivals at time zero."""
-    return (Candidate(ordinal, 0) for ordinal in range(number))
+    """Return a number of arrivals at time zero."""
+    return map(_at_zero, iter(range(number)))
+
+
+def _at_zero(ordinal: int) -> Candidate:
+    return Candidate(ordinal, 0)
 
 
 def share_of(tied_to: TiedTo) -> Callable[[State], float] | None:
     """Return the function that reads the share of active stations, if a rate is tied to them."""
     if tied_to == "pick-stations":
-        return lambda state: state.active_pick_share
+        return attrgetter("active_pick_share")
     if tied_to == "replenishment-stations":
-        return lambda state: state.active_replenishment_share
+        return attrgetter("active_replenishment_share")
     return None

@@ -1,0 +1,315 @@
+"""Why a decision is not possible: the rules of the world, in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.control import decisions as say
+from rmfs.control.problems import Problem
+from rmfs.control.repositioning import Move
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rmfs.control.questions import Question
+    from rmfs.control.view import View
+
+KINDS: dict[Problem, tuple[type, ...]] = {
+    Problem.POA: (say.AssignOrder, say.AssignLines, say.QueueOrder),
+    Problem.ROA: (say.SendBundle,),
+    Problem.RPS: (say.PromiseBundle, say.ReleasePod),
+    Problem.SA: (say.SwitchStation,),
+    Problem.MM: (say.Exchange,),
+    Problem.TA: (
+        say.BringForPicks,
+        say.BringForBundles,
+        say.Park,
+        say.Reposition,
+        say.Rest,
+        say.Prepare,
+        say.WorkFor,
+        say.Store,
+        say.MovePod,
+    ),
+}
+"""What may be decided in a turn of each problem."""
+
+
+def why_not(given: Any, question: Question, view: View) -> str:
+    """Say why an answer is impossible; an empty text if it is possible.
+
+    Parameters
+    ----------
+    given
+        A decision in a turn; a number or a `Move` for what TA asks.
+    """
+    if question.kind != "turn":
+        return _ANSWERS[question.kind](given, question, view)
+    kinds = KINDS[question.problem]
+    if not isinstance(given, kinds):
+        names = ", ".join(kind.__name__ for kind in kinds)
+        return f"a turn of {question.problem} takes {names} of rmfs.control.decisions"
+    return reason(given, view)
+
+
+def reason(decision: Any, view: View) -> str:
+    """Say why a decision is impossible now; an empty text if nothing speaks against it."""
+    check = _DECISIONS.get(type(decision))
+    if check is None:
+        return f"{type(decision).__name__} is no decision of rmfs.control.decisions"
+    return check(decision, view)
+
+
+# --- orders and bundles ---------------------------------------------------------------------------
+
+
+def _station(number: Any, count: int, what: str, first: int = 0) -> str:
+    if not isinstance(number, int) or isinstance(number, bool):
+        return f"{number!r} is no number of a {what}"
+    if not first <= number < first + count:
+        return f"there is no {what} {number} (they are {first} to {first + count - 1})"
+    return ""
+
+
+def _pick_station(number: Any, view: View) -> str:
+    return _station(number, len(view.pick_stations), "pick station")
+
+
+def _assign(decision: say.AssignOrder | say.AssignLines, view: View) -> str:
+    order, station = decision[0], decision[1]
+    wrong = _pick_station(station, view)
+    if wrong:
+        return wrong
+    if order not in view.orders:
+        return f"order {order.index} is not in the backlog"
+    if order.queued_at not in (-1, station):
+        return f"order {order.index} is queued at station {order.queued_at}"
+    target = view.pick_stations[station]
+    if order.index in target.orders:
+        return ""
+    if not target.active:
+        return f"station {station} is switched off"
+    return "" if target.free_slots > 0 else f"station {station} has no free slot"
+
+
+def _assign_lines(decision: say.AssignLines, view: View) -> str:
+    order, _, skus = decision
+    wrong = _assign(decision, view)
+    if wrong:
+        return wrong
+    if order.queued_at >= 0:
+        return f"order {order.index} is in a pool, and not to be split"
+    missing = set(skus) - {line.sku for line in order.lines}
+    if missing or not skus:
+        return f"order {order.index} has no lines of SKUs {sorted(missing)} left"
+    return ""
+
+
+def _queue(decision: say.QueueOrder, view: View) -> str:
+    order, station = decision
+    if station == -1:
+        return "" if order.queued_at >= 0 else f"order {order.index} is in no pool"
+    wrong = _pick_station(station, view)
+    if wrong:
+        return wrong
+    if order not in view.orders:
+        return f"order {order.index} is not in the backlog"
+    return "" if order.queued_at < 0 else f"order {order.index} is in a pool already"
+
+
+def _send(decision: say.SendBundle, view: View) -> str:
+    bundle, station = decision
+    count, first = len(view.replenishment_stations), len(view.pick_stations)
+    wrong = _station(station, count, "replenishment station", first)
+    if wrong:
+        return wrong
+    if bundle.station >= 0:
+        return f"bundle {bundle.index} has station {bundle.station} already"
+    target = view.replenishment_stations[station - first]
+    if not target.active:
+        return f"station {station} is switched off"
+    if bundle.space > target.free_space:
+        return f"station {station} has {target.free_space:g} space units left, not {bundle.space:g}"
+    return ""
+
+
+def _promise(decision: say.PromiseBundle, view: View) -> str:
+    bundle, pod = decision
+    wrong = _station(pod, len(view.inventory.capacity), "pod")
+    if wrong:
+        return wrong
+    if bundle.pod >= 0:
+        return f"bundle {bundle.index} has pod {bundle.pod} already"
+    free = float(view.inventory.capacity[pod] - view.inventory.load[pod])
+    if bundle.space > free:
+        return f"pod {pod} has {free:g} space units left, not {bundle.space:g}"
+    return ""
+
+
+def _release(decision: say.ReleasePod, view: View) -> str:
+    held = decision.pod in view.bundles.unreleased
+    return "" if held else f"nothing is held back for pod {decision.pod}"
+
+
+def _switch(decision: say.SwitchStation, view: View) -> str:
+    return _station(decision.station, len(view.stations), "station")
+
+
+# --- tasks ----------------------------------------------------------------------------------------
+
+
+def _may_begin(robot: Any, view: View) -> str:
+    """Why a robot cannot be given a task."""
+    if robot.index in view.asking or robot.index in view.resting:
+        return ""
+    return f"robot {robot.index} has a task"
+
+
+def _fetches(robot: Any, pod: int, view: View) -> str:
+    """Why a robot cannot go on with a pod, or fetch it."""
+    wrong = _may_begin(robot, view) or _station(pod, len(view.inventory.capacity), "pod")
+    if wrong or robot.pod == pod:
+        return wrong
+    if robot.pod >= 0:
+        return f"robot {robot.index} carries pod {robot.pod}"
+    return "" if view.storage.is_at_hand[pod] else f"pod {pod} is not at hand"
+
+
+def _pick(decision: say.BringForPicks, view: View) -> str:
+    robot, pod, station = decision
+    return _pick_station(station, view) or _fetches(robot, pod, view)
+
+
+def _bundles(decision: say.BringForBundles, view: View) -> str:
+    robot, pod, station = decision
+    count, first = len(view.replenishment_stations), len(view.pick_stations)
+    wrong = _station(station, count, "replenishment station", first) or _fetches(robot, pod, view)
+    if wrong:
+        return wrong
+    waits = view.bundles_waiting[station - first, pod]
+    return "" if waits else f"no bundle waits for pod {pod} at station {station}"
+
+
+def _empty_place(place: Any, view: View) -> str:
+    if not isinstance(place, int) or not 0 <= place < len(view.storage.place_index):
+        return f"{place!r} is no waypoint"
+    index = view.storage.place_index[place]
+    if index < 0:
+        return f"waypoint {place} is no storage place"
+    return "" if view.storage.is_empty[index] else f"place {place} is not empty"
+
+
+def _park(decision: say.Park, view: View) -> str:
+    robot, place = decision
+    wrong = _may_begin(robot, view)
+    if wrong:
+        return wrong
+    if robot.pod < 0:
+        return f"robot {robot.index} carries no pod"
+    return _empty_place(place, view)
+
+
+def _reposition(decision: say.Reposition, view: View) -> str:
+    robot, pod, place = decision
+    if robot.pod >= 0:
+        return f"robot {robot.index} carries pod {robot.pod}"
+    return _fetches(robot, pod, view) or _empty_place(place, view)
+
+
+def _rest(decision: say.Rest, view: View) -> str:
+    robot, place = decision
+    wrong = _may_begin(robot, view)
+    if wrong:
+        return wrong
+    if robot.pod >= 0:
+        return f"robot {robot.index} carries pod {robot.pod}"
+    if not 0 <= place < len(view.storage.kept_by):
+        return f"{place} is no waypoint"
+    keeper = view.storage.kept_by[place]
+    return "" if keeper in (-1, robot.index) else f"place {place} is kept by robot {keeper}"
+
+
+def _work_for(decision: say.WorkFor, view: View) -> str:
+    return _switch(say.SwitchStation(decision.station, True), view) or _may_begin(
+        decision.robot, view
+    )
+
+
+def _store(decision: say.Store, view: View) -> str:
+    wrong = _may_begin(decision.robot, view)
+    if wrong:
+        return wrong
+    return "" if decision.robot.pod >= 0 else f"robot {decision.robot.index} carries no pod"
+
+
+def _move_pod(decision: say.MovePod, view: View) -> str:
+    wrong = _may_begin(decision.robot, view)
+    carried = decision.robot.pod
+    return wrong or (f"robot {decision.robot.index} carries pod {carried}" if carried >= 0 else "")
+
+
+def _nothing_wrong(decision: Any, view: View) -> str:
+    return ""
+
+
+_DECISIONS: dict[type, Callable[[Any, View], str]] = {
+    say.AssignOrder: _assign,
+    say.AssignLines: _assign_lines,
+    say.QueueOrder: _queue,
+    say.SendBundle: _send,
+    say.PromiseBundle: _promise,
+    say.ReleasePod: _release,
+    say.SwitchStation: _switch,
+    say.Exchange: _nothing_wrong,
+    say.BringForPicks: _pick,
+    say.BringForBundles: _bundles,
+    say.Park: _park,
+    say.Reposition: _reposition,
+    say.Rest: _rest,
+    say.Prepare: _nothing_wrong,
+    say.WorkFor: _work_for,
+    say.Store: _store,
+    say.MovePod: _move_pod,
+}
+
+
+# --- answers to what TA asks ----------------------------------------------------------------------
+
+
+def _pod_at_hand(given: Any, question: Question, view: View) -> str:
+    wrong = _station(given, len(view.inventory.capacity), "pod")
+    if wrong:
+        return wrong
+    return "" if view.storage.is_at_hand[given] else f"pod {given} is not at hand"
+
+
+def _replenishment_pod(given: Any, question: Question, view: View) -> str:
+    wrong = _pod_at_hand(given, question, view)
+    if wrong:
+        return wrong
+    station = question.stations[0]
+    waits = view.bundles_waiting[station - len(view.pick_stations), given]
+    return "" if waits else f"no bundle waits for pod {given} at station {station}"
+
+
+def _one_of(given: Any, question: Question, view: View) -> str:
+    return "" if given in question.stations else f"it is none of {question.stations}"
+
+
+def _place(given: Any, question: Question, view: View) -> str:
+    return _empty_place(given, view)
+
+
+def _move(given: Any, question: Question, view: View) -> str:
+    if not isinstance(given, Move):
+        return "a Move of rmfs.control.repositioning is wanted"
+    return _pod_at_hand(given.pod, question, view) or _empty_place(given.place, view)
+
+
+_ANSWERS: dict[str, Callable[[Any, Question, View], str]] = {
+    "pick pod": _pod_at_hand,
+    "replenishment pod": _replenishment_pod,
+    "next station": _one_of,
+    "place": _place,
+    "move": _move,
+}

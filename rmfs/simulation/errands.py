@@ -1,0 +1,36 @@
+"""Decisions of TA from outside that leave a part to PPS, PSA or repositioning."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.control.decisions import Park, Reposition
+from rmfs.control.ta.stations import bring, keeper_of
+
+if TYPE_CHECKING:
+    from rmfs.control.decisions import MovePod, Store, TaskDecision, WorkFor
+    from rmfs.control.ta import Consult
+    from rmfs.control.view import View
+
+
+def work(decision: WorkFor, view: View, consult: Consult) -> TaskDecision | None:
+    """Complete a robot's work for a station; None if PPS finds no pod."""
+    robot, station = decision
+    if robot.pod >= 0:
+        return bring(view, robot, robot.pod, station)
+    pod = consult.pod_for(robot, station)
+    return bring(view, keeper_of(view, robot, pod), pod, station) if pod >= 0 else None
+
+
+def store(decision: Store, consult: Consult) -> TaskDecision | None:
+    """Complete the storing of a pod; None if PSA finds no place."""
+    place = consult.place_for(decision.robot)
+    return Park(decision.robot, place) if place >= 0 else None
+
+
+def move_pod(decision: MovePod, view: View, consult: Consult) -> TaskDecision | None:
+    """Complete the moving of a pod; None if all pods stand well."""
+    move = consult.move_for(decision.robot)
+    if move is None:
+        return None
+    return Reposition(keeper_of(view, decision.robot, move.pod), move.pod, move.place)
