@@ -9,6 +9,12 @@ from rmfs.experiments.console import open_console
 if TYPE_CHECKING:
     from rmfs.experiments.compare import Comparison
 
+ROUNDING = 1e-12
+"""Share of the numbers compared, or of 1, that is taken for rounding."""
+
+MOST_RELATIVE = 10.0
+"""Largest difference, in baselines, that is told in per cent of the baseline."""
+
 
 def print_comparisons(found: list[Comparison], columns: list[str], *, everything: bool) -> None:
     """Print what `rmfs compare` found."""
@@ -60,10 +66,11 @@ def _outputs(one: Comparison, columns: list[str]) -> Any:
     for column in columns:
         row: dict[Any, Any] = one.outputs.loc[column].to_dict()
         p = corrected[column]
-        cells = [_number(row["baseline"]), _number(row["other"]), _number(row["difference"])]
-        cells.append("-" if row["relative"] != row["relative"] else f"{row['relative']:+.1%}")
+        scale = max(abs(row["baseline"]), abs(row["other"]))
+        cells = [_number(row[key], scale) for key in ("baseline", "other", "difference")]
+        cells.append(_relative(row["difference"], row["baseline"], scale))
         if several:
-            cells.append(f"{_number(row['low'])} to {_number(row['high'])}")
+            cells.append(f"{_number(row['low'], scale)} to {_number(row['high'], scale)}")
             cells.append("-" if p != p else f"{p:.4f}")
         shown.add_row(column, *cells)
     return shown
@@ -76,8 +83,20 @@ def _how(one: Comparison) -> str:
     return f"no common seed: {counts} runs taken as independent (Welch)"
 
 
-def _number(value: float) -> str:
+def _number(value: float, scale: float = 1.0) -> str:
+    """Write a number; what is only rounding at the size of the numbers compared is 0."""
     if value != value:
         return "-"
     size = abs(value)
+    if size <= ROUNDING * max(scale, 1.0):
+        return "0"
     return f"{value:,.0f}" if size >= 10_000 else f"{value:,.4g}"
+
+
+def _relative(difference: float, baseline: float, scale: float) -> str:
+    """Write a difference in per cent of the baseline, where that says something."""
+    if difference != difference or abs(difference) > MOST_RELATIVE * abs(baseline):
+        return "-"
+    if abs(difference) <= ROUNDING * max(scale, 1.0):
+        return "0%"
+    return f"{difference / baseline:+.1%}"

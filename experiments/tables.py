@@ -32,6 +32,9 @@ SUFFIXES: dict[str, Format] = {
 COLUMNS = ("units_per_h", "orders_per_h", "units_per_visit", "distance_per_unit_m")
 """What is shown if nothing else is asked for."""
 
+ROUNDING = 1e-12
+"""What is less is nothing."""
+
 HALF = "±"
 UNITS = {column.name: column.unit for column in FOOTPRINT}
 
@@ -299,9 +302,9 @@ def _called(method: str) -> str:
 
 def digits(halves: pd.Series, values: pd.Series) -> int:
     """Return digits after the point that show the half widths with two figures."""
-    known = [h for h in halves.dropna() if h > 0 and isfinite(h)]
+    known = [h for h in halves.dropna() if h > ROUNDING and isfinite(h)]
     if not known:
-        if (values.dropna() % 1 == 0).all():
+        if ((values.dropna() - values.dropna().round()).abs() < ROUNDING).all():
             return 0
         # no spread is known: four figures of the biggest value
         known = [float(values.abs().max()) / 100]
@@ -321,8 +324,9 @@ class _Fixed:
     def __call__(self, value: object) -> str:
         if isinstance(value, str):
             return value
-        number = float(value)  # type: ignore[arg-type]
-        return "-" if number != number else f"{number:.{self.decimals}f}"
+        number = round(float(value), self.decimals)  # type: ignore[arg-type]
+        # no sign before nothing: -0.0 + 0.0 is 0.0
+        return "-" if number != number else f"{number + 0.0:.{self.decimals}f}"
 
 
 def _latex_header(columns: list[tuple[str, str]]) -> pd.MultiIndex:

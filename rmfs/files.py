@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import shutil
 import tempfile
@@ -75,11 +76,12 @@ def write_text(path: Path, text: str) -> None:
 
 
 @contextmanager
-def replacing_folder(target: Path, mark: str, what: str) -> Iterator[Path]:
+def replacing_folder(target: Path, mark: str, what: str, *, replace: bool = True) -> Iterator[Path]:
     """Yield a temporary folder beside `target`, which takes that name if all goes well.
 
     The folder is made at once, so that a target that cannot be written is noticed before any work
     is done. On an error or an interruption it is removed again, with the folders made on the way.
+    Nobody else can write the same target meanwhile.
 
     Parameters
     ----------
@@ -87,26 +89,68 @@ def replacing_folder(target: Path, mark: str, what: str) -> Iterator[Path]:
         A file that every such folder holds: only these, and empty ones, are replaced.
     what
         What such a folder is called.
+    replace
+        Whether a folder of the kind may be replaced. Default yes.
 
     Raises
     ------
     InputError
-        If the target cannot be written, or exists and is not such a folder.
+        If the target cannot be written, somebody else writes it, or it exists and is not such a
+        folder or must not be replaced.
     """
     target = target.absolute()
     _refuse_strangers(target, mark, what)
     made = _missing_parents(target)
     try:
-        temporary = _temporary_beside(target)
-        try:
-            yield temporary
-            temporary.chmod(0o755)
-            _put_in_place(temporary, target)
-        finally:
-            shutil.rmtree(temporary, ignore_errors=True)
+        with _locked(target):
+            if not replace and (target / mark).exists():
+                raise InputError(
+                    f"{target}: there is a {what} of this name already; --force replaces it, --out "
+                    "names another"
+                )
+            temporary = _temporary_beside(target)
+            try:
+                yield temporary
+                temporary.chmod(0o755)
+                _put_in_place(temporary, target)
+            finally:
+                shutil.rmtree(temporary, ignore_errors=True)
     except BaseException:
         _remove_empty(made)
         raise
+
+
+@contextmanager
+def _locked(target: Path) -> Iterator[None]:
+    """Keep others from writing the same target; the lock ends with the process in any case."""
+    lock = target.with_name(f".{target.name}.lock")
+    while True:
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            file = lock.open("w")
+        except OSError as error:
+            raise InputError(f"{target}: cannot be written ({error.strerror})") from None
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            file.close()
+            raise InputError(f"{target}: is being written by another process") from None
+        if _is_at(lock, file.fileno()):
+            break
+        file.close()  # removed by its owner between opening and locking
+    try:
+        yield
+    finally:
+        lock.unlink(missing_ok=True)
+        file.close()
+
+
+def _is_at(path: Path, descriptor: int) -> bool:
+    """Whether an open file still has its name."""
+    try:
+        return path.stat().st_ino == os.fstat(descriptor).st_ino
+    except FileNotFoundError:
+        return False
 
 
 def _refuse_strangers(target: Path, mark: str, what: str) -> None:

@@ -8,7 +8,6 @@ stored under it, so that finished ones are found again and outdated ones are not
 from __future__ import annotations
 
 import hashlib
-import inspect
 import json
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -21,17 +20,15 @@ from rmfs.digest import digest as digest_of
 from rmfs.errors import InputError
 from rmfs.measure.provenance import KINDS
 from rmfs.simulation.pacing import pacing_settings
+from rmfs.sources import sources
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from rmfs.control.settings import ControllerSettings
     from rmfs.experiments.design.arms import Arm, Overrides
     from rmfs.layout.model import Layout
     from rmfs.scenario import Scenario
-
-OWN_PACKAGE = "rmfs"
-"""Rules in this package are told by the version of the code, others by a hash of their file."""
 
 _SHIPPED = "instances/"
 
@@ -58,6 +55,7 @@ class Resolver:
     allow_not_well_formed: bool = False
     files: dict[str, str] = field(default_factory=dict)
     _parts: dict[str, tuple[str, str]] = field(default_factory=dict)
+    _made_of: dict[type, list[Path]] = field(default_factory=dict)
 
     def digest(self, arm: Arm, *, check: bool, seeded: list[str]) -> tuple[str, list[str]]:
         """Return the digest of an arm, and what is wrong with it.
@@ -105,13 +103,22 @@ class Resolver:
     def _meaning(self, loaded: Any) -> str:
         """Return the digest of a loaded input, whatever its name and description."""
         if isinstance(loaded, control.ControllerSettings):
-            table = loaded.to_table() | {"sources": [*_rule_files(loaded)]}
+            table = loaded.to_table() | {"sources": self._sources(loaded)}
         elif isinstance(loaded, scenarios.Scenario):
             table = loaded.model_dump(mode="json")
         else:
             return digest_of(replace(loaded, name=""))
         table = {key: value for key, value in table.items() if key not in ("name", "description")}
         return _hash(self._with_files(table))
+
+    def _sources(self, settings: ControllerSettings) -> list[str]:
+        """Return the files that rules of users are made of, whatever they are called."""
+        found: dict[Path, str] = {}
+        for rule in settings.rules():
+            if rule not in self._made_of:
+                self._made_of[rule] = [*sources([rule]).values()]
+            found |= {path: file_hash(path) for path in self._made_of[rule]}
+        return [str(path) for path, _ in sorted(found.items(), key=lambda one: one[::-1])]
 
     def _with_files(self, value: Any) -> Any:
         """Replace the name of every file by the hash of its content."""
@@ -176,17 +183,6 @@ def _is_file(text: str) -> bool:
         return Path(text).is_file()
     except (OSError, ValueError):
         return False
-
-
-def _rule_files(settings: ControllerSettings) -> Iterator[str]:
-    """Yield the source files of rules that are not part of rmfs."""
-    for choice in settings.choices.values():
-        module = choice.controller.__module__
-        if module.split(".")[0] != OWN_PACKAGE:
-            try:
-                yield inspect.getfile(choice.controller)
-            except (OSError, TypeError):  # a class of the interpreter's own input
-                continue
 
 
 def _hash(value: Any) -> str:

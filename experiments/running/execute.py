@@ -5,7 +5,9 @@ What is imported here is imported once, before the processes are forked.
 
 from __future__ import annotations
 
+import importlib
 import platform
+import sys
 import time
 import traceback
 from pathlib import Path
@@ -57,6 +59,7 @@ def _simulated(job: Job) -> dict[str, pd.DataFrame]:
     RuntimeError
         If the motion is not safe: a defect.
     """
+    _forget_changed(job.files)
     inputs = resolve.load(job.inputs, job.overrides)
     changed = [name for name, known in job.files.items() if resolve.present_hash(name) != known]
     if changed:
@@ -75,6 +78,25 @@ def _simulated(job: Job) -> dict[str, pd.DataFrame]:
     run.names = (layout, scenario, controllers)
     run.overrides = list(job.overrides)
     return _tables(run, job)
+
+
+def _forget_changed(files: dict[str, str]) -> None:
+    """Let changed modules of users be imported again: workers of a cluster live longer than one.
+
+    If one of them has changed since this process has seen it, all of them are forgotten, so that
+    none holds on to what another one was.
+    """
+    mine = {name: known for name, known in files.items() if name.endswith(".py")}
+    if any(_SEEN.get(name, known) != known for name, known in mine.items()):
+        for name, module in list(sys.modules.items()):
+            if getattr(module, "__file__", None) in mine:
+                del sys.modules[name]
+        importlib.invalidate_caches()
+    _SEEN.update(mine)
+
+
+_SEEN: dict[str, str] = {}
+"""Hash of each source file of users, as this process has last imported it."""
 
 
 def _tables(run: Run, job: Job) -> dict[str, pd.DataFrame]:

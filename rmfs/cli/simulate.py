@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import re
 import sys
 from contextlib import ExitStack
 from pathlib import Path
@@ -14,8 +16,15 @@ from rmfs.cli.terminal import progress, step, terminable
 from rmfs.errors import InputError, InternalError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pandas as pd
+
     from rmfs.measure.checker import CheckReport
     from rmfs.simulation.run import Run
+
+LONGEST = 100
+"""Characters of a folder's name that tell what was changed, at most."""
 
 
 def run(
@@ -28,8 +37,15 @@ def run(
     ] = "default",
     seed: Annotated[int, typer.Option(min=0, help="Seed of all random streams.")] = 0,
     out: Annotated[
-        Path | None, typer.Option(help="Run folder. [default: below results/]", show_default=False)
+        Path | None,
+        typer.Option(
+            help="Run folder. [default: below results/, named by inputs, changes and seed]",
+            show_default=False,
+        ),
     ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace the run folder if there is one.")
+    ] = False,
     set_: Annotated[
         list[str] | None,
         typer.Option(
@@ -85,12 +101,12 @@ def run(
 ) -> None:
     """Simulate a warehouse and write a run folder."""
     from rmfs.config import parse_override
-    from rmfs.measure.folder import fill, reserved
+    from rmfs.measure.folder import fill, load_run, reserved
     from rmfs.scenario import StreamRecorder, write_streams
 
     overrides = [parse_override(text) for text in set_ or []]
     inputs = {"layout": layout, "scenario": scenario, "controllers": controllers}
-    target = out or Path("results") / default_name(inputs, seed)
+    target = out or Path("results") / default_name(inputs, seed, set_ or [], pacing)
     streams = None if record is None else StreamRecorder()
     if speed is not None and not live:
         raise InputError("--speed: only with --live")
@@ -111,7 +127,7 @@ def run(
                 )
             )
             watching = {"events": watcher.events, "driver": watcher.drive}
-        folder = stack.enter_context(reserved(target))
+        folder = stack.enter_context(reserved(target, force=force))
         done = simulated(
             inputs,
             seed=seed,
@@ -128,7 +144,8 @@ def run(
         report = proven(done) if check else None
         step("writing the tables")
         fill(folder, done, report=report, trace=trace, inputs=inputs)
-    conclude(target, report)
+        footprint = load_run(folder).footprint
+    conclude(target, footprint, report)
 
 
 def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
@@ -160,9 +177,26 @@ def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
             raise
 
 
-def default_name(inputs: dict[str, str], seed: int) -> str:
-    """Return the name of the run folder: layout-scenario-controllers-seedN."""
-    return "-".join([*(Path(given).stem for given in inputs.values()), f"seed{seed}"])
+def default_name(
+    inputs: dict[str, str], seed: int, changes: Sequence[str] = (), pacing: str = "instant"
+) -> str:
+    """Return the name of the run folder: layout-scenario-controllers-changes-seedN.
+
+    Parameters
+    ----------
+    changes
+        What was given as `--set`. Where these cannot stand in a name of sensible length, a hash of
+        them does.
+    """
+    told = [text.replace(".name=", "=") for text in changes]
+    told += [] if pacing == "instant" else [f"pacing={pacing}"]
+    between = ",".join(told)
+    safe = re.sub(r"[^A-Za-z0-9._=,+-]", "_", between)
+    if safe != between or len(safe) > LONGEST:
+        mark = hashlib.sha256(between.encode()).hexdigest()[:8]
+        safe = f"{safe[:LONGEST]}-{mark}"
+    stems = [Path(given).stem for given in inputs.values()]
+    return "-".join([*stems, *([safe] if safe else []), f"seed{seed}"])
 
 
 def proven(done: Run) -> CheckReport:
@@ -171,14 +205,12 @@ def proven(done: Run) -> CheckReport:
     return done.check()
 
 
-def conclude(target: Path, report: CheckReport | None) -> None:
+def conclude(target: Path, footprint: pd.Series, report: CheckReport | None) -> None:
     """Print the main figures; an unsafe trace or a score above 1 is a defect: exit code 1."""
     from rich.console import Console
 
-    from rmfs.measure import load_run
     from rmfs.measure.summary import summary
 
-    footprint = load_run(target).footprint
     Console(highlight=False).print(summary(footprint))
     print(target)
     if footprint["units_score"] > 1.0:

@@ -10,13 +10,15 @@ import pydantic
 
 from rmfs import config, foreign, instances
 from rmfs.config import Table
+from rmfs.control import registry
 from rmfs.control.base import RuleTables
 from rmfs.control.choices import DEFAULTS, Choice, check_together, choose
 from rmfs.control.problems import Problem
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
+    from rmfs.control.base import Controller
     from rmfs.control.mm import MethodManagement
 
 FORMAT = "rmfs-controllers/1"
@@ -40,6 +42,23 @@ class ControllerSettings:
         """Everything as it stands in a controllers file, defaults written out."""
         head: Table = {"format": FORMAT, "name": self.name, "description": self.description}
         return head | {str(problem): choice.to_table() for problem, choice in self.choices.items()}
+
+    def rules(self) -> list[type[Controller[Any]]]:
+        """Classes of all rules, those that method management may install included."""
+        named = dict.fromkeys(_rules_in(self.to_table()))
+        return list(dict.fromkeys(registry.find(problem, name) for problem, name in named))
+
+
+def _rules_in(value: Any) -> Iterator[tuple[Problem, str]]:
+    """Yield problem and name of every rule in a table, at any depth."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            if key in DEFAULTS and isinstance(item, dict) and isinstance(item.get("name"), str):
+                yield Problem(key), item["name"]
+            yield from _rules_in(item)
+    elif isinstance(value, list | tuple):
+        for item in value:
+            yield from _rules_in(item)
 
 
 class _File(RuleTables):

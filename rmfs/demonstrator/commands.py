@@ -93,6 +93,9 @@ def demonstrate(
     out: Annotated[
         Path | None, typer.Option(help="Run folder. [default: below results/]", show_default=False)
     ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace the run folder if there is one.")
+    ] = False,
     set_: Settings = None,
     trace: Annotated[bool, typer.Option("--trace", help="Write the trace of all motion.")] = False,
     allow_not_well_formed: Annotated[
@@ -108,7 +111,7 @@ def demonstrate(
     """
     from rmfs.cli.simulate import conclude, default_name
     from rmfs.cli.terminal import progress, step
-    from rmfs.measure.folder import fill, reserved
+    from rmfs.measure.folder import fill, load_run, reserved
     from rmfs.simulation.pacing import OptimiserError
     from rmfs.simulation.simulation import StalledError
 
@@ -124,13 +127,13 @@ def demonstrate(
     )
     is_emulated = scheme == settings.ROOM
     known = secrets.token_hex(16).encode() if is_own else settings.secret(secret)
-    target = out or Path("results") / f"demonstration-{default_name(inputs, seed)}"
+    target = out or Path("results") / f"demonstration-{default_name(inputs, seed, set_ or [])}"
     journal = target.parent / f".{target.name}.{JOURNAL}"
     hub = _hub(host, port, known, expected(chosen, is_emulated=is_emulated), robots)
     demonstration = Demonstration(
         hub, chosen, settings.tags(plan, tags), journal, is_emulated=is_emulated
     )
-    with reserved(target) as folder:
+    with reserved(target, force=force) as folder:
         asked = ["--layout", layout, "--seed", str(seed), *(["--real", real] if real else [])]
         asked += [
             part for text in set_ or [] if text.startswith("layout.") for part in ("--set", text)
@@ -155,7 +158,8 @@ def demonstrate(
         step("writing the tables")
         fill(folder, done, trace=trace, inputs=inputs)
         shutil.move(journal, folder / JOURNAL)
-    conclude(target, None)
+        footprint = load_run(folder).footprint
+    conclude(target, footprint, None)
 
 
 @app.command()

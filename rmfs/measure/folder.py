@@ -57,9 +57,15 @@ def write_run(
         fill(folder, run, report=report, trace=trace, inputs=inputs)
 
 
-def reserved(target: Path) -> AbstractContextManager[Path]:
-    """Return the context in which a run folder is written; see `rmfs.files.replacing_folder`."""
-    return replacing_folder(target, PARAMETERS, "run folder")
+def reserved(target: Path, *, force: bool = True) -> AbstractContextManager[Path]:
+    """Return the context in which a run folder is written; see `rmfs.files.replacing_folder`.
+
+    Parameters
+    ----------
+    force
+        Whether an older run folder of the same name is replaced. Default yes.
+    """
+    return replacing_folder(target, PARAMETERS, "run folder", replace=force)
 
 
 def fill(

@@ -19,6 +19,7 @@ from rmfs.errors import InputError
 from rmfs.layout.loading import split_factors
 from rmfs.layout.parameters import LayoutParameters
 from rmfs.scenario import named_files
+from rmfs.sources import sources
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -27,8 +28,23 @@ if TYPE_CHECKING:
     from rmfs.measure.checker import CheckReport
     from rmfs.measure.ended import Recorded
 
-PACKAGES = ("numpy", "pandas", "pyarrow", "pydantic", "scipy", "networkx", "typer")
-"""Packages whose version is told; all of them are dependencies."""
+PACKAGES = (
+    "clarabel",
+    "cvxpy",
+    "highspy",
+    "jinja2",
+    "matplotlib",
+    "networkx",
+    "numpy",
+    "ortools",
+    "pandas",
+    "pyarrow",
+    "pydantic",
+    "rich",
+    "scipy",
+    "typer",
+)
+"""Packages whose version is told: all dependencies, solvers among them."""
 
 MARK = "+"
 """Stands between the name of a set of controllers and what was exchanged by hand."""
@@ -69,6 +85,10 @@ def describe(
         "controllers": {
             **source("controllers", given["controllers"]),
             "parameters": run.controllers.to_table(),
+            "sources": {
+                module: {"file": str(path), "sha256": _hash(path)}
+                for module, path in sources(run.controllers.rules()).items()
+            },
         },
         "interventions": [
             {"time_s": time_s, "problem": str(choice.problem), "rule": choice.to_table()}

@@ -102,6 +102,8 @@ def _arguments(wish: Table, results: Path) -> list[str]:
         *(word for key, new in changes.items() for word in ("--set", f"{key}={toml_value(new)}")),
         *([] if speed is None else ["--speed", str(float(speed))]),
         *(["--trace"] if wish.get("trace") else []),
+        # the name that stands for none is there to be used again
+        *([] if wish.get("out") else ["--force"]),
         *("--live", "--no-open", "--await-page"),
     ]
 

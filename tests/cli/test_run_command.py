@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from rmfs.cli import main
+from rmfs.cli import simulate as simulate_command
+from rmfs.cli.simulate import default_name
 from rmfs.errors import InputError, InternalError, LayoutError
 from rmfs.measure import load_run
 
@@ -38,6 +40,84 @@ def test_a_run_with_defaults(calls, capsys):
     assert "units per hour" in out.out and "18.0" in out.out
     assert str(target) in out.out
     assert [line.split()[1] for line in out.err.splitlines()] == ["simulating", "writing"]
+
+
+def test_folders_are_named_by_inputs_changes_and_seed():
+    inputs = {"layout": "a/small.toml", "scenario": "basic", "controllers": "default"}
+    assert default_name(inputs, 7) == "small-basic-default-seed7"
+    changes = ["layout.robots=16", "controllers.psa.name=random"]
+    assert default_name(inputs, 7, changes) == (
+        "small-basic-default-layout.robots=16,controllers.psa=random-seed7"
+    )
+    assert default_name(inputs, 7, [], "work") == "small-basic-default-pacing=work-seed7"
+    odd = [default_name(inputs, 7, [f"controllers.psa.name=a{sign}b:C"]) for sign in "/ \\"]
+    assert len({*odd}) == 3 and all("/" not in name and ":" not in name for name in odd)
+    long = [default_name(inputs, 7, [f"layout.x={'9' * 300}{last}"]) for last in "12"]
+    assert long[0] != long[1] and len(long[0]) < 200
+
+
+def test_runs_with_other_changes_go_to_other_folders(calls):
+    assert main(["run", "--set", "layout.robots=16"]) == 0
+    assert main(["run", "--set", "layout.robots=8"]) == 0
+    assert sorted(path.name for path in Path("results").iterdir()) == [
+        "default-default-default-layout.robots=16-seed0",
+        "default-default-default-layout.robots=8-seed0",
+    ]
+
+
+def test_a_run_is_replaced_only_by_force(calls, capsys):
+    assert main(["run", "--out", "run"]) == 0
+    before = Path("run/run.json").read_bytes()
+    capsys.readouterr()
+    assert main(["run", "--out", "run"]) == 2
+    assert one_line(capsys).endswith(
+        "/run: there is a run folder of this name already; --force replaces it, --out names another"
+    )
+    assert len(calls) == 1 and Path("run/run.json").read_bytes() == before
+    Path("run/mark").touch()
+    assert main(["run", "--out", "run", "--force"]) == 0
+    assert len(calls) == 2 and not Path("run/mark").exists()
+    assert files() == ["run", *(f"run/{name}" for name in files(Path("run")))]
+
+
+def test_two_runs_into_one_folder(calls, capsys, monkeypatch):
+    """The second is refused while the first goes on, whatever it was told."""
+    import rmfs.simulation.run
+
+    first = rmfs.simulation.run.simulate
+    codes = []
+
+    def simulate(*given, **more):
+        monkeypatch.setattr("rmfs.simulation.run.simulate", first)
+        codes.append(main(["run", "--out", "run", "--force", "--seed", "2"]))
+        return first(*given, **more)
+
+    monkeypatch.setattr("rmfs.simulation.run.simulate", simulate)
+    assert main(["run", "--out", "run"]) == 0
+    assert codes == [2] and len(calls) == 1
+    assert "/run: is being written by another process" in capsys.readouterr().err
+    assert load_run(Path("run")).footprint["orders_completed"] == 1
+    assert main(["run", "--out", "run", "--force"]) == 0
+
+
+def test_a_run_prints_its_own_figures(calls, capsys, monkeypatch):
+    """Although another one has taken its folder by force in the meantime."""
+    from fake_run import run
+
+    from rmfs.measure import write_run
+
+    replaced = simulate_command.conclude
+
+    def other_comes_in_between(target, footprint, report):
+        other = run()
+        other.seed = 9
+        write_run(other, target)
+        replaced(target, footprint, report)
+
+    monkeypatch.setattr(simulate_command, "conclude", other_comes_in_between)
+    assert main(["run", "--out", "run"]) == 0
+    assert load_run(Path("run")).footprint["seed"] == 9
+    assert "seed 3" in " ".join(capsys.readouterr().out.split())
 
 
 def test_all_options_arrive(calls):

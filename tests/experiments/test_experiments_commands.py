@@ -213,6 +213,26 @@ def test_compare_tables(made, capsys):
     assert "no common seed: 3 and 3 runs taken as independent (Welch)" in told(capsys)
 
 
+def test_what_says_nothing_is_not_printed(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    head = {"seed": [1, 2], "units_per_h": [600.0, 620.0], "wall_s": [1.0, 9.0]}
+    a = {"late_share": [0.0, 1e-7], "pick_station_idle_share": [0.5, 0.5]}
+    b = {"late_share": [0.1, 0.2], "pick_station_idle_share": [-2.2e-16, 0.0]}
+    pd.DataFrame(head | a).to_csv("a.csv", index=False)
+    pd.DataFrame(head | b | {"units_per_h": [600.0, 620.0 + 1e-12]}).to_csv("b.csv", index=False)
+    for more in ([], ["--all"]):
+        assert main(["compare", "a.csv", "b.csv", *more]) == 0
+        out = told(capsys)
+        assert "wall_s" not in out and "e-16" not in out and "00,000" not in out
+        rows = {line.split()[0]: line.split()[1:] for line in out.splitlines() if "share" in line}
+        assert rows["late_share"][:4] == ["5e-08", "0.15", "0.15", "-"]
+        assert rows["pick_station_idle_share"][:4] == ["0.5", "0", "-0.5", "-100.0%"]
+    (row,) = [line.split() for line in out.splitlines() if line.startswith("  units_per_h")]
+    assert row[3:5] == ["0", "0%"]
+    assert main(["compare", "a.csv", "b.csv", "-c", "wall_s"]) == 0
+    assert "wall_s" in told(capsys)
+
+
 def test_compare_runs(tmp_path, monkeypatch, capsys):
     from rmfs.measure import write_run
     from rmfs.simulation.run import simulate

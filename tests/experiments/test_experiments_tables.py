@@ -82,6 +82,18 @@ def test_digits_follow_the_spread():
     assert tables.digits(pd.Series([0.0, 0.0]), pd.Series([16.0, 32.0])) == 0
 
 
+def test_rounding_is_not_printed():
+    import pandas as pd
+
+    runs = [(arm, seed) for arm in "ab" for seed in (1, 2)]
+    frame = pd.DataFrame(runs, columns=["arm", "replication"])
+    frame["idle_share"] = -2.2e-16
+    text = tables.means(frame, ["idle_share"]).to("markdown")
+    assert "| 0 ± 0 |" in " ".join(text.split())
+    frame["idle_share"] = [0.0, -0.0004, 0.3, 0.2]
+    assert "-0.00 " not in tables.means(frame, ["idle_share"]).to("markdown")
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_of_picture_is_drawn(results, tmp_path, kind):
     plan, frame, folder = results

@@ -127,6 +127,9 @@ class Settings(pydantic.BaseModel):
     def to_table(self) -> dict[str, str]:
         return {"name": self.name}
 
+    def rules(self) -> list[type]:
+        return []
+
 
 def order(index, created, lines, *, due=nan, station=-1, assigned=nan, completed=nan):
     made = tuple(SimpleNamespace(sku=sku, units=units) for sku, units in lines)
