@@ -70,8 +70,8 @@ docs: $(VENV)/.docs ## Build the documentation: docs/_build/html/index.html
 .PHONY: pictures
 pictures: setup ## Draw the pictures of the documentation (needs LaTeX and Poppler)
 	$(BIN)/rmfs layout show default --out docs/images/default-layout.png
-	$(BIN)/python -m rmfs.experiments.viewer pictures
-	$(BIN)/python -m rmfs.experiments.typeset results/published/figure-5a.tex docs/images/figure-5a-table.png
+	$(BIN)/python -m tests.tools.viewer pictures
+	$(BIN)/python -m tests.tools.typeset results/published/figure-5a.tex docs/images/figure-5a-table.png
 
 .PHONY: viewer
 viewer: ## Build the page of `rmfs view` from its sources (needs Node; its users do not)

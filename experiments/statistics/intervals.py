@@ -62,7 +62,7 @@ def interval(
     method
         `t`: Student's t, exact if runs are normally distributed. `bootstrap`: bias-corrected and
         accelerated (Efron 1987), for distributions that are not; too narrow for few runs (see
-        `rmfs.experiments.coverage`). Default `t`.
+        `tests.tools.coverage`). Default `t`.
     """
     given = np.asarray(values, dtype=float)
     given = given[~np.isnan(given)]

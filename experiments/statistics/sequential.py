@@ -18,7 +18,7 @@ def narrow_enough(values: Sequence[float], relative: float, confidence: float = 
     compared with relative / (1 + relative) times the mean, so that the true mean is missed by no
     more than `relative` of itself. As it stops where the sample happens to vary little, its
     coverage lies somewhat below `confidence` when few runs are the start
-    (`rmfs.experiments.coverage`).
+    (`tests.tools.coverage`).
 
     Parameters
     ----------

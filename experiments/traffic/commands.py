@@ -144,28 +144,6 @@ def scale_command(
         typer.echo(path)
 
 
-@app.command()
-def fuzz(
-    seconds: Annotated[float, typer.Option(min=0.0, help="Wall time to go on for.")] = 600.0,
-    seed: Annotated[int, typer.Option(min=0, help="Number of the first case.")] = 0,
-    out: Annotated[Path, typer.Option(help="Folder for cases that fail.")] = Path("results/fuzz"),
-    replay: Annotated[
-        Path | None, typer.Option(help="Run the case of a file again.", show_default=False)
-    ] = None,
-) -> None:
-    """Drive random trips on random layouts, some of them spoilt, and look for failures."""
-    from rmfs.experiments.traffic import fuzz as fuzzing
-
-    if replay is not None:
-        verdict = fuzzing.run(fuzzing.read(replay))
-        typer.echo(f"{replay} {verdict.outcome}: {verdict.told}")
-        return
-    counts = fuzzing.fuzz(seed, seconds, out, typer.echo)
-    typer.echo(", ".join(f"{number} {name}" for name, number in counts.items()))
-    if counts["failed"]:
-        raise typer.Exit(UNSAFE)
-
-
 def _given(
     layout: str,
     robots: int | None,

@@ -128,13 +128,3 @@ def import_command(
     print(target / LIST)
     if any(one.refused for one in done):
         raise typer.Exit(WRONG_INPUT)
-
-
-@app.command(hidden=True)
-def docs(
-    folder: Annotated[Path, typer.Argument(help="Folder of the pages.")] = Path("docs"),
-) -> None:
-    """Write the pages of the documentation that are generated."""
-    from rmfs.measure.pages import write_pages
-
-    write_pages(folder)

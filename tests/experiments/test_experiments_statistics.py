@@ -13,7 +13,6 @@ import pytest
 from scipy import stats
 
 from rmfs.errors import InputError
-from rmfs.experiments import coverage
 from rmfs.experiments.statistics import (
     against,
     anova,
@@ -27,6 +26,7 @@ from rmfs.experiments.statistics import (
     unpaired,
 )
 from rmfs.experiments.statistics.paired import holm
+from tests.tools import coverage
 
 
 def test_t_interval_is_that_of_the_textbook():

@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 import rmfs
-from rmfs.experiments.viewer.chromium import chromium, open_page
 from rmfs.measure import RunFolder, load_run, write_run
+from tests.tools.viewer.chromium import chromium, open_page
 
 WARMUP_S, END_S = 60.0, 660.0
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from rmfs.experiments.viewer import chromium
+from tests.tools.viewer import chromium
 
 PROGRAM = chromium.installed()
 

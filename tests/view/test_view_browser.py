@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from in_browser import needs_browser, show, state
 
-from rmfs.experiments.viewer.chromium import open_page
 from rmfs.measure import RunFolder
 from rmfs.measure.checker import motion
 from rmfs.measure.checker.trace import Kinematics, read
 from rmfs.view.answers import replay_server
 from rmfs.view.export import export
+from tests.tools.viewer.chromium import open_page
 
 pytestmark = [pytest.mark.slow, needs_browser]
 

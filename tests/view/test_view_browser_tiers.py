@@ -10,10 +10,10 @@ import pytest
 from in_browser import needs_browser, show, state
 
 import rmfs
-from rmfs.experiments.viewer.chromium import served
 from rmfs.layout import colours
 from rmfs.measure import RunFolder, load_run, write_run
 from rmfs.view.answers import replay_server
+from tests.tools.viewer.chromium import served
 
 pytestmark = [pytest.mark.slow, needs_browser]
 

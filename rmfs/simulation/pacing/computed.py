@@ -28,7 +28,7 @@ SECONDS_PER_UNIT = {
     "rounding": 2.89e-5,
 }
 """Seconds of a unit of work of each back end, as measured by `python -m
-rmfs.experiments.calibrate` on an AMD EPYC on 2026-11-21 (results/published/seconds-per-unit.md)."""
+tests.tools.calibrate` on an AMD EPYC on 2026-11-21 (results/published/seconds-per-unit.md)."""
 
 SECONDS_PER_CALL = {
     "cp_sat": 0.0115,

@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from rmfs.errors import InputError
-from rmfs.experiments.overhead import Cost, CostAsleep, gaps, main, measure, measure_asleep
+from tests.tools.overhead import Cost, CostAsleep, gaps, main, measure, measure_asleep
 
 
 def test_overhead_is_what_is_not_simulation():

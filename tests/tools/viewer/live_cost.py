@@ -18,9 +18,10 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 import rmfs
-from rmfs.experiments.viewer.chromium import chromium, open_page, served
 from rmfs.view.answers import live_server
 from rmfs.view.live import LiveRun
+from tests.tools.checkout import ENVIRONMENT
+from tests.tools.viewer.chromium import chromium, open_page, served
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -146,9 +147,9 @@ def ratios(frame: pd.DataFrame) -> pd.DataFrame:
 def _timed(case: Case, how: How) -> tuple[float, float]:
     """Return processor and wall time of a run in an interpreter of its own."""
     given = json.dumps({**asdict(case), "how": how})
-    code = "import sys; from rmfs.experiments.viewer.live_cost import tell; tell(sys.argv[1])"
+    code = "import sys; from tests.tools.viewer.live_cost import tell; tell(sys.argv[1])"
     # the order of sets makes more difference than a page
-    same = {**os.environ, "PYTHONHASHSEED": "0"}
+    same = {**ENVIRONMENT, "PYTHONHASHSEED": "0"}
     with subprocess.Popen(
         [sys.executable, "-c", code, given], env=same, text=True, stdout=subprocess.PIPE
     ) as run:

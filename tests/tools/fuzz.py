@@ -1,4 +1,4 @@
-"""Random layouts and random trips: `rmfs traffic fuzz`.
+"""Random layouts and random trips: `python -m tests.tools.fuzz`.
 
 A case is a number: it says the planner, the parameters of a layout, what is spoilt in it, and the
 trips. What is well-formed must be driven safely, by the default planner without anybody left
@@ -8,10 +8,13 @@ report.
 
 from __future__ import annotations
 
+import argparse
 import json
 import signal
+import sys
 import time
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,7 +29,6 @@ from rmfs.trips import drive, random_trips
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from rmfs.layout.model import Layout
 
@@ -230,3 +232,30 @@ def read(path: Path) -> dict[str, Any]:
     if not isinstance(case, dict) or case.get("format") != FORMAT:
         raise InputError(f'{path}: expected an object with "format": "{FORMAT}"')
     return case
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Fuzz, or run one case again, and return the exit code: 1 if a case failed."""
+    parser = argparse.ArgumentParser(prog="python -m tests.tools.fuzz", description=__doc__)
+    parser.add_argument("--seconds", type=float, default=600.0, help="wall time to go on for")
+    parser.add_argument("--seed", type=int, default=0, help="number of the first case")
+    parser.add_argument(
+        "--out", type=Path, default=Path("results/fuzz"), help="folder for cases that fail"
+    )
+    parser.add_argument("--replay", type=Path, help="run the case of a file again")
+    given = parser.parse_args(arguments)
+    try:
+        if given.replay is not None:
+            verdict = run(read(given.replay))
+            print(f"{given.replay} {verdict.outcome}: {verdict.told}")
+            return 0
+        counts = fuzz(given.seed, given.seconds, given.out, print)
+    except InputError as error:
+        print(f"fuzz: {error}", file=sys.stderr)
+        return 2
+    print(", ".join(f"{number} {name}" for name, number in counts.items()))
+    return 1 if counts["failed"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

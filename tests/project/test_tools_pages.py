@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from rmfs.measure.dictionary import TABLES, markdown
-from rmfs.measure.pages import DICTIONARY, FROM_RAWSIMO, with_measures, write_pages
 from rmfs.rawsimo.footprint import COLUMNS, FILES
+from tests.tools.pages import DICTIONARY, FROM_RAWSIMO, with_measures, write_pages
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "../shared/reference/rawsimo-inputs-outputs.md"
@@ -20,12 +20,12 @@ KNOWN = {f"{table}.{column.name}" for table, columns in TABLES.items() for colum
 
 def test_the_dictionary_page_is_up_to_date():
     page = (ROOT / "docs" / DICTIONARY).read_text(encoding="utf-8")
-    assert page == markdown(), "run: rmfs docs"
+    assert page == markdown(), "run: python -m tests.tools.pages"
 
 
 def test_the_page_for_users_of_rawsimo_is_up_to_date():
     page = (ROOT / "docs" / FROM_RAWSIMO).read_text(encoding="utf-8")
-    assert page == with_measures(page), "run: rmfs docs"
+    assert page == with_measures(page), "run: python -m tests.tools.pages"
 
 
 def test_what_others_wrote_around_the_generated_part_stays(tmp_path):

@@ -10,7 +10,7 @@ import pytest
 
 from rmfs.config import read_toml, validate
 from rmfs.errors import InputError
-from rmfs.experiments.claims import SOURCE, ClaimFile, claims, main, page
+from tests.tools.claims import SOURCE, ClaimFile, claims, main, page
 
 ROOT = Path(__file__).resolve().parents[2]
 PUBLISHED = ROOT / "results" / "published"
@@ -35,7 +35,7 @@ def published(tmp_path):
 
 
 def test_the_page_is_what_is_published(tmp_path):
-    """Otherwise: python -m rmfs.experiments.claims. Fails as soon as a published number changes."""
+    """Otherwise: python -m tests.tools.claims. Fails as soon as a published number changes."""
     assert main(["--published", str(PUBLISHED), "--page", str(tmp_path / "claims.md")]) == 0
     written = (tmp_path / "claims.md").read_text("utf-8")
     assert (ROOT / "docs" / "claims.md").read_text("utf-8") == written

@@ -1,6 +1,6 @@
 """What a unit of work of each solver takes on this machine: the rates of the pacing mode `work`.
 
-`python -m rmfs.experiments.calibrate` collects the questions that controllers ask in short runs,
+`python -m tests.tools.calibrate` collects the questions that controllers ask in short runs,
 answers each again three times, and takes the least processor time (which other programs disturb
 little).
 
@@ -153,7 +153,7 @@ def main(arguments: list[str] | None = None) -> None:
         before = pd.read_csv(given.out.with_suffix(".csv"), index_col="backend")
         found = pd.concat([before.drop(index=found.index, errors="ignore"), found]).sort_index()
     told = (
-        f"Measured by `python -m rmfs.experiments.calibrate` on {datetime.date.today()}: "
+        f"Measured by `python -m tests.tools.calibrate` on {datetime.date.today()}: "
         f"{processor()}, Python {platform.python_version()}. "
         "seconds_per_call: of building and all else that does not grow with the work."
     )

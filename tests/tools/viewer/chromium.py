@@ -59,8 +59,8 @@ def chromium() -> Iterator[Browser]:
     program = installed()
     if program is None:
         raise InputError(
-            "needs Chromium and playwright: pip install 'rmfs[browser]', then the package chromium "
-            "of the system or `playwright install chromium`"
+            "needs Chromium and playwright: pip install playwright, then the package chromium of "
+            "the system or `playwright install chromium`"
         )
     from playwright.sync_api import sync_playwright
 

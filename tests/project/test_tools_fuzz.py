@@ -2,12 +2,11 @@
 
 import json
 
-from rmfs.cli import main
-from rmfs.experiments.traffic import fuzz
+from tests.tools import fuzz
 
 
 def test_ten_seconds(tmp_path, capsys):
-    assert main(["traffic", "fuzz", "--seconds", "10", "--seed", "3", "--out", str(tmp_path)]) == 0
+    assert fuzz.main(["--seconds", "10", "--seed", "3", "--out", str(tmp_path)]) == 0
     assert " 0 failed" in capsys.readouterr().out
     assert list(tmp_path.iterdir()) == []
 
@@ -17,10 +16,10 @@ def test_a_case_is_its_number_and_can_be_replayed(tmp_path, capsys):
     assert case == fuzz.draw(1003)
     path = tmp_path / "case.json"
     path.write_text(json.dumps(case))
-    assert main(["traffic", "fuzz", "--replay", str(path)]) == 0
+    assert fuzz.main(["--replay", str(path)]) == 0
     assert "driven" in capsys.readouterr().out
     path.write_text("{}")
-    assert main(["traffic", "fuzz", "--replay", str(path)]) == 2
+    assert fuzz.main(["--replay", str(path)]) == 2
 
 
 def test_a_queue_that_begins_at_a_corner():

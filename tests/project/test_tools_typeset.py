@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 
 from rmfs.errors import InputError
-from rmfs.experiments import typeset
 from rmfs.experiments.tables import Table
+from tests.tools import typeset
 
 ROOT = Path(__file__).resolve().parents[2]
 PUBLISHED = sorted((ROOT / "results" / "published").glob("*.tex"))

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 from PIL import Image
 
 import rmfs
-from rmfs.experiments.viewer.chromium import chromium, open_page, served, show
 from rmfs.files import replacing
 from rmfs.measure import load_run, write_run
 from rmfs.view.answers import replay_server
+from tests.tools.viewer.chromium import chromium, open_page, served, show
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The table of claims: `python -m rmfs.experiments.claims` writes docs/claims.md.
+"""The table of claims: `python -m tests.tools.claims` writes docs/claims.md.
 
 What is claimed is in `claims.toml`, and no number with it: numbers, their intervals and the hashes
 of their inputs are read from the published tables and their provenance. A claim also says between
@@ -34,7 +34,7 @@ PUBLISHED = Path("results") / "published"
 HEAD = """\
 # Claims
 
-<!-- written by python -m rmfs.experiments.claims -->
+<!-- written by python -m tests.tools.claims -->
 
 Every number that we publish, with what is needed to get it again. The *number* is the mean over
 seeds with the half width of its 95 % interval, where there is one; it is read from the *file* (a
@@ -177,7 +177,7 @@ def page(found: Sequence[Claim]) -> str:
 
 def main(arguments: list[str] | None = None) -> int:
     """Write the page."""
-    parser = argparse.ArgumentParser(prog="python -m rmfs.experiments.claims")
+    parser = argparse.ArgumentParser(prog="python -m tests.tools.claims")
     parser.add_argument("--published", type=Path, default=PUBLISHED, help="folder of tables")
     parser.add_argument("--page", type=Path, default=PAGE, help=f"file to write (default: {PAGE})")
     given = parser.parse_args(arguments)

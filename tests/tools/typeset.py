@@ -1,6 +1,6 @@
 r"""Typeset a LaTeX table and take its picture.
 
-`python -m rmfs.experiments.typeset TABLE.tex TABLE.png` does both.
+`python -m tests.tools.typeset TABLE.tex TABLE.png` does both.
 
 The table is put into a document with no more than it asks for (booktabs, siunitx) and compiled by
 tectonic or pdflatex, whichever is there. The picture carries the hash of the table, so that a
@@ -122,7 +122,7 @@ def digest(table: str) -> str:
 
 def main(arguments: list[str] | None = None) -> int:
     """Typeset a file."""
-    parser = argparse.ArgumentParser(prog="python -m rmfs.experiments.typeset")
+    parser = argparse.ArgumentParser(prog="python -m tests.tools.typeset")
     parser.add_argument("table", type=Path, help="a .tex file with one table")
     parser.add_argument("picture", type=Path, help="the .png file to write")
     given = parser.parse_args(arguments)

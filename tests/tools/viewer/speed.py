@@ -13,12 +13,12 @@ import pandas as pd
 import psutil  # type: ignore[import-untyped]
 
 import rmfs
-from rmfs.experiments.viewer.chromium import chromium, open_page, served, show
-from rmfs.experiments.viewer.copies import copies
 from rmfs.measure import load_run, write_run
 from rmfs.view import scene
 from rmfs.view.container import unpack
 from rmfs.view.server import Answer, Server
+from tests.tools.viewer.chromium import chromium, open_page, served, show
+from tests.tools.viewer.copies import copies
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page

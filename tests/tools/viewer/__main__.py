@@ -1,4 +1,4 @@
-"""`python -m rmfs.experiments.viewer`: speed, cost and pictures of the viewer."""
+"""`python -m tests.tools.viewer`: speed, cost and pictures of the viewer."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def speed(
     ] = False,
 ) -> None:
     """Measure the frames a second of every view, drawn in software."""
-    from rmfs.experiments.viewer.speed import SIZES, recorded, table
     from rmfs.measure import load_run
     from rmfs.view import scene
+    from tests.tools.viewer.speed import SIZES, recorded, table
 
     size = SIZES["large" if large else "usual"]
     packed = recorded(size) if run is None else scene.of_run(load_run(run))
@@ -41,7 +41,7 @@ def cost(
     drawn: Annotated[bool, typer.Option("--drawn", help="With the page in Chromium too.")] = False,
 ) -> None:
     """Measure how much slower runs of some ten seconds are when a page watches them."""
-    from rmfs.experiments.viewer.live_cost import How, ratios, table
+    from tests.tools.viewer.live_cost import How, ratios, table
 
     frame = table(rounds, [how for how in How if drawn or how is not How.DRAWN])
     print(frame.round(3).to_string(index=False))
@@ -53,7 +53,7 @@ def pictures(
     out: Annotated[Path, typer.Option(help="Folder.")] = Path("docs/images"),
 ) -> None:
     """Take the pictures of the documentation."""
-    from rmfs.experiments.viewer.pictures import take
+    from tests.tools.viewer.pictures import take
 
     take(out, print)
 

@@ -1,4 +1,4 @@
-"""Do the intervals keep their promise? `python -m rmfs.experiments.coverage` reports it.
+"""Do the intervals keep their promise? `python -m tests.tools.coverage` reports it.
 
 A synthetic simulator, whose true means are known, stands in for the warehouse: an arm's result is
 its mean plus an effect of the seed that all arms share (common random numbers) plus noise of its
@@ -197,7 +197,7 @@ FORMATS = ("", "", ".3f", ".3f", ".3f", ".1f", ".3f", ".3f")
 PAGE = """\
 # Do the intervals keep their promise?
 
-<!-- written by python -m rmfs.experiments.coverage --page docs/coverage.md -->
+<!-- written by python -m tests.tools.coverage --page docs/coverage.md -->
 
 A synthetic simulator whose true means are known stands in for the warehouse. A run is the mean of
 its arm, plus an effect of the seed that all arms share (common random numbers), plus noise of its
@@ -224,7 +224,7 @@ just the smallest difference worth detecting: right in {right:.3f} of the experi
 
 def main(arguments: list[str] | None = None) -> int:
     """Print the page, or write it to a file."""
-    parser = argparse.ArgumentParser(prog="python -m rmfs.experiments.coverage")
+    parser = argparse.ArgumentParser(prog="python -m tests.tools.coverage")
     parser.add_argument("--experiments", type=int, default=EXPERIMENTS, help="of each kind")
     parser.add_argument("--page", type=Path, help="the .md file to write (default: print it)")
     given = parser.parse_args(arguments)

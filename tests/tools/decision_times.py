@@ -1,6 +1,6 @@
 """How long decisions take, rule by rule, in runs of a large warehouse.
 
-`python -m rmfs.experiments.decision_times` writes the page docs/decision-times.md. Every rule works
+`python -m tests.tools.decision_times` writes the page docs/decision-times.md. Every rule works
 in a run of its own for five minutes, beside the default rules: on the layout of the
 path-planning study with 128 robots and 1,965 pods, 12 pick and 20 replenishment stations, 1,000
 SKUs, and always 200 orders and 200 bundles waiting. A call lasts from the question to the last
@@ -42,7 +42,7 @@ Milliseconds of wall time in runs of a large warehouse: 1,965 pods, 128 robots, 
 replenishment stations, 1,000 SKUs, always 200 orders and 200 bundles waiting. Each rule works in a
 run of its own beside the default rules. A call may give several decisions, or none; the median of a
 decision is that of the calls that gave some, each divided by their number. The time in which other
-controllers are consulted is theirs. Written by `python -m rmfs.experiments.decision_times`.
+controllers are consulted is theirs. Written by `python -m tests.tools.decision_times`.
 
 The median is to stay below one millisecond for every rule; so say the benchmarks too
 (`pytest -m benchmark tests/control`), in which one decision is timed again and again.

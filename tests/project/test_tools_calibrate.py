@@ -5,8 +5,8 @@ from __future__ import annotations
 import pandas as pd
 import pytest
 
-from rmfs.experiments import calibrate
 from rmfs.simulation.pacing.computed import SECONDS_PER_CALL, SECONDS_PER_UNIT
+from tests.tools import calibrate
 
 
 def test_a_line_through_the_calls() -> None:

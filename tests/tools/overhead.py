@@ -1,4 +1,4 @@
-"""What the harness itself costs: `python -m rmfs.experiments.overhead`.
+"""What the harness itself costs: `python -m tests.tools.overhead`.
 
 Real runs of ten seconds or more are done by the real command, `rmfs experiment run`, in an
 interpreter of its own. What it takes beyond the time that its runs spend simulating is overhead:
@@ -30,6 +30,7 @@ from rmfs.errors import InputError
 from rmfs.experiments.extras import optional
 from rmfs.experiments.running.driver import Silent
 from rmfs.files import write_text
+from tests.tools.checkout import ENVIRONMENT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -311,9 +312,9 @@ def measure_asleep(runs: int, asleep_s: float, jobs: int) -> CostAsleep:
     with tempfile.TemporaryDirectory() as name:
         path = _design(Path(name) / "overhead", runs, SHORT_S)
         given = [str(path), str(asleep_s), str(jobs)]
-        code = f"from rmfs.experiments.overhead import drive_asleep; drive_asleep(*{given!r})"
+        code = f"from tests.tools.overhead import drive_asleep; drive_asleep(*{given!r})"
         begun = time.perf_counter()
-        subprocess.run([sys.executable, "-c", code], check=True)
+        subprocess.run([sys.executable, "-c", code], check=True, env=ENVIRONMENT)
         wall_s = time.perf_counter() - begun
         told = json.loads(path.with_name(TOLD).read_text(encoding="utf-8"))
     return CostAsleep(runs, jobs, asleep_s, wall_s, told["cpu_s"], told["memory_mb"])
@@ -366,7 +367,7 @@ class _Memory(Silent):
 
 def main(arguments: list[str] | None = None) -> int:
     """Measure and tell."""
-    parser = argparse.ArgumentParser(prog="python -m rmfs.experiments.overhead")
+    parser = argparse.ArgumentParser(prog="python -m tests.tools.overhead")
     parser.add_argument("--runs", type=int, default=500)
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (default: 2)")
     parser.add_argument(

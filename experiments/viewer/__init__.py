@@ -1,1 +1,0 @@
-"""The viewer in a browser: how fast it draws, and the pictures of the documentation."""
