@@ -119,6 +119,7 @@ _SOLVER_BACKED: dict[Problem, dict[str, str]] = {
         "pile-on": "rmfs.solvers.control.pile_on:PileOnTasks",
         "dispatch": "rmfs.solvers.control.tasks.dispatch:DispatchControl",
         "routes": "rmfs.solvers.control.tasks.routes:RoutesControl",
+        "planning": "rmfs.solvers.control.planning:PlanningControl",
     },
 }
 """Controllers of the same distribution that ask optimisers."""

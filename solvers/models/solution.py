@@ -273,5 +273,6 @@ WORK_UNITS = {
     "min_cost_flow": "arcs",
     "rounding": "simplex iterations",
     "dynamic": "states expanded",
+    "visits": "lines looked at for the visits of a station",
 }
 """The unit of `Solution.work` per back end; heuristics count under "rule"."""

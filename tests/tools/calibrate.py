@@ -57,6 +57,8 @@ CASES: list[tuple[str, str, str, Overrides]] = [
     ("default", "default", "psa-prices", []),
     ("large", "large", "psa-placement", [(["scenario", "duration_s"], 120.0)]),
     ("large", "large", "ta-matching", [(["scenario", "duration_s"], 120.0)]),
+    ("small", "small", "planning", []),
+    ("small", "small", "planning", [(["controllers", "ta", "method"], "greedy")]),
     ("small", "small", "stocking", []),
     ("small", "small", "stocking", [(["controllers", "rps", "method"], "highs")]),
     ("small", "small", "stocking", [(["controllers", "rps", "method"], "rounding")]),

@@ -26,6 +26,7 @@ SECONDS_PER_UNIT = {
     "scipy": 5.28e-8,
     "min_cost_flow": 1.74e-6,
     "rounding": 2.89e-5,
+    "visits": 8.10e-7,
 }
 """Seconds of a unit of work of each back end, as measured by `python -m
 tests.tools.calibrate` on an AMD EPYC on 2026-11-21 (results/published/seconds-per-unit.md)."""
@@ -38,6 +39,7 @@ SECONDS_PER_CALL = {
     "scipy": 4.24e-6,
     "min_cost_flow": 2.52e-4,
     "rounding": 1.92e-3,
+    "visits": 5.31e-4,
 }
 """Seconds of a call besides, such as for building the model, by the same measurement; of other
 back ends none."""

@@ -1,0 +1,247 @@
+"""TA planning: which pods come to which station in which order, for which orders, by whom."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from rmfs.control.decisions import AssignOrder, BringForBundles, BringForPicks, Park, Rest
+from rmfs.control.pps.lexicographic import Lexicographic
+from rmfs.control.problems import Problem, Trigger
+from rmfs.control.ta import WORK, TaskAllocation
+from rmfs.control.ta.rest import RestPlaces
+from rmfs.control.ta.stations import keeper_of
+from rmfs.solvers.control.planning import snapshot
+from rmfs.solvers.control.planning.parameters import PlanningParameters
+from rmfs.solvers.control.planning.plan import Plan
+from rmfs.solvers.control.planning.question import by_rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rmfs.control.asks import Ask, Call
+    from rmfs.control.decisions import TaskDecision
+    from rmfs.control.ta import Consult
+    from rmfs.control.view import View
+    from rmfs.solvers.control.planning.question import Question
+    from rmfs.world.robots import Robot
+    from rmfs.world.stations import PickStation, ReplenishmentStation
+
+    Decision = Ask[Question] | AssignOrder | TaskDecision
+
+_WORTH_A_PLAN = 2
+"""Free slots of a station from which on a new order alone is worth a new plan."""
+
+
+class PlanningControl(TaskAllocation[PlanningParameters]):
+    """Plans the next visits of every pick station, and commits itself to the first steps only.
+
+    The model is asked, at most once per `buffer_s`, when a pod has reached a station, a robot is
+    free, or an order has come for which there are slots or idle robots. It plans several visits per
+    station, with the orders that each serves: whole orders, which keep their slot until their last
+    pod has come. The plan goes on from the last one. Of it only this is carried out: orders whose
+    first pod is under way take slots, and a station whose pods under way have less work than
+    `horizon_s` is sent the next pod by the nearest free robot.
+
+    The rest is left to rules. A robot with a pod goes on while there is work for it at its station,
+    takes it to a replenishment station for which bundles of this pod wait, or parks it where PSA
+    says. While the stock is below `stock_floor` one robot at least works for bundles; robots that
+    no pick station needs do so as well. If the optimiser fails, its start rule plans.
+    """
+
+    parameters_model = PlanningParameters
+    decides: ClassVar[frozenset[Problem]] = frozenset({Problem.POA, Problem.PPS})
+    subscriptions = WORK | {
+        Trigger.NEW_ORDER,
+        Trigger.ORDER_COMPLETED,
+        Trigger.BUNDLE_STORED,
+        Trigger.STATION_SWITCHED,
+        Trigger.POD_AT_STATION,
+    }
+    hears = frozenset({Trigger.NEW_ORDER, Trigger.POD_AT_STATION, Trigger.ROBOT_FREE})
+    optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.planning.question",)
+
+    def __init__(
+        self, parameters: PlanningParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        self._heuristic = Lexicographic(Lexicographic.parameters_model(), view, rng)
+        self._rest = RestPlaces(view, parameters.rest, self.draw)
+        self._plan = Plan(view)
+        self._asked_s = -inf
+        self._asked = 0
+        self._changed = True
+        self._wants_to_ask = False
+
+    # --- when the model is asked ----------------------------------------------------------------
+
+    def hear(self, trigger: Trigger, subject: Any) -> None:
+        """Take note that another plan may be better."""
+        if trigger is Trigger.NEW_ORDER and not self.view.resting:
+            free = max(station.free_slots for station in self.view.pick_stations)
+            self._changed |= free > _WORTH_A_PLAN
+        else:
+            self._changed = True
+
+    def next_event_s(self) -> float:
+        """When the optimiser may be asked again, if it is to be asked."""
+        return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
+
+    def decide(self, consult: Consult) -> Iterator[Decision]:
+        """Plan if something has changed, carry out what is due, and give robots their tasks."""
+        yield from self._give_slots()
+        yield from self._ask()
+        yield from self._give_slots()
+        for robot in [r for r in self.view.asking.values() if r.pod >= 0]:
+            yield from self._go_on(robot, consult)
+        yield from self._send()
+        for robot in [r for r in self.view.asking.values() if r.pod < 0]:
+            yield self._to_rest(robot)
+
+    def answered(self, call: Call) -> Iterator[Decision]:
+        """Take the plan, and carry out what is due; robots are told when they are asked about."""
+        memo: snapshot.Memo = call.ask.memo
+        if call.solution is not None:
+            self._plan.take(call.solution, memo, call)
+        else:
+            self._plan.take(by_rule(call.ask.question), memo, None)
+        yield from self._give_slots()
+        yield from self._send()
+
+    def is_modelled(self, decision: Any) -> bool:
+        """Orders, and pods for picks with the robots that fetch them."""
+        if isinstance(decision, BringForPicks):
+            return decision.robot.pod < 0
+        return isinstance(decision, AssignOrder)
+
+    def _ask(self) -> Iterator[Decision]:
+        given, now_s = self.parameters, self.view.now_s
+        self._wants_to_ask = self._changed and not self.in_flight
+        if not self._wants_to_ask or now_s < self._asked_s + given.buffer_s:
+            return
+        self._asked_s, self._changed, self._wants_to_ask = now_s, False, False
+        self._asked += 1
+        question = snapshot.ask(self.view, given, self._plan.pods, self._asked)
+        if question is not None:
+            yield question
+
+    # --- what is due of the plan ----------------------------------------------------------------
+
+    def _give_slots(self) -> Iterator[Decision]:
+        """Put orders on slots whose first pod is under way."""
+        for station in self.view.pick_stations:
+            for order in self._plan.due(station):
+                self.basis = self._plan.call
+                yield AssignOrder(order, station.index)
+
+    def _send(self) -> Iterator[Decision]:
+        """Send free robots: for bundles if stock is low, for picks, then for bundles again."""
+        view = self.view
+        floor = self.parameters.stock_floor * view.inventory.total_capacity
+        if view.inventory.stored_space < floor and not self._at_bundles():
+            yield from self._replenish(1)
+        while (free := self._free_robots()) and (station := self._neediest()) is not None:
+            pod = self._plan.pods[station.index].pop(0)
+            at = view.storage.pod_waypoint[[pod]]
+            near = min(free, key=lambda r: (view.travel.estimate_s(r.waypoint, at)[0], r.index))
+            self.basis = self._plan.call
+            yield BringForPicks(keeper_of(view, near, pod), pod, station.index)
+            yield from self._give_slots()
+        yield from self._replenish(len(view.robots))
+
+    def _neediest(self) -> PickStation | None:
+        """Find the station with the least work of those that are to be sent a pod."""
+        given, found = self.parameters, []
+        for station in self.view.pick_stations:
+            room = len(station.tasks) < given.robots_per_station
+            if room and self._plan.next_pod(station.index) >= 0:
+                unit_s = self.view.layout.pick_stations[station.index].unit_transfer_s
+                work_s = self._plan.units(station) * unit_s
+                if work_s < given.horizon_s:
+                    found.append((work_s, station.index))
+        return self.view.pick_stations[min(found)[1]] if found else None
+
+    def _free_robots(self) -> list[Robot]:
+        """Robots without pod and task, in order."""
+        asking, resting = self.view.asking, self.view.resting
+        return [
+            robot
+            for robot in self.view.robots
+            if robot.index in resting or (robot.index in asking and robot.pod < 0)
+        ]
+
+    # --- what is left to rules ------------------------------------------------------------------
+
+    def _go_on(self, robot: Robot, consult: Consult) -> Iterator[Decision]:
+        """Use a pod that has been served again, take it to its bundles, or park it."""
+        view, here = self.view, robot.station
+        self.basis = None
+        if here >= 0 and consult.serves(robot.pod, here):
+            bring = BringForPicks if here < len(view.pick_stations) else BringForBundles
+            yield bring(robot, robot.pod, here)
+            return
+        if 0 <= here < len(view.pick_stations) and self._waits(robot, view.pick_stations[here]):
+            return
+        for station in view.replenishment_stations:
+            if station.index != here and consult.serves(robot.pod, station.index):
+                yield BringForBundles(robot, robot.pod, station.index)
+                return
+        place = consult.place_for(robot)
+        if place >= 0:
+            yield Park(robot, place)
+
+    def _waits(self, robot: Robot, station: PickStation) -> bool:
+        """Whether a pod waits for a slot that is about to be free, for an order it serves alone."""
+        soon = any(order.unpicked_units == 0 for order in station.orders.values())
+        return soon and self._plan.streams(robot.pod, station.index)
+
+    def _at_bundles(self) -> int:
+        """How many robots work for replenishment stations."""
+        first = len(self.view.pick_stations)
+        return sum(r.task is not None and r.task.station >= first for r in self.view.robots)
+
+    def _replenish(self, most: int) -> Iterator[Decision]:
+        """Send at most so many robots for bundles, each to the nearest station with work."""
+        view = self.view
+        waiting = [s for s in view.replenishment_stations if view.has_open_work(s.index)]
+        for robot in self._free_robots() if waiting else ():
+            if most <= 0:
+                return
+            metres = view.travel.metres(robot.waypoint, np.array([s.waypoint for s in waiting]))
+            for number in np.argsort(metres, kind="stable").tolist():
+                station = waiting[number]
+                pod = self._heuristic.replenishment_pod(robot, station)
+                if pod >= 0:
+                    self.basis = None
+                    yield BringForBundles(keeper_of(view, robot, pod), pod, station.index)
+                    most -= 1
+                    break
+
+    def _to_rest(self, robot: Robot) -> Rest:
+        self.basis = None
+        place = self._rest.choose(robot)
+        return Rest(robot, place if place >= 0 else robot.waypoint)
+
+    def rest_place(self, robot: Robot) -> int:
+        """Choose by the rest rule."""
+        return self._rest.choose(robot)
+
+    # --- for the consult ------------------------------------------------------------------------
+
+    def serves(self, pod: int, station: int) -> bool:
+        """Whether there is work for a pod at a station of either kind."""
+        return self._heuristic.serves(pod, station)
+
+    def pick_pod(self, robot: Robot, station: PickStation) -> int:
+        """Nobody else gives tasks: none."""
+        return -1
+
+    def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
+        """Ask the heuristic."""
+        return self._heuristic.replenishment_pod(robot, station)
+
+    def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
+        """Ask the heuristic."""
+        return self._heuristic.next_station(robot, stations)

@@ -1,0 +1,56 @@
+"""What can be set of the planning controller."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import pydantic
+
+from rmfs.control.ta.rest import RestRule
+from rmfs.solvers.control.parameters import SearchParameters
+from rmfs.solvers.models.planning import Method
+
+NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
+Count = Annotated[int, pydantic.Field(ge=1)]
+
+
+class PlanningParameters(SearchParameters):
+    """Parameters of TA planning."""
+
+    method: Method = "lns"
+    """Who plans: `lns` (large neighbourhood search), `exact` (CP-SAT, for very small sites), or the
+    start rule of both, `greedy`."""
+    visits: Count = 6
+    """Visits per station that are planned ahead, besides those of pods under way."""
+    steps: Annotated[int, pydantic.Field(ge=0)] = 30
+    """Steps of the search for each plan."""
+    buffer_s: NotNegative = 1.0
+    """Seconds for which decisions are collected before the optimiser is asked again."""
+    horizon_s: NotNegative = 90.0
+    """Seconds of work, on pods under way, below which a station is sent another pod."""
+    unit_s: NotNegative = 10.0
+    """Seconds of a robot that a unit served is worth."""
+    order_s: NotNegative = 5.0
+    """Seconds of a robot that an order closed is worth."""
+    age_reward: NotNegative = 0.002
+    """What a second of waiting adds to the worth of closing an order."""
+    open_s: NotNegative = 60.0
+    """What a line is worth more if its order has a slot already: plans are kept to, and slots get
+    free."""
+    visit_s: NotNegative = 100.0
+    """Seconds of a robot that a visit is worth whatever it serves, as its station has work."""
+    decay: Annotated[float, pydantic.Field(gt=0, le=1)] = 0.9
+    """What the next visit of a station counts, as a share of this one."""
+    stock_floor: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.6
+    """Share of the space in use below which a robot always works for bundles; above it, robots that
+    no pick station needs do."""
+    robots_per_station: Count = 9
+    """How many robots may be at, or on their way to, one pick station."""
+    rest: RestRule = "nearest"
+    """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
+    `random`."""
+    bound_steps: Annotated[int, pydantic.Field(ge=0)] = 0
+    """Steps of the search for a bound of each plan, for the record. They are not counted as
+    work."""
+    work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 1.0
+    """Limit of `exact` in deterministic seconds of CP-SAT."""

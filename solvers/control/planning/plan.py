@@ -1,0 +1,133 @@
+"""What has been planned and not yet done: visits to come, and orders that wait for their slot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rmfs.solvers.control.planning.snapshot import under_way
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rmfs.control.asks import Call
+    from rmfs.control.view import View
+    from rmfs.solvers.control.planning.snapshot import Memo
+    from rmfs.world.orders import Order
+    from rmfs.world.stations import PickStation
+
+
+@dataclass(frozen=True, eq=False)
+class Planned:
+    """A waiting order with a station.
+
+    Attributes
+    ----------
+    first, last
+        The visits between which it has a slot, as numbered when the plan was made.
+    units
+        Units that each of its pods serves.
+    begins_with
+        The pod of its first visit.
+    """
+
+    order: Order
+    first: int
+    last: int
+    units: Mapping[int, int]
+    begins_with: int
+
+    @property
+    def sequence(self) -> tuple[int, int, int]:
+        """Orders that come first are smaller."""
+        return self.first, self.last, self.order.index
+
+
+class Plan:
+    """The last plan, as far as it still holds.
+
+    Attributes
+    ----------
+    pods
+        Per station, the pods of the visits to come.
+    call
+        The call it comes from; None: the rule.
+    """
+
+    def __init__(self, view: View) -> None:
+        self._view = view
+        self.pods: list[list[int]] = [[] for _ in view.pick_stations]
+        self._orders: list[list[Planned]] = [[] for _ in view.pick_stations]
+        self.call: Call | None = None
+
+    def take(self, solution: Mapping[str, Any], memo: Memo, call: Call | None) -> None:
+        """Replace the plan by a solution."""
+        self.call = call
+        self.pods = [[pod for pod in row if pod >= 0] for row in solution["pods"].tolist()]
+        self._orders = [[] for _ in self.pods]
+        visits: dict[int, list[tuple[int, int]]] = {}
+        for line, visit in zip(memo.lines, solution["line_visit"].tolist(), strict=True):
+            if visit >= 0:
+                visits.setdefault(line.order.index, []).append((visit, line.open_units))
+        for order, station in zip(memo.orders, solution["order_station"].tolist(), strict=True):
+            if station >= 0 and order in self._view.orders:
+                sequence = [*memo.under_way[station], *self.pods[station]]
+                self._orders[station].append(_planned(order, visits[order.index], sequence))
+        for planned in self._orders:
+            planned.sort(key=lambda one: one.sequence)
+
+    def next_pod(self, station: int) -> int:
+        """Return the pod of the next visit that is still possible, or -1."""
+        pods = self.pods[station]
+        while pods and not self._view.storage.is_at_hand[pods[0]]:
+            pods.pop(0)
+            self._stale()
+        return pods[0] if pods else -1
+
+    def due(self, station: PickStation) -> Iterator[Order]:
+        """Yield orders that are to have a slot now; each is given it before the next is asked for.
+
+        These are orders whose first pod is under way. One slot is left for orders that the pod at
+        the head serves alone.
+        """
+        waiting = self._orders[station.index]
+        if not waiting or not station.active:
+            return
+        coming = set(under_way(self._view, station))
+        head = self._head(station)
+        for planned in list(waiting):
+            if planned.order not in self._view.orders:
+                waiting.remove(planned)
+                self._stale()
+            elif planned.begins_with in coming:
+                streams = list(planned.units) == [head]
+                if station.free_slots > (0 if streams else 1):
+                    waiting.remove(planned)
+                    yield planned.order
+
+    def streams(self, pod: int, station: int) -> bool:
+        """Whether orders wait that a pod serves alone."""
+        return any(list(planned.units) == [pod] for planned in self._orders[station])
+
+    def units(self, station: PickStation) -> int:
+        """Units that pods under way have to give: bound ones, and those of orders without slot."""
+        coming = under_way(self._view, station)
+        bound = sum(len(task.picks) for task in station.tasks.values())
+        orders = self._orders[station.index]
+        return bound + sum(one.units.get(pod, 0) for one in orders for pod in coming)
+
+    def _head(self, station: PickStation) -> int:
+        return self._view.robots[station.robot].pod if station.robot >= 0 else -1
+
+    def _stale(self) -> None:
+        if self.call is not None:
+            self.call.stale += 1
+
+
+def _planned(order: Order, visits: list[tuple[int, int]], sequence: list[int]) -> Planned:
+    units: dict[int, int] = {}
+    for visit, count in visits:
+        units[sequence[visit]] = units.get(sequence[visit], 0) + count
+    numbers = [visit for visit, _ in visits]
+    first = min(numbers)
+    return Planned(order, first, max(numbers), units, sequence[first])

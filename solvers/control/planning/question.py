@@ -1,0 +1,79 @@
+"""The question for the worker: what there is to plan, who plans, and for how long."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rmfs.solvers.control.answers import answer
+from rmfs.solvers.models import planning
+from rmfs.solvers.models.planning import Method, Planning
+from rmfs.solvers.models.solution import Limits
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rmfs.control.asks import Answer, Plain
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is to be planned.
+
+    Attributes
+    ----------
+    data
+        The snapshot.
+    start
+        New visits per station of the last plan that are still possible.
+    method, limits, seed
+        Of the search.
+    bound_steps
+        Steps of the search for a bound.
+    """
+
+    data: Planning
+    start: tuple[tuple[int, ...], ...]
+    method: Method
+    limits: Limits
+    seed: int
+    bound_steps: int
+
+
+def solve(question: Question) -> Answer:
+    """Plan.
+
+    Returns
+    -------
+    Answer
+        `pods`: new visits per station, filled up with -1, shape (S, V); `order_station` and
+        `line_visit` as in the model.
+    """
+    data = question.data
+    found = planning.solve(
+        data,
+        question.method,
+        question.limits,
+        seed=question.seed,
+        start=question.start,
+        bound_steps=question.bound_steps,
+    )
+    plan = found.required
+    pods = np.full((data.stations, data.visits), -1)
+    for station, new in enumerate(plan.pods):
+        pods[station, : len(new)] = new
+    values: Mapping[str, Plain] = {
+        "pods": pods,
+        "order_station": plan.order_station,
+        "line_visit": plan.line_visit,
+    }
+    return answer(found, values)
+
+
+def by_rule(question: Question) -> Mapping[str, Any]:
+    """Plan by the start rule, when the optimiser has failed; as `Answer.solution`."""
+    found = solve(replace(question, method="greedy", bound_steps=0)).solution
+    assert found is not None
+    return found

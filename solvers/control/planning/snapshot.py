@@ -1,0 +1,174 @@
+"""From the world to the arrays of the planning model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.control.asks import Ask
+from rmfs.solvers.control.planning.question import Question, solve
+from rmfs.solvers.models.planning import Planning
+from rmfs.solvers.models.solution import Limits
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+    from rmfs.solvers.control.planning.parameters import PlanningParameters
+    from rmfs.world.orders import Order, OrderLine
+    from rmfs.world.stations import PickStation
+
+NONE = -1
+
+
+@dataclass(frozen=True)
+class Memo:
+    """What the numbers of a question mean.
+
+    Attributes
+    ----------
+    orders, lines
+        The order, or line, of each number.
+    under_way
+        Pods under way to each station, in the order in which they come.
+    """
+
+    orders: Sequence[Order]
+    lines: Sequence[OrderLine]
+    under_way: Sequence[Sequence[int]]
+
+
+@dataclass
+class _Rows:
+    """Orders and lines as they are collected."""
+
+    orders: list[Order] = field(default_factory=list)
+    station: list[int] = field(default_factory=list)
+    until: list[int] = field(default_factory=list)
+    lines: list[OrderLine] = field(default_factory=list)
+    order_of: list[int] = field(default_factory=list)
+
+    def add(self, order: Order, station: int, until: int) -> None:
+        for line in order.lines:
+            if line.open_units:
+                self.lines.append(line)
+                self.order_of.append(len(self.orders))
+        self.orders.append(order)
+        self.station.append(station)
+        self.until.append(until)
+
+
+def under_way(view: View, station: PickStation) -> list[int]:
+    """Pods at, or on their way to, a pick station, in the order in which they should come."""
+    head = view.robots[station.robot].pod if station.robot >= 0 else NONE
+    bring_s = view.travel.to(station.waypoint, loaded=True)
+    coming = []
+    for pod, task in station.tasks.items():
+        if pod == head:
+            continue
+        at = view.travel.robot_waypoint(task.robot)
+        place = view.storage.place_of[pod]
+        if place < 0:
+            way_s = bring_s.item(at)
+        else:
+            reach_s = view.travel.estimate_s(at, view.storage.pod_waypoint[[pod]])
+            way_s = float(reach_s[0]) + bring_s.item(place)
+        coming.append((way_s, pod))
+    coming.sort()
+    return [pod for pod in (head, *(pod for _, pod in coming)) if pod >= 0]
+
+
+def ask(
+    view: View, given: PlanningParameters, start: Sequence[Sequence[int]], seed: int
+) -> Ask[Question] | None:
+    """Ask for a plan; None if there is nothing to plan.
+
+    Waiting orders that the stock cannot serve are left out.
+
+    Parameters
+    ----------
+    start
+        New visits per station of the last plan.
+    seed
+        Seed of the search.
+    """
+    coming = [under_way(view, station) for station in view.pick_stations]
+    rows = _Rows()
+    for station in view.pick_stations:
+        _add_open(rows, station, coming[station.index])
+    for row in _servable(view):
+        rows.add(view.orders.at_row[row], NONE, NONE)
+    if not rows.lines:
+        return None
+    at_hand = view.storage.is_at_hand
+    kept = tuple(tuple(pod for pod in pods if at_hand[pod]) for pods in start)
+    data = _planning(view, given, rows, coming)
+    limits = Limits(iterations=given.steps, deterministic_s=given.work_s, gap=given.gap)
+    question = Question(data, kept, given.method, limits, seed, given.bound_steps)
+    sizes = {
+        "stations": data.stations,
+        "orders": data.orders,
+        "lines": data.lines,
+        "pods": int(at_hand.sum()),
+    }
+    return Ask(solve, question, sizes, Memo(rows.orders, rows.lines, coming))
+
+
+def _add_open(rows: _Rows, station: PickStation, coming: Sequence[int]) -> None:
+    """Add the orders that are open at a station."""
+    visit_of = {pod: visit for visit, pod in enumerate(coming)}
+    until: dict[int, int] = {}
+    for pod, task in station.tasks.items():
+        for pick in task.picks:
+            number = pick.line.order.index
+            until[number] = max(until.get(number, NONE), visit_of[pod])
+    for index, order in station.orders.items():
+        rows.add(order, station.index, until.get(index, NONE))
+
+
+def _servable(view: View) -> list[int]:
+    """Rows of the waiting orders that the stock can serve, in order of arrival."""
+    rows = view.orders.servable(view.inventory.free_stock).nonzero()[0]
+    found: list[int] = rows[np.argsort(view.orders.index[rows], kind="stable")].tolist()
+    return found
+
+
+def _planning(
+    view: View, given: PlanningParameters, rows: _Rows, coming: Sequence[Sequence[int]]
+) -> Planning:
+    station = np.array(rows.station, np.int64)
+    order_of = np.array(rows.order_of, np.int64)
+    units = np.array([line.open_units for line in rows.lines], np.int64)
+    waited_s = np.array([view.now_s - order.created_s for order in rows.orders])
+    is_open = station >= 0
+    return Planning(
+        slots=np.array([one.slots for one in view.pick_stations], np.int64),
+        coming=np.array([pod for pods in coming for pod in pods], np.int64),
+        coming_to=np.repeat(np.arange(len(coming)), [len(pods) for pods in coming]),
+        order_station=station,
+        order_until=np.array(rows.until, np.int64),
+        order_worth=given.order_s + given.age_reward * np.maximum(waited_s, 0.0) * ~is_open,
+        line_order=order_of,
+        line_sku=np.array([line.sku for line in rows.lines], np.int64),
+        line_units=units,
+        line_worth=given.unit_s * units + given.open_s * is_open[order_of],
+        stock=view.inventory.available.T.astype(np.int64),
+        cost=_cost(view, given),
+        visits=given.visits,
+        decay=given.decay,
+    )
+
+
+def _cost(view: View, given: PlanningParameters) -> NDArray[np.float64]:
+    """Time of a robot for a visit, the way there and back, less its worth, shape (P, S), s."""
+    at, at_hand = view.storage.pod_waypoint, view.storage.is_at_hand
+    cost = np.full((len(at), len(view.pick_stations)), np.inf)
+    for station in view.pick_stations:
+        if station.active:
+            way_s = view.travel.to(station.waypoint, loaded=True)[at]
+            cost[at_hand, station.index] = (2 * way_s - given.visit_s)[at_hand]
+    return cost

@@ -1,0 +1,167 @@
+"""The input: what waits, what is under way, and what pods hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rmfs.solvers.models.checks import costs, integers, number, reals, require
+
+Integers = NDArray[np.int64]
+Reals = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Planning:
+    """Orders, pods and stations at one instant, for a plan of several visits per station.
+
+    A *visit* is one pod at one station. Pods under way make the first visits of their station, in
+    the order in which they come; new ones follow, and a pod makes one new visit at most. Visits of
+    a station are counted from 0, those under way included.
+
+    A line is served by one visit. An order takes a slot from its first visit to its last. From one
+    visit to the next a station keeps a slot free, so that orders of a single visit can go through
+    it one after the other.
+
+    Parameters
+    ----------
+    slots
+        Order slots of each station, shape (S,), 1 or more.
+    coming
+        Pods under way, shape (F,), those of a station in the order in which they come.
+    coming_to
+        Station of each of them, shape (F,).
+    order_station
+        Station at which an order is open, or -1 if it waits, shape (O,).
+    order_until
+        The last visit under way that has units bound for an open order, or -1, shape (O,).
+    order_worth
+        Worth of closing an order besides that of its lines, shape (O,), s of a robot.
+    line_order, line_sku, line_units
+        What is to be planned: order, SKU and units of each line, shape (L,). A waiting order has
+        one line at least.
+    line_worth
+        Worth of serving a line, shape (L,), s of a robot.
+    stock
+        Units to spare per pod and SKU, shape (P, K).
+    cost
+        Time that a robot spends on a new visit besides the service, less what it is worth that the
+        station has work, shape (P, S), s; inf forbids it, as it must for pods under way.
+    visits
+        New visits that a station may have at most.
+    decay
+        What is earned or spent in a visit counts so much less than in the one before, in (0, 1].
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+
+    slots: Integers
+    coming: Integers
+    coming_to: Integers
+    order_station: Integers
+    order_until: Integers
+    order_worth: Reals
+    line_order: Integers
+    line_sku: Integers
+    line_units: Integers
+    line_worth: Reals
+    stock: Integers
+    cost: Reals
+    visits: int
+    decay: float = 1.0
+
+    def __post_init__(self) -> None:
+        slots = integers("slots", self.slots, (None,), low=1)
+        stock = integers("stock", self.stock, (None, None), low=0)
+        stations, (pods, skus) = len(slots), stock.shape
+        coming = integers("coming", self.coming, (None,), low=0, high=pods - 1)
+        order_station = integers(
+            "order_station", self.order_station, (None,), low=-1, high=stations - 1
+        )
+        orders = len(order_station)
+        line_order = integers("line_order", self.line_order, (None,), low=0, high=orders - 1)
+        lines = len(line_order)
+        checked = {
+            "slots": slots,
+            "stock": stock,
+            "coming": coming,
+            "coming_to": integers(
+                "coming_to", self.coming_to, (len(coming),), low=0, high=stations - 1
+            ),
+            "order_station": order_station,
+            "order_until": integers("order_until", self.order_until, (orders,), low=-1),
+            "order_worth": reals("order_worth", self.order_worth, (orders,), low=0.0),
+            "line_order": line_order,
+            "line_sku": integers("line_sku", self.line_sku, (lines,), low=0, high=skus - 1),
+            "line_units": integers("line_units", self.line_units, (lines,), low=1),
+            "line_worth": reals("line_worth", self.line_worth, (lines,), low=0.0),
+            "cost": costs("cost", self.cost, (pods, stations)),
+        }
+        for field, value in checked.items():
+            object.__setattr__(self, field, value)
+        number("visits", self.visits, low=0)
+        number("decay", self.decay, low=0.0, high=1.0)
+        require(self.decay > 0, "decay", "must be above 0")
+        require(len(set(coming.tolist())) == len(coming), "coming", "must name each pod once")
+        require(bool(np.isinf(self.cost[coming]).all()), "cost", "must be inf for pods under way")
+        waits = self.order_station < 0
+        have = np.bincount(line_order, minlength=orders) > 0
+        require(bool(have[waits].all()), "line_order", "must name a line of each waiting order")
+        under_way = np.array([len(found) for found in self.under_way], np.int64)
+        until = self.order_until[~waits]
+        require(
+            bool((until < under_way[self.order_station[~waits]]).all()),
+            "order_until",
+            "must be a visit under way",
+        )
+        require(
+            bool((self.order_until[waits] < 0).all()), "order_until", "must be -1 for who waits"
+        )
+
+    @property
+    def stations(self) -> int:
+        """How many stations there are."""
+        return len(self.slots)
+
+    @property
+    def orders(self) -> int:
+        """How many orders there are."""
+        return len(self.order_station)
+
+    @property
+    def lines(self) -> int:
+        """How many lines there are."""
+        return len(self.line_order)
+
+    @property
+    def pods(self) -> int:
+        """How many pods there are."""
+        return len(self.stock)
+
+    @cached_property
+    def under_way(self) -> list[list[int]]:
+        """Pods under way to each station."""
+        found: list[list[int]] = [[] for _ in range(self.stations)]
+        for pod, station in zip(self.coming.tolist(), self.coming_to.tolist(), strict=True):
+            found[station].append(pod)
+        return found
+
+    @cached_property
+    def kept(self) -> list[int]:
+        """Orders that each station may keep from one visit to the next.
+
+        One less than slots; more only if more are open now and cannot close in the first visit.
+        """
+        stays = self.order_until > 0
+        stays[self.line_order] = True
+        open_now = np.bincount(
+            self.order_station[stays & (self.order_station >= 0)], minlength=self.stations
+        )
+        most: list[int] = np.maximum(self.slots - 1, open_now).tolist()
+        return most

@@ -1,0 +1,130 @@
+r"""A bound for any size: lines are paid for, and every visit takes what pays it best.
+
+Slots, and that the lines of an order go together, are left out; that a line is served once is paid
+for by a price :math:`\pi_l \ge 0` (Lagrange). What is left is, per visit and SKU, which lines to
+serve with the stock of the pod (a knapsack, bounded by its relaxation), and which pod makes which
+visit (an assignment). Whatever the prices are, the result is a bound; a subgradient improves them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+if TYPE_CHECKING:
+    from rmfs.solvers.models.planning.data import Integers, Planning, Reals
+
+_SLACK = 1e-9
+"""Relative amount by which the bound is lowered for rounding in sums."""
+
+
+def bound(data: Planning, value: float, steps: int) -> float:
+    """Bound the objective of every plan from below.
+
+    Parameters
+    ----------
+    value
+        The objective of a plan, at which the steps aim.
+    steps
+        How many times the prices are improved; without any the bound is -inf.
+    """
+    best = -np.inf
+    prices = np.zeros(data.lines)
+    worth = _line_worth(data)
+    pace, idle = 1.0, 0
+    for _ in range(steps):
+        found, times = _relaxed(data, worth, prices)
+        if found > best:
+            best, idle = found, 0
+        else:
+            idle += 1
+            pace = pace / 2 if idle % 3 == 0 else pace
+        excess = times - 1.0
+        excess[(prices <= 0) & (excess < 0)] = 0.0
+        size = float((excess * excess).sum())
+        if size <= 0 or value - found <= 0:
+            break
+        prices = np.maximum(prices + pace * (value - found) / size * excess, 0.0)
+    if not np.isfinite(best):
+        return best
+    return min(float(best - _SLACK * max(1.0, abs(best), float(worth.sum()))), value)
+
+
+def _line_worth(data: Planning) -> Reals:
+    """Worth of a line with its share of that of its order.
+
+    An order earns its worth with its last line; its shares are earned no later.
+    """
+    count = np.bincount(data.line_order, minlength=data.orders)
+    shares = data.order_worth / np.maximum(count, 1)
+    worth: Reals = data.line_worth + shares[data.line_order]
+    return worth
+
+
+def _settled(data: Planning) -> float:
+    """Worth of open orders without lines left to plan."""
+    count = np.bincount(data.line_order, minlength=data.orders)
+    done = (count == 0) & (data.order_until >= 0)
+    return float((data.order_worth[done] * data.decay ** data.order_until[done]).sum())
+
+
+def _relaxed(data: Planning, worth: Reals, prices: Reals) -> tuple[float, Reals]:
+    """Return the bound at given prices, and how often it serves each line, shape (L,)."""
+    times = np.zeros(data.lines)
+    total = float(prices.sum())
+    gains, rows, visits = [], [], []
+    at = data.order_station[data.line_order]
+    for station in range(data.stations):
+        mine = np.flatnonzero((at < 0) | (at == station))
+        first = len(data.under_way[station])
+        for visit in range(first + data.visits):
+            net = worth[mine] * data.decay**visit - prices[mine]
+            lines = mine[net > 0]
+            if visit < first:
+                pods = np.array(data.under_way[station][visit : visit + 1])
+                gain, _ = _served(data, lines, net[net > 0], pods)
+                total += float(gain[0])
+                times += _amounts(data, lines, net[net > 0], int(pods[0]))
+                continue
+            pods = np.arange(data.pods)
+            gain, _ = _served(data, lines, net[net > 0], pods)
+            gains.append(gain - data.cost[:, station] * data.decay**visit)
+            rows.append((station, visit))
+            visits.append((lines, net[net > 0]))
+    if gains:
+        table = np.maximum(np.array(gains), 0.0)
+        row, pod = linear_sum_assignment(table, maximize=True)
+        total += float(table[row, pod].sum())
+        for r, p in zip(row.tolist(), pod.tolist(), strict=True):
+            if gains[r][p] > 0:
+                times += _amounts(data, *visits[r], p)
+    return -(total + _settled(data)), times
+
+
+def _served(data: Planning, lines: Integers, net: Reals, pods: Integers) -> tuple[Reals, Integers]:
+    """Return what each of some pods gains from lines at most, shape (p,), by its stock."""
+    gain = np.zeros(len(pods))
+    for sku in np.unique(data.line_sku[lines]).tolist():
+        chosen = np.flatnonzero(data.line_sku[lines] == sku)
+        units = data.line_units[lines[chosen]]
+        order = np.argsort(-net[chosen] / units, kind="stable")
+        used = np.concatenate([[0.0], np.cumsum(units[order])])
+        earned = np.concatenate([[0.0], np.cumsum(net[chosen][order])])
+        gain += np.interp(data.stock[pods, sku], used, earned)
+    return gain, pods
+
+
+def _amounts(data: Planning, lines: Integers, net: Reals, pod: int) -> Reals:
+    """Return how much of each line a pod serves in the relaxation, shape (L,)."""
+    amount = np.zeros(data.lines)
+    density = net / data.line_units[lines]
+    left = data.stock[pod].astype(np.float64)
+    for number in np.argsort(-density, kind="stable").tolist():
+        line = int(lines[number])
+        sku, units = data.line_sku[line], data.line_units[line]
+        share = min(1.0, left[sku] / units)
+        amount[line] = share
+        left[sku] -= share * units
+    return amount

@@ -1,0 +1,256 @@
+r"""The plan as an integer programme.
+
+.. math::
+
+    y_{svp} \text{ pod } p \text{ makes visit } v \text{ of station } s, \quad
+    z_{lsv} \text{ it serves line } l, \quad x_{os}, \quad
+    c_{osv} \text{ order } o \text{ closes then}, \quad
+    h_{osv} \text{ it is kept to the next}
+
+A visit gives no more than its pod has; the lines of a waiting order are served where the order is,
+all or none; an order closes no sooner than its last line; and what is kept fits into the slots.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.solvers.models.planning.values import NONE, Plan
+from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
+
+if TYPE_CHECKING:
+    from rmfs.solvers.models.planning.data import Planning, Reals
+
+
+class Programme:
+    """Columns and rows for one input, and the way from columns to a plan and back.
+
+    Attributes
+    ----------
+    linear
+        The programme to be solved.
+    """
+
+    def __init__(self, data: Planning) -> None:
+        self.data = data
+        self._build = ProgramBuilder()
+        self._lines_of: list[list[int]] = [[] for _ in range(data.orders)]
+        for line, order in enumerate(data.line_order.tolist()):
+            self._lines_of[order].append(line)
+        self._first = [len(pods) for pods in data.under_way]
+        self._make_columns()
+        self._visits()
+        self._stock()
+        self._orders()
+        self._closing()
+        self._keeping()
+        self.linear: LinearProgram = self._build.build(self._settled())
+
+    # --- columns --------------------------------------------------------------------------------
+
+    def _make_columns(self) -> None:
+        """Lay out the columns; each family is a dictionary from its indices."""
+        data, column = self.data, self._build.columns
+        visits = [range(first + data.visits) for first in self._first]
+        self._visits_of = visits
+        can_come = np.isfinite(data.cost)
+        self._y = {
+            (s, v, p): int(column(1, cost=data.cost[p, s] * data.decay**v)[0])
+            for s in range(data.stations)
+            for v in range(self._first[s], len(visits[s]))
+            for p in np.flatnonzero(can_come[:, s]).tolist()
+        }
+        self._z: dict[tuple[int, int, int], int] = {}
+        for line, order in enumerate(data.line_order.tolist()):
+            for s in self._stations_of(order):
+                for v in visits[s]:
+                    if self._may_serve(line, s, v, can_come):
+                        worth = data.line_worth[line] * data.decay**v
+                        self._z[line, s, v] = int(column(1, cost=-worth)[0])
+        waiting = np.flatnonzero(data.order_station < 0).tolist()
+        self._x = {(o, s): int(column(1)[0]) for o in waiting for s in range(data.stations)}
+        self._c = {
+            (o, s, v): int(column(1, cost=-data.order_worth[o] * data.decay**v)[0])
+            for o in range(data.orders)
+            if self._lines_of[o]
+            for s in self._stations_of(o)
+            for v in visits[s][max(int(data.order_until[o]), 0) :]
+        }
+        self._h = {
+            (o, s, v): int(column(1)[0])
+            for o in range(data.orders)
+            if len(self._lines_of[o]) > (data.order_station[o] < 0)
+            for s in self._stations_of(o)
+            for v in visits[s][max(int(data.order_until[o]), 0) : -1]
+        }
+
+    def _stations_of(self, order: int) -> list[int]:
+        at = int(self.data.order_station[order])
+        return [at] if at >= 0 else list(range(self.data.stations))
+
+    def _may_serve(self, line: int, station: int, visit: int, can_come: Reals) -> bool:
+        """Whether some pod of a visit could have the units of a line."""
+        data = self.data
+        enough = data.stock[:, data.line_sku[line]] >= data.line_units[line]
+        if visit < self._first[station]:
+            return bool(enough[data.under_way[station][visit]])
+        return bool((enough & (can_come[:, station] > 0)).any())
+
+    # --- rows -----------------------------------------------------------------------------------
+
+    def _row(self, terms: list[tuple[int, int]], *, lower: float = -np.inf,
+             upper: float = np.inf) -> None:  # fmt: skip
+        """Add a row of columns and coefficients; one without columns says nothing here."""
+        if terms:
+            columns, values = zip(*terms, strict=True)
+            self._build.rows(1, (0, np.array(columns), np.array(values)), lower=lower, upper=upper)
+
+    def _visits(self) -> None:
+        """Make one visit with one pod at a time, without gaps, none in vain."""
+        by_visit: dict[tuple[int, int], list[int]] = {}
+        by_pod: dict[int, list[int]] = {}
+        for (s, v, p), column in self._y.items():
+            by_visit.setdefault((s, v), []).append(column)
+            by_pod.setdefault(p, []).append(column)
+        lines: dict[tuple[int, int], list[int]] = {}
+        for (_, s, v), column in self._z.items():
+            lines.setdefault((s, v), []).append(column)
+        for (s, v), columns in by_visit.items():
+            self._row([(c, 1) for c in columns], upper=1)
+            before = by_visit.get((s, v - 1))
+            if before:
+                self._row([(c, 1) for c in columns] + [(c, -1) for c in before], upper=0)
+            served = lines.get((s, v), [])
+            self._row([(c, 1) for c in columns] + [(c, -1) for c in served], upper=0)
+        for columns in by_pod.values():
+            self._row([(c, 1) for c in columns], upper=1)
+
+    def _stock(self) -> None:
+        """Serve no more than the pod has."""
+        data = self.data
+        wanted: dict[tuple[int, int, int], list[tuple[int, int]]] = {}
+        for (line, s, v), column in self._z.items():
+            sku, units = int(data.line_sku[line]), int(data.line_units[line])
+            wanted.setdefault((s, v, sku), []).append((column, units))
+        for (s, v, sku), terms in wanted.items():
+            if v < self._first[s]:
+                pod = data.under_way[s][v]
+                self._row(terms, upper=float(data.stock[pod, sku]))
+            else:
+                pods = np.flatnonzero(np.isfinite(data.cost[:, s]) & (data.stock[:, sku] > 0))
+                have = [(self._y[s, v, p], -int(data.stock[p, sku])) for p in pods.tolist()]
+                self._row(terms + have, upper=0)
+
+    def _orders(self) -> None:
+        """Serve all lines of a waiting order at one station, or none; others once at most."""
+        data = self.data
+        for order, lines in enumerate(self._lines_of):
+            waits = data.order_station[order] < 0
+            for line in lines:
+                for s in self._stations_of(order):
+                    served = [(c, 1) for c in self._served(line, s, 0, len(self._visits_of[s]))]
+                    if waits:
+                        self._row([*served, (self._x[order, s], -1)], lower=0, upper=0)
+                    else:
+                        self._row(served, upper=1)
+            if waits:
+                self._row([(self._x[order, s], 1) for s in range(data.stations)], upper=1)
+
+    def _closing(self) -> None:
+        """Close an order once, and not before each of its lines has been served."""
+        for order, lines in enumerate(self._lines_of):
+            for s in self._stations_of(order) if lines else ():
+                all_visits = len(self._visits_of[s])
+                self._row([(c, 1) for c in self._closes(order, s, all_visits)], upper=1)
+                for v in self._visits_of[s]:
+                    closes = [(c, 1) for c in self._closes(order, s, v + 1)]
+                    for line in lines if closes else ():
+                        served = [(c, -1) for c in self._served(line, s, 0, v + 1)]
+                        self._row(closes + served, upper=0)
+
+    def _keeping(self) -> None:
+        """Keep a slot from the first line of an order to its last, and no more than there are."""
+        data = self.data
+        kept: dict[tuple[int, int], list[int]] = {}
+        for (order, s, v), column in self._h.items():
+            kept.setdefault((s, v), []).append(column)
+            end = len(self._visits_of[s])
+            for line in self._lines_of[order]:
+                if data.order_station[order] >= 0:
+                    before = [(c, 1) for c in self._served(line, s, 0, v + 1)]
+                    self._row([(column, 1), *before], lower=1)
+                    continue
+                early = [(c, -1) for c in self._served(line, s, 0, v + 1)]
+                for other in self._lines_of[order]:
+                    if other != line:
+                        late = [(c, -1) for c in self._served(other, s, v + 1, end)]
+                        self._row([(column, 1), *early, *late], lower=-1)
+        for (s, v), columns in kept.items():
+            stays = int(((data.order_station == s) & (data.order_until > v)).sum())
+            self._row([(c, 1) for c in columns], upper=data.kept[s] - stays)
+
+    def _served(self, line: int, station: int, begin: int, end: int) -> list[int]:
+        """Columns of a line at visits from `begin` to before `end`."""
+        found = ((line, station, visit) for visit in range(begin, end))
+        return [self._z[key] for key in found if key in self._z]
+
+    def _closes(self, order: int, station: int, end: int) -> list[int]:
+        found = ((order, station, visit) for visit in range(end))
+        return [self._c[key] for key in found if key in self._c]
+
+    def _settled(self) -> float:
+        """What open orders are worth for which nothing is left to plan."""
+        data = self.data
+        return -sum(
+            float(data.order_worth[order]) * data.decay ** int(data.order_until[order])
+            for order, lines in enumerate(self._lines_of)
+            if not lines and data.order_until[order] >= 0
+        )
+
+    # --- to a plan and back ---------------------------------------------------------------------
+
+    def plan(self, columns: Reals) -> Plan:
+        """Read a plan from the columns."""
+        data = self.data
+        pods: list[list[int]] = [[] for _ in range(data.stations)]
+        for (s, _, p), column in sorted(self._y.items()):
+            if columns[column] > 0.5:
+                pods[s].append(p)
+        order_station = data.order_station.copy()
+        for (order, s), column in self._x.items():
+            if columns[column] > 0.5:
+                order_station[order] = s
+        line_visit = np.full(data.lines, NONE)
+        for (line, _, v), column in self._z.items():
+            if columns[column] > 0.5:
+                line_visit[line] = v
+        return Plan(tuple(map(tuple, pods)), order_station, line_visit)
+
+    def columns(self, plan: Plan) -> Reals:
+        """Write a feasible plan as columns."""
+        data, found = self.data, np.zeros(self.linear.columns)
+        for s, pods in enumerate(plan.pods):
+            for v, p in enumerate(pods, start=self._first[s]):
+                found[self._y[s, v, p]] = 1
+        for line, v in enumerate(plan.line_visit.tolist()):
+            if v >= 0:
+                s = int(plan.order_station[data.line_order[line]])
+                found[self._z[line, s, v]] = 1
+        for order, lines in enumerate(self._lines_of):
+            s = int(plan.order_station[order])
+            if s < 0 or not lines:
+                continue
+            if data.order_station[order] < 0:
+                found[self._x[order, s]] = 1
+            visits = plan.line_visit[lines]
+            last = max(int(visits.max()), int(data.order_until[order]), 0)
+            is_closed = bool((visits >= 0).all())
+            if is_closed:
+                found[self._c[order, s, last]] = 1
+            begin = int(visits.min()) if data.order_station[order] < 0 else 0
+            for v in range(begin, last if is_closed else len(self._visits_of[s])):
+                if (order, s, v) in self._h:
+                    found[self._h[order, s, v]] = 1
+        return found

@@ -1,0 +1,126 @@
+"""A plan, what it is worth, and what is wrong with it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from rmfs.solvers.models.planning.data import Integers, Planning
+
+NONE = -1
+_NEVER = np.iinfo(np.int64).max
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Which pods come, in which order, and what each visit serves.
+
+    Attributes
+    ----------
+    pods
+        Per station, the pods of its new visits in their order.
+    order_station
+        Station of each order, -1 if it goes on waiting, shape (O,).
+    line_visit
+        Visit that serves each line, at the station of its order; -1 for none, shape (L,).
+    """
+
+    pods: Sequence[Sequence[int]]
+    order_station: Integers
+    line_visit: Integers
+
+
+def nothing(data: Planning) -> Plan:
+    """Return the plan that leaves all as it is."""
+    none: tuple[tuple[int, ...], ...] = ((),) * data.stations
+    return Plan(none, data.order_station.copy(), np.full(data.lines, NONE))
+
+
+def objective(data: Planning, plan: Plan) -> float:
+    """Return the cost of new visits less the worth of lines served and orders closed, in s."""
+    total = 0.0
+    for station, pods in enumerate(plan.pods):
+        first = len(data.under_way[station])
+        for visit, pod in enumerate(pods, start=first):
+            total += float(data.cost[pod, station]) * data.decay**visit
+    served = plan.line_visit >= 0
+    total -= float((data.line_worth[served] * data.decay ** plan.line_visit[served]).sum())
+    closed = _is_closed(data, plan)
+    last = _last_visit(data, plan)[closed]
+    return total - float((data.order_worth[closed] * data.decay**last).sum())
+
+
+def violations(data: Planning, plan: Plan) -> list[str]:
+    """Say what is wrong with a plan; nothing if it is feasible."""
+    return [*_wrong_pods(data, plan), *_wrong_orders(data, plan), *_wrong_visits(data, plan)]
+
+
+def _is_closed(data: Planning, plan: Plan) -> NDArray[np.bool_]:
+    """Whether an order has a station and nothing of it is left at the end, shape (O,)."""
+    closed: NDArray[np.bool_] = plan.order_station >= 0
+    closed = closed & (_last_visit(data, plan) >= 0)
+    closed[data.line_order[plan.line_visit < 0]] = False
+    return closed
+
+
+def _last_visit(data: Planning, plan: Plan) -> Integers:
+    """Last visit with units for each order, -1 for none, shape (O,)."""
+    last = data.order_until.copy()
+    np.maximum.at(last, data.line_order, plan.line_visit)
+    return last
+
+
+def _wrong_pods(data: Planning, plan: Plan) -> Iterator[str]:
+    if len(plan.pods) != data.stations:
+        yield "pods: a row per station is missing"
+    called = [pod for pods in plan.pods for pod in pods]
+    if len(set(called)) < len(called):
+        yield "a pod makes two new visits"
+    for station, pods in enumerate(plan.pods):
+        if len(pods) > data.visits:
+            yield f"station {station}: more than {data.visits} new visits"
+        for pod in pods:
+            if not np.isfinite(data.cost[pod, station]):
+                yield f"station {station}: pod {pod} cannot come"
+
+
+def _wrong_orders(data: Planning, plan: Plan) -> Iterator[str]:
+    is_open = data.order_station >= 0
+    if (plan.order_station != data.order_station)[is_open].any():
+        yield "an open order changes its station"
+    waits = ~is_open[data.line_order]
+    placed = plan.order_station[data.line_order] >= 0
+    if (waits & (placed != (plan.line_visit >= 0))).any():
+        yield "of a waiting order some lines are served and others not"
+
+
+def _wrong_visits(data: Planning, plan: Plan) -> Iterator[str]:
+    at = plan.order_station[data.line_order]
+    last, first = _last_visit(data, plan), np.full(data.orders, _NEVER)
+    served = plan.line_visit >= 0
+    np.minimum.at(first, data.line_order[served], plan.line_visit[served])
+    first[data.order_station >= 0] = -1
+    last[data.line_order[~served & (at >= 0)]] = _NEVER
+    for station, new in enumerate(plan.pods):
+        pods = [*data.under_way[station], *new]
+        if (plan.line_visit[at == station] >= len(pods)).any():
+            yield f"station {station}: a line is served by a visit that is not there"
+        for visit, pod in enumerate(pods):
+            here = (at == station) & (plan.line_visit == visit)
+            used = np.bincount(data.line_sku[here], data.line_units[here], data.stock.shape[1])
+            if (used > data.stock[pod]).any():
+                yield f"station {station}, visit {visit}: pod {pod} has not enough units"
+            if visit >= len(data.under_way[station]) and not here.any():
+                yield f"station {station}, visit {visit}: serves nothing"
+            mine = plan.order_station == station
+            if visit + 1 < len(pods):
+                kept = int((mine & (first <= visit) & (last > visit)).sum())
+                if kept > data.kept[station]:
+                    yield f"station {station}, visit {visit}: {kept} orders are kept"
