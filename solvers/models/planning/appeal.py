@@ -39,8 +39,8 @@ class Appeal:
         data, column = self._data, self._column
         left: NDArray[np.bool_] = np.array(draft.line_visit, np.int64) < 0
         there = [*data.under_way[station], *draft.pods[station]]
-        at_hand = (self._stock[there] > 0).any(axis=0)
-        missing = left & ~at_hand[column]
+        at_hand: NDArray[np.bool_] = self._stock[there].sum(axis=0) > 0
+        missing: NDArray[np.bool_] = left & ~at_hand[column]
         lacking = np.bincount(data.line_order[missing], minlength=data.orders)
         share = np.where(lacking[data.line_order] > missing, PARTLY, 1.0)
         share[~left | ((self._at >= 0) & (self._at != station))] = 0.0
