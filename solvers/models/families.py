@@ -19,6 +19,7 @@ FAMILIES = {
     "balance": "tasks.balance",
     "sequence": "tasks.sequence",
     "replenishment": "replenishment",
+    "planning": "planning",
     "run_bound": "run_bound",
 }
 """Where each family is, below `rmfs.solvers.models`."""

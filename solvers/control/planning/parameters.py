@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import pydantic
 
 from rmfs.control.ta.rest import RestRule
 from rmfs.solvers.control.parameters import SearchParameters
-from rmfs.solvers.models.planning import Method
 
 NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 Count = Annotated[int, pydantic.Field(ge=1)]
@@ -17,8 +16,8 @@ Count = Annotated[int, pydantic.Field(ge=1)]
 class PlanningParameters(SearchParameters):
     """Parameters of TA planning."""
 
-    method: Method = "lns"
-    """Who plans: `lns` (large neighbourhood search), `exact` (CP-SAT, for very small sites), or the
+    method: Literal["lns", "greedy", "cp_sat"] = "lns"
+    """Who plans: `lns` (large neighbourhood search), `cp_sat` (exact, for very small sites), or the
     start rule of both, `greedy`."""
     visits: Count = 6
     """Visits per station that are planned ahead, besides those of pods under way."""
@@ -53,4 +52,4 @@ class PlanningParameters(SearchParameters):
     """Steps of the search for a bound of each plan, for the record. They are not counted as
     work."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 1.0
-    """Limit of `exact` in deterministic seconds of CP-SAT."""
+    """Limit of `cp_sat` in deterministic seconds of CP-SAT."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from rmfs.solvers.control.answers import answer
 from rmfs.solvers.models import planning
-from rmfs.solvers.models.planning import Method, Planning
+from rmfs.solvers.models.planning import Planning
 from rmfs.solvers.models.solution import Limits
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class Question:
 
     data: Planning
     start: tuple[tuple[int, ...], ...]
-    method: Method
+    method: str
     limits: Limits
     seed: int
     bound_steps: int
@@ -57,7 +57,7 @@ def solve(question: Question) -> Answer:
         question.method,
         question.limits,
         seed=question.seed,
-        start=question.start,
+        pods=question.start,
         bound_steps=question.bound_steps,
     )
     plan = found.required

@@ -1,13 +1,20 @@
 """Visits planned ahead: which pods come to which station in which order, and what each serves.
 
-`solve` plans by the start rule, by large neighbourhood search, or exactly by CP-SAT. The input is a
-`Planning`, the result a `Solution[Plan]`.
+- `greedy`: the start rule; `lns`: large neighbourhood search from there;
+- `cp_sat`: exact, for a few visits and some twenty orders.
 """
 
+from rmfs.solvers.models.methods import Methods
+from rmfs.solvers.models.planning import cp_sat, greedy, lns
 from rmfs.solvers.models.planning.data import Planning as Planning
-from rmfs.solvers.models.planning.solve import Method as Method
-from rmfs.solvers.models.planning.solve import solve as solve
 from rmfs.solvers.models.planning.values import Plan as Plan
 from rmfs.solvers.models.planning.values import nothing as nothing
 from rmfs.solvers.models.planning.values import objective as objective
 from rmfs.solvers.models.planning.values import violations as violations
+
+solve = Methods[Planning, Plan](
+    {"cp_sat": cp_sat.solve, "greedy": greedy.solve, "lns": lns.solve},
+    default="lns",
+    rule="greedy",
+)
+methods = solve.names

@@ -60,13 +60,13 @@ class Filling:
 
     Attributes
     ----------
-    filled
-        How many times visits have been filled.
+    work
+        Lines looked at so far for the visits of a station.
     """
 
     def __init__(self, data: Planning) -> None:
         self.data = data
-        self.filled = 0
+        self.work = 0
         self._lines: list[list[Line]] = [[] for _ in range(data.orders)]
         rows = zip(data.line_order.tolist(), data.line_sku.tolist(), data.line_units.tolist(),
                    strict=True)  # fmt: skip
@@ -123,7 +123,7 @@ class Filling:
         ]
 
     def _fill(self, new: list[list[int]]) -> Draft:
-        self.filled += 1
+        self.work += self.data.stations * max(self.data.lines, 1)
         data = self.data
         left = [
             [dict(self._units_on(pod)) for pod in (*before, *after)]

@@ -2,68 +2,53 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING
 
-import numpy as np
+from rmfs.solvers.models.planning.appeal import Appeal
+from rmfs.solvers.models.planning.filling import Filling
+from rmfs.solvers.models.planning.outcome import solution
+from rmfs.solvers.models.planning.visits import extended, first_visits
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rmfs.solvers.models.planning.appeal import Appeal
-    from rmfs.solvers.models.planning.filling import Draft, Filling
-
-TRIED = 5
-"""Pods that are tried for each visit."""
+    from rmfs.solvers.models.planning.data import Planning
+    from rmfs.solvers.models.planning.values import Plan
 
 
-def extended(filling: Filling, appeal: Appeal, pods: Sequence[Sequence[int]]) -> Draft:
-    """Add visits to those given as long as they pay; the station with the fewest units first."""
-    data = filling.data
-    draft = filling.draft(pods)
-    done: set[int] = set()
-    while True:
-        stations = [
-            station
-            for station in range(data.stations)
-            if station not in done and len(draft.pods[station]) < data.visits
-        ]
-        if not stations:
-            return draft
-        units = _units(filling, draft)
-        station = min(stations, key=lambda s: (units[s], s))
-        better = _best(filling, appeal, draft, station)
-        if better is None:
-            done.add(station)
-        else:
-            draft = better
+def solve(
+    data: Planning,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: Plan | None = None,
+    pods: Sequence[Sequence[int]] = (),
+    bound_steps: int = 0,
+) -> Solution[Plan]:
+    """Add visits as long as they pay.
 
+    Parameters
+    ----------
+    data
+        The problem.
+    limits, seed
+        Not needed.
+    start
+        A feasible plan whose visits are kept. Default: none.
+    pods
+        Visits per station of an earlier plan, which go on as far as they are possible; `start` goes
+        before. Default: none.
+    bound_steps
+        Steps for the bound (`prices`). Default: no bound.
 
-def with_visit(filling: Filling, draft: Draft, station: int, visit: int, pod: int) -> Draft:
-    """Let a pod come in between the new visits of a draft."""
-    pods = [list(one) for one in draft.pods]
-    pods[station].insert(visit, pod)
-    return filling.draft(pods)
-
-
-def _best(filling: Filling, appeal: Appeal, draft: Draft, station: int) -> Draft | None:
-    """Find the best next visit of a station; None if none pays."""
-    scores = appeal.scores(draft, station)
-    end, best = len(draft.pods[station]), draft
-    for pod in np.argsort(-scores, kind="stable")[:TRIED].tolist():
-        if np.isfinite(scores[pod]):
-            trial = with_visit(filling, draft, station, end, pod)
-            if trial.value > best.value:
-                best = trial
-    return None if best is draft else best
-
-
-def _units(filling: Filling, draft: Draft) -> list[int]:
-    """Count the units that each station would be given."""
-    data = filling.data
-    visit = np.array(draft.line_visit, np.int64)
-    station = np.array(draft.order_station, np.int64)[data.line_order]
-    served = visit >= 0
-    counted: list[int] = np.bincount(
-        station[served], data.line_units[served], data.stations
-    ).tolist()
-    return counted
+    Returns
+    -------
+    The plan; not worse than the start.
+    """
+    began = time.perf_counter()
+    filling = Filling(data)
+    known = first_visits(data, start, pods)
+    draft = extended(filling, Appeal(data), known)
+    return solution(data, draft.plan(), start, filling.work, bound_steps, began)

@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 import pytest
 from planning_oracle import best
+from planning_sample import planning
 
 from rmfs.solvers.models import Limits, ModelError, Status
 from rmfs.solvers.models.planning import (
-    Method,
     Plan,
     Planning,
+    methods,
     nothing,
     objective,
     solve,
     violations,
 )
-from rmfs.solvers.models.planning.sample import planning
 
-METHODS = get_args(Method)
+METHODS = methods()
 TINY: list[dict[str, int]] = [
     {"stations": 1, "slots": 2, "orders": 2, "pods": 3, "skus": 2, "visits": 2},
     {"stations": 2, "slots": 2, "orders": 2, "pods": 3, "skus": 2, "visits": 1},
@@ -56,7 +56,7 @@ def test_exact_is_what_enumeration_finds(sizes: dict[str, int], seed: int) -> No
     """CP-SAT proves the least objective; the others and the prices keep to their side of it."""
     data = planning(**sizes, seed=seed)
     least = best(data)
-    exact = solve(data, "exact")
+    exact = solve(data, "cp_sat")
     assert exact.status is Status.OPTIMAL
     assert exact.objective == pytest.approx(least, abs=1e-6)
     for method in ("greedy", "lns"):
@@ -66,7 +66,7 @@ def test_exact_is_what_enumeration_finds(sizes: dict[str, int], seed: int) -> No
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_every_method_gives_feasible_plans(method: Method) -> None:
+def test_every_method_gives_feasible_plans(method: str) -> None:
     """Feasible, with the objective recomputed, and never worse than doing nothing."""
     for seed in range(12):
         data = planning(seed=seed)
@@ -103,8 +103,22 @@ def test_the_search_repeats_and_depends_on_its_seed() -> None:
 def test_a_plan_goes_on_from_the_last_one() -> None:
     """Visits of a start are kept by the rule; those that are impossible now are left out."""
     data = hand_made()
-    assert solve(data, "greedy", start=[[2]]).required.pods[0] == (2,)
-    assert solve(data, "greedy", start=[[0, 1]]).required.pods[0] == (1,)
+    assert solve(data, "greedy", pods=[[2]]).required.pods[0] == (2,)
+    assert solve(data, "greedy", pods=[[0, 1]]).required.pods[0] == (1,)
+
+
+def test_a_start_is_kept_unless_it_is_wrong() -> None:
+    """No method gives less than a feasible start; one that is not feasible is refused."""
+    for seed in range(6):
+        data = planning(seed=seed)
+        start = solve(data, "cp_sat").required
+        for method in METHODS:
+            found = solve(data, method, Limits(iterations=3), start=start)
+            assert found.objective <= objective(data, start) + 1e-9
+    wrong = Plan(((0,),), np.array([-1, 0]), np.array([-1, -1, 0]))
+    for method in METHODS:
+        with pytest.raises(ModelError, match="cannot come"):
+            solve(hand_made(), method, start=wrong)
 
 
 def test_orders_of_several_pods_keep_a_slot() -> None:
@@ -112,7 +126,7 @@ def test_orders_of_several_pods_keep_a_slot() -> None:
     assert solve(hand_made()).required.order_station.tolist() == [0, 0]
     single = solve(hand_made(slots=[1]))
     assert single.required.order_station.tolist() == [-1, 0]
-    assert solve(hand_made(slots=[1]), "exact").objective == single.objective
+    assert solve(hand_made(slots=[1]), "cp_sat").objective == single.objective
 
 
 def test_objective_by_hand() -> None:
@@ -121,7 +135,7 @@ def test_objective_by_hand() -> None:
     plan = Plan(((1,),), np.array([0, 0]), np.array([0, 1, 0]))
     assert violations(data, plan) == []
     assert objective(data, plan) == pytest.approx(0.5 * 12 - (10 + 30 + 0.5 * 20) - (0.5 * 5 + 5))
-    assert solve(data, "exact").objective == pytest.approx(objective(data, plan))
+    assert solve(data, "cp_sat").objective == pytest.approx(objective(data, plan))
 
 
 @pytest.mark.parametrize(
@@ -166,7 +180,7 @@ def test_bad_input_is_refused(changes: dict[str, Any], field: str) -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_nothing_to_do(method: Method) -> None:
+def test_nothing_to_do(method: str) -> None:
     """Without orders, or without visits, there is a plan: none."""
     data = hand_made()
     none = np.zeros(0)

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rmfs.solvers.models.planning.greedy import with_visit
+from rmfs.solvers.models.planning.appeal import Appeal
+from rmfs.solvers.models.planning.filling import Filling
+from rmfs.solvers.models.planning.outcome import solution
+from rmfs.solvers.models.planning.visits import extended, first_visits, with_visit
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
 
 if TYPE_CHECKING:
-    from rmfs.solvers.models.planning.appeal import Appeal
-    from rmfs.solvers.models.planning.filling import Draft, Filling
+    from collections.abc import Sequence
+
+    from rmfs.solvers.models.planning.data import Planning
+    from rmfs.solvers.models.planning.filling import Draft
+    from rmfs.solvers.models.planning.values import Plan
 
 SWAPS = 0.3
 """Share of the steps that let two visits change places."""
@@ -18,6 +26,53 @@ MOST_TAKEN = 3
 """Most visits that are taken out at a time."""
 LIST = 8
 """Pods that a new visit is drawn from, those that look best."""
+
+
+STEPS = 100
+"""Steps if the limits name none."""
+
+
+def solve(
+    data: Planning,
+    limits: Limits = NO_LIMITS,
+    *,
+    seed: int = 0,
+    start: Plan | None = None,
+    pods: Sequence[Sequence[int]] = (),
+    bound_steps: int = 0,
+) -> Solution[Plan]:
+    """Search from the better of two plans of the start rule: that from the start, and a new one.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    limits
+        `iterations` are the steps. Default: 100.
+    seed
+        Seed of the search. Default 0.
+    start
+        A feasible plan. Default: none.
+    pods
+        Visits per station of an earlier plan, which go on as far as they are possible; `start` goes
+        before. Default: none.
+    bound_steps
+        Steps for the bound (`prices`). Default: no bound.
+
+    Returns
+    -------
+    The plan; not worse than the start, nor than what the start rule finds from the same start.
+    """
+    began = time.perf_counter()
+    filling, appeal = Filling(data), Appeal(data)
+    known = first_visits(data, start, pods)
+    draft = extended(filling, appeal, known)
+    if any(known):
+        fresh = extended(filling, appeal, [[] for _ in range(data.stations)])
+        draft = max(draft, fresh, key=lambda one: one.value)
+    steps = STEPS if limits.iterations is None else limits.iterations
+    draft = improved(filling, appeal, draft, steps, np.random.default_rng(seed))
+    return solution(data, draft.plan(), start, filling.work, bound_steps, began)
 
 
 def improved(

@@ -1,0 +1,42 @@
+"""What the rule and the search return."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from rmfs.solvers.models.planning import prices
+from rmfs.solvers.models.planning.values import objective
+from rmfs.solvers.models.solution import Solution, Status
+
+if TYPE_CHECKING:
+    from rmfs.solvers.models.planning.data import Planning
+    from rmfs.solvers.models.planning.values import Plan
+
+NAME = "visits"
+"""Back end of the rule and of the search; its unit of work is a line looked at for a station."""
+
+
+def better(data: Planning, plan: Plan, start: Plan | None) -> Plan:
+    """Return the better of a plan and the start, if there is one."""
+    if start is not None and objective(data, start) < objective(data, plan):
+        return start
+    return plan
+
+
+def solution(
+    data: Planning, plan: Plan, start: Plan | None, work: int, bound_steps: int, began: float
+) -> Solution[Plan]:
+    """Wrap a plan up, with a bound if there are steps for one."""
+    chosen = better(data, plan, start)
+    value = objective(data, chosen)
+    proven = prices.bound(data, value, bound_steps)
+    return Solution(
+        values=chosen,
+        objective=value,
+        bound=proven,
+        status=Status.OPTIMAL if proven == value else Status.FEASIBLE,
+        backend=NAME,
+        wall_s=time.perf_counter() - began,
+        work=float(work),
+    )
