@@ -19,7 +19,7 @@ class PlanningParameters(SearchParameters):
     method: Literal["lns", "greedy", "cp_sat"] = "lns"
     """Who plans: `lns` (large neighbourhood search), `cp_sat` (exact, for very small sites), or the
     start rule of both, `greedy`."""
-    visits: Count = 6
+    visits: Count = 8
     """Visits per station that are planned ahead, besides those of pods under way."""
     steps: Annotated[int, pydantic.Field(ge=0)] = 30
     """Steps of the search for each plan."""

@@ -41,7 +41,7 @@ def solve(
     pods: Sequence[Sequence[int]] = (),
     bound_steps: int = 0,
 ) -> Solution[Plan]:
-    """Search from the better of two plans of the start rule: that from the start, and a new one.
+    """Search from the plan of the start rule.
 
     Parameters
     ----------
@@ -65,11 +65,7 @@ def solve(
     """
     began = time.perf_counter()
     filling, appeal = Filling(data), Appeal(data)
-    known = first_visits(data, start, pods)
-    draft = extended(filling, appeal, known)
-    if any(known):
-        fresh = extended(filling, appeal, [[] for _ in range(data.stations)])
-        draft = max(draft, fresh, key=lambda one: one.value)
+    draft = extended(filling, appeal, first_visits(data, start, pods))
     steps = STEPS if limits.iterations is None else limits.iterations
     draft = improved(filling, appeal, draft, steps, np.random.default_rng(seed))
     return solution(data, draft.plan(), start, filling.work, bound_steps, began)

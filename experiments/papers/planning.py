@@ -1,0 +1,49 @@
+"""What planning ahead is worth: the search against its own start rule, and against one visit.
+
+TA planning on the small site with three to five robots, whole orders, a backlog and arrivals, after
+half an hour of warm-up. The start rule is the same controller with `method = "greedy"`: same
+horizon, same values, plans that go on from the last one, but nothing searched. Pile-on decides
+orders and pods for one visit at a time. Bundles and space in use stand beside, as who stores fewer
+has robots to spare for a while.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from rmfs.experiments.papers.benefit import (
+    CONTROLLERS,
+    completed,
+    gains,
+    overview,
+    require_optimised,
+)
+from rmfs.experiments.papers.study import command, done, parser, station_units_per_h
+
+START_RULE = "start rule"
+GROUPS = ("demand", "layout.robots")
+COLUMNS = (
+    "units_per_h",
+    "station_share",
+    "units_per_visit",
+    "distance_per_unit_m",
+    "orders_per_h",
+    "late_share",
+    "bundles_per_h",
+    "inventory_share_mean",
+)
+GAINED = ("units_per_h", "distance_per_unit_m", "units_per_visit", "orders_per_h", "bundles_per_h")
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the study and publish it."""
+    study = done(parser("planning", __doc__).parse_args(arguments))
+    frame = completed(study.frame, station_units_per_h(study))
+    frame = frame.assign(**{CONTROLLERS: frame["plans"]})
+    study.publish(overview(frame, (*GROUPS, CONTROLLERS), COLUMNS), "planning", COLUMNS)
+    study.publish(gains(frame, GROUPS, START_RULE, GAINED), "planning-gains", GAINED)
+    require_optimised(study)
+
+
+if __name__ == "__main__":
+    sys.exit(command(main))
