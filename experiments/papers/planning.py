@@ -39,7 +39,7 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     study = done(parser("planning", __doc__).parse_args(arguments))
     frame = completed(study.frame, station_units_per_h(study))
-    frame = frame.assign(**{CONTROLLERS: frame["plans"]})
+    frame = frame.assign(**{CONTROLLERS: frame["planned"]})
     study.publish(overview(frame, (*GROUPS, CONTROLLERS), COLUMNS), "planning", COLUMNS)
     study.publish(gains(frame, GROUPS, START_RULE, GAINED), "planning-gains", GAINED)
     require_optimised(study)

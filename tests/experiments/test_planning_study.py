@@ -1,0 +1,39 @@
+"""The study of planning ahead, with runs of some minutes."""
+
+from __future__ import annotations
+
+import pandas as pd
+import pytest
+
+from rmfs.experiments.papers import planning
+from rmfs.experiments.papers.study import command
+
+
+def test_the_study_is_run_and_published(design, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = design(
+        seeds=[1, 2],
+        base={"layout": "small", "scenario.warmup_s": 0, "scenario.duration_s": 400},
+        factors={
+            "demand": [{"label": "backlog", "scenario": "small"}],
+            "layout.robots": [3],
+            "planned": [
+                {"label": "planning", "controllers": "planning", "controllers.ta.steps": 5},
+                {
+                    "label": "start rule",
+                    "controllers": "planning",
+                    "controllers.ta.method": "greedy",
+                },
+            ],
+        },
+    )
+    given = ["--design", str(path), "--out", "runs", "--published", "out", "--jobs", "1"]
+    assert command(planning.main, given) == 0
+    rows = pd.read_csv("out/planning.csv", index_col=0)
+    assert list(rows.index) == ["backlog, 3, planning", "backlog, 3, start rule"]
+    assert (rows["units_per_h mean"] > 100).all()
+    gained = pd.read_csv("out/planning-gains.csv", index_col=0)
+    assert list(gained.index) == ["backlog, 3, planning"]
+    assert gained["units_per_h mean"].iloc[0] == pytest.approx(
+        100 * (rows["units_per_h mean"].iloc[0] / rows["units_per_h mean"].iloc[1] - 1), abs=5
+    )
