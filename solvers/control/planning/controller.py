@@ -38,12 +38,12 @@ _WORTH_A_PLAN = 2
 class PlanningControl(TaskAllocation[PlanningParameters]):
     """Plans the next visits of every pick station, and commits itself to the first steps only.
 
-    The model is asked, at most once per `buffer_s`, when a pod has reached a station, a robot is
-    free, or an order has come for which there are slots or idle robots. It plans several visits per
-    station, with the orders that each serves: whole orders, which keep their slot until their last
-    pod has come. The plan goes on from the last one. Of it only this is carried out: orders whose
-    first pod is under way take slots, and a station whose pods under way have less work than
-    `horizon_s` is sent the next pod by the nearest free robot.
+    The model is asked, at most once per `buffer_s`, when a pod has reached a pick station, a robot
+    without pod is free, or an order has come for which there are slots or idle robots. It plans
+    several visits per station, with the orders that each serves: whole orders, which keep their
+    slot until their last pod has come. The plan goes on from the last one. Of it only this is
+    carried out: orders whose first pod is under way take slots, and a station whose pods under way
+    have less work than `horizon_s` is sent the next pod by the nearest free robot.
 
     The rest is left to rules. A robot with a pod goes on while there is work for it at its station,
     takes it to a replenishment station for which bundles of this pod wait, or parks it where PSA
@@ -79,11 +79,14 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
         """Take note that another plan may be better."""
-        if trigger is Trigger.NEW_ORDER and not self.view.resting:
-            free = max(station.free_slots for station in self.view.pick_stations)
-            self._changed |= free > _WORTH_A_PLAN
+        view = self.view
+        if trigger is Trigger.ROBOT_FREE:
+            self._changed |= view.robots[subject].pod < 0
+        elif trigger is Trigger.POD_AT_STATION:
+            self._changed |= subject < len(view.pick_stations)
         else:
-            self._changed = True
+            free = max(station.free_slots for station in view.pick_stations)
+            self._changed |= bool(view.resting) or free > _WORTH_A_PLAN
 
     def next_event_s(self) -> float:
         """When the optimiser may be asked again, if it is to be asked."""

@@ -168,34 +168,40 @@ class Filling:
 
     def _serve_waiting(self, draft: _Growing) -> float:
         """Give waiting orders a station and visits; returns what that is worth."""
-        earned, decay = 0.0, self._decay
-        for _, _, order, station in self._chances(draft):
-            if draft.order_station[order] >= 0:
+        earned, decay, station_of = 0.0, self._decay, draft.order_station
+        for _, _, order, station, window in self._chances(draft):
+            if station_of[order] >= 0:
                 continue
             lines, left = self._lines[order], draft.left[station]
-            window = _closest(lines, draft.where[station], left)
-            if window is None or not draft.keep(station, window):
+            chosen: Window | None = window
+            for (sku, units, _), visit in zip(lines, window[2], strict=True):
+                if left[visit][sku] < units:  # others have taken them meanwhile
+                    chosen = _closest(lines, draft.where[station], left)
+                    break
+            if chosen is None or not draft.keep(station, chosen):
                 continue
-            for (sku, units, number), visit in zip(lines, window[2], strict=True):
+            for (sku, units, number), visit in zip(lines, chosen[2], strict=True):
                 left[visit][sku] -= units
                 draft.line_visit[number] = visit
                 earned += self._line_worth[number] * decay[visit]
-            earned += self._order_worth[order] * decay[window[1]]
-            draft.order_station[order] = station
+            earned += self._order_worth[order] * decay[chosen[1]]
+            station_of[order] = station
         return earned
 
-    def _chances(self, draft: _Growing) -> list[tuple[int, int, int, int]]:
-        """Which order could go where: length and begin of its visits, order and station, sorted."""
+    def _chances(self, draft: _Growing) -> list[tuple[int, int, int, int, Window]]:
+        """Which order could go where: length, begin, order, station and its visits, sorted."""
         found = []
         for station, (left, where) in enumerate(zip(draft.left, draft.where, strict=True)):
             for order, lines in self._several:
                 if lines[0][0] in where and lines[1][0] in where:
                     window = _closest(lines, where, left)
                     if window is not None:
-                        found.append((window[1] - window[0], window[0], order, station))
-            for order, (sku, _, _) in self._single:
-                if sku in where:
-                    found.append((0, where[sku][0], order, station))
+                        found.append((window[1] - window[0], window[0], order, station, window))
+            for order, (sku, units, _) in self._single:
+                for visit in where.get(sku, ()):
+                    if left[visit][sku] >= units:
+                        found.append((0, visit, order, station, (visit, visit, (visit,))))
+                        break
         found.sort()
         return found
 
