@@ -126,9 +126,19 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
             return
         self._asked_s, self._changed, self._wants_to_ask = now_s, False, False
         self._asked += 1
-        question = snapshot.ask(self.view, given, self._plan.pods, self._asked)
+        question = snapshot.ask(self.view, given, self._neediest(), self._plan, self._asked)
         if question is not None:
             yield question
+
+    def _neediest(self) -> list[PickStation]:
+        """Choose the stations to plan for: those with the least work on its way, in their order."""
+        stations = self.view.pick_stations
+        most = self.parameters.stations
+        if len(stations) <= most:
+            return list(stations)
+        work = [self._plan.units(station) for station in stations]
+        chosen = sorted(range(len(stations)), key=lambda s: (work[s], s))[:most]
+        return [stations[number] for number in sorted(chosen)]
 
     # --- what is due of the plan ----------------------------------------------------------------
 
@@ -136,7 +146,7 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
         """Put orders on slots whose first pod is under way."""
         for station in self.view.pick_stations:
             for order in self._plan.due(station):
-                self.basis = self._plan.call
+                self.basis = self._plan.call(station.index)
                 yield AssignOrder(order, station.index)
 
     def _send(self) -> Iterator[Decision]:
@@ -145,16 +155,16 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
         floor = self.parameters.stock_floor * view.inventory.total_capacity
         if view.inventory.stored_space < floor and not self._at_bundles():
             yield from self._replenish(1)
-        while (free := self._free_robots()) and (station := self._neediest()) is not None:
+        while (free := self._free_robots()) and (station := self._short()) is not None:
             pod = self._plan.pods[station.index].pop(0)
             at = view.storage.pod_waypoint[[pod]]
             near = min(free, key=lambda r: (view.travel.estimate_s(r.waypoint, at)[0], r.index))
-            self.basis = self._plan.call
+            self.basis = self._plan.call(station.index)
             yield BringForPicks(keeper_of(view, near, pod), pod, station.index)
             yield from self._give_slots()
         yield from self._replenish(len(view.robots))
 
-    def _neediest(self) -> PickStation | None:
+    def _short(self) -> PickStation | None:
         """Find the station with the least work of those that are to be sent a pod."""
         given, found = self.parameters, []
         for station in self.view.pick_stations:

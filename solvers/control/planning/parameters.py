@@ -21,6 +21,9 @@ class PlanningParameters(SearchParameters):
     start rule of both, `greedy`."""
     visits: Count = 8
     """Visits per station that are planned ahead, besides those of pods under way."""
+    stations: Count = 3
+    """Pick stations planned for at a time, those with the least work on its way; what is planned
+    for the others stays."""
     steps: Annotated[int, pydantic.Field(ge=0)] = 30
     """Steps of the search for each plan."""
     buffer_s: NotNegative = 1.0

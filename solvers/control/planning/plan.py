@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rmfs.solvers.control.planning.snapshot import under_way
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from rmfs.control.asks import Call
     from rmfs.control.view import View
@@ -50,38 +50,48 @@ class Plan:
     ----------
     pods
         Per station, the pods of the visits to come.
-    call
-        The call it comes from; None: the rule.
     """
 
     def __init__(self, view: View) -> None:
         self._view = view
         self.pods: list[list[int]] = [[] for _ in view.pick_stations]
         self._orders: list[list[Planned]] = [[] for _ in view.pick_stations]
-        self.call: Call | None = None
+        self._call: list[Call | None] = [None for _ in view.pick_stations]
 
     def take(self, solution: Mapping[str, Any], memo: Memo, call: Call | None) -> None:
-        """Replace the plan by a solution."""
-        self.call = call
-        self.pods = [[pod for pod in row if pod >= 0] for row in solution["pods"].tolist()]
-        self._orders = [[] for _ in self.pods]
+        """Replace the plan, at the stations it was asked for, by a solution."""
         visits: dict[int, list[tuple[int, int]]] = {}
         for line, visit in zip(memo.lines, solution["line_visit"].tolist(), strict=True):
             if visit >= 0:
                 visits.setdefault(line.order.index, []).append((visit, line.open_units))
-        for order, station in zip(memo.orders, solution["order_station"].tolist(), strict=True):
-            if station >= 0 and order in self._view.orders:
-                sequence = [*memo.under_way[station], *self.pods[station]]
-                self._orders[station].append(_planned(order, visits[order.index], sequence))
-        for planned in self._orders:
-            planned.sort(key=lambda one: one.sequence)
+        for number, row in enumerate(solution["pods"].tolist()):
+            station = memo.stations[number].index
+            self.pods[station] = [pod for pod in row if pod >= 0]
+            self._orders[station] = []
+            self._call[station] = call
+        for order, number in zip(memo.orders, solution["order_station"].tolist(), strict=True):
+            if number >= 0 and order in self._view.orders:
+                station = memo.stations[number].index
+                sequence = [*memo.under_way[number], *self.pods[station]]
+                planned = _planned(order, visits[order.index], sequence)
+                self._orders[station].append(planned)
+        for orders in self._orders:
+            orders.sort(key=lambda one: one.sequence)
+
+    def call(self, station: int) -> Call | None:
+        """Return the call that the plan of a station comes from; None: the rule."""
+        return self._call[station]
+
+    def orders_of(self, stations: Sequence[int]) -> set[int]:
+        """Return the orders that are planned for some stations, by index."""
+        return {one.order.index for station in stations for one in self._orders[station]}
 
     def next_pod(self, station: int) -> int:
         """Return the pod of the next visit that is still possible, or -1."""
         pods = self.pods[station]
         while pods and not self._view.storage.is_at_hand[pods[0]]:
             pods.pop(0)
-            self._stale()
+            self._stale(station)
         return pods[0] if pods else -1
 
     def due(self, station: PickStation) -> Iterator[Order]:
@@ -98,7 +108,7 @@ class Plan:
         for planned in list(waiting):
             if planned.order not in self._view.orders:
                 waiting.remove(planned)
-                self._stale()
+                self._stale(station.index)
             elif planned.begins_with in coming:
                 streams = list(planned.units) == [head]
                 if station.free_slots > (0 if streams else 1):
@@ -119,9 +129,10 @@ class Plan:
     def _head(self, station: PickStation) -> int:
         return self._view.robots[station.robot].pod if station.robot >= 0 else -1
 
-    def _stale(self) -> None:
-        if self.call is not None:
-            self.call.stale += 1
+    def _stale(self, station: int) -> None:
+        call = self._call[station]
+        if call is not None:
+            call.stale += 1
 
 
 def _planned(order: Order, visits: list[tuple[int, int]], sequence: list[int]) -> Planned:

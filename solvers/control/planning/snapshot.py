@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from rmfs.control.view import View
     from rmfs.solvers.control.planning.parameters import PlanningParameters
+    from rmfs.solvers.control.planning.plan import Plan
     from rmfs.world.orders import Order, OrderLine
     from rmfs.world.stations import PickStation
 
@@ -31,12 +32,15 @@ class Memo:
 
     Attributes
     ----------
+    stations
+        The pick stations that are planned for.
     orders, lines
         The order, or line, of each number.
     under_way
-        Pods under way to each station, in the order in which they come.
+        Pods under way to each of the stations, in the order in which they come.
     """
 
+    stations: Sequence[PickStation]
     orders: Sequence[Order]
     lines: Sequence[OrderLine]
     under_way: Sequence[Sequence[int]]
@@ -83,51 +87,61 @@ def under_way(view: View, station: PickStation) -> list[int]:
 
 
 def ask(
-    view: View, given: PlanningParameters, start: Sequence[Sequence[int]], seed: int
+    view: View,
+    given: PlanningParameters,
+    stations: Sequence[PickStation],
+    plan: Plan,
+    seed: int,
 ) -> Ask[Question] | None:
     """Ask for a plan; None if there is nothing to plan.
 
-    Waiting orders that the stock cannot serve are left out.
+    Waiting orders that the stock cannot serve are left out, and what is planned for other stations.
 
     Parameters
     ----------
-    start
-        New visits per station of the last plan.
+    stations
+        Those that are planned for.
+    plan
+        The last plan, from which this one goes on.
     seed
         Seed of the search.
     """
-    coming = [under_way(view, station) for station in view.pick_stations]
+    coming = [under_way(view, station) for station in stations]
+    others = [station.index for station in view.pick_stations if station not in stations]
     rows = _Rows()
-    for station in view.pick_stations:
-        _add_open(rows, station, coming[station.index])
+    for number, station in enumerate(stations):
+        _add_open(rows, station, number, coming[number])
+    taken = plan.orders_of(others)
     for row in _servable(view):
-        rows.add(view.orders.at_row[row], NONE, NONE)
+        if view.orders.at_row[row].index not in taken:
+            rows.add(view.orders.at_row[row], NONE, NONE)
     if not rows.lines:
         return None
-    at_hand = view.storage.is_at_hand
-    kept = tuple(tuple(pod for pod in pods if at_hand[pod]) for pods in start)
-    data = _planning(view, given, rows, coming)
+    may_come = view.storage.is_at_hand.copy()
+    kept = tuple(tuple(pod for pod in plan.pods[s.index] if may_come[pod]) for s in stations)
+    may_come[[pod for station in others for pod in plan.pods[station]]] = False
+    data = _planning(view, given, stations, rows, coming, may_come)
     limits = Limits(iterations=given.steps, deterministic_s=given.work_s, gap=given.gap)
     question = Question(data, kept, given.method, limits, seed, given.bound_steps)
     sizes = {
         "stations": data.stations,
         "orders": data.orders,
         "lines": data.lines,
-        "pods": int(at_hand.sum()),
+        "pods": int(may_come.sum()),
     }
-    return Ask(solve, question, sizes, Memo(rows.orders, rows.lines, coming))
+    return Ask(solve, question, sizes, Memo(stations, rows.orders, rows.lines, coming))
 
 
-def _add_open(rows: _Rows, station: PickStation, coming: Sequence[int]) -> None:
+def _add_open(rows: _Rows, station: PickStation, number: int, coming: Sequence[int]) -> None:
     """Add the orders that are open at a station."""
     visit_of = {pod: visit for visit, pod in enumerate(coming)}
     until: dict[int, int] = {}
     for pod, task in station.tasks.items():
         for pick in task.picks:
-            number = pick.line.order.index
-            until[number] = max(until.get(number, NONE), visit_of[pod])
+            order_number = pick.line.order.index
+            until[order_number] = max(until.get(order_number, NONE), visit_of[pod])
     for index, order in station.orders.items():
-        rows.add(order, station.index, until.get(index, NONE))
+        rows.add(order, number, until.get(index, NONE))
 
 
 def _servable(view: View) -> list[int]:
@@ -138,37 +152,48 @@ def _servable(view: View) -> list[int]:
 
 
 def _planning(
-    view: View, given: PlanningParameters, rows: _Rows, coming: Sequence[Sequence[int]]
+    view: View,
+    given: PlanningParameters,
+    stations: Sequence[PickStation],
+    rows: _Rows,
+    coming: Sequence[Sequence[int]],
+    may_come: NDArray[np.bool_],
 ) -> Planning:
     station = np.array(rows.station, np.int64)
     order_of = np.array(rows.order_of, np.int64)
     units = np.array([line.open_units for line in rows.lines], np.int64)
+    wanted, sku = np.unique([line.sku for line in rows.lines], return_inverse=True)
     waited_s = np.array([view.now_s - order.created_s for order in rows.orders])
     is_open = station >= 0
     return Planning(
-        slots=np.array([one.slots for one in view.pick_stations], np.int64),
+        slots=np.array([one.slots for one in stations], np.int64),
         coming=np.array([pod for pods in coming for pod in pods], np.int64),
         coming_to=np.repeat(np.arange(len(coming)), [len(pods) for pods in coming]),
         order_station=station,
         order_until=np.array(rows.until, np.int64),
         order_worth=given.order_s + given.age_reward * np.maximum(waited_s, 0.0) * ~is_open,
         line_order=order_of,
-        line_sku=np.array([line.sku for line in rows.lines], np.int64),
+        line_sku=sku,
         line_units=units,
         line_worth=given.unit_s * units + given.open_s * is_open[order_of],
-        stock=view.inventory.available.T.astype(np.int64),
-        cost=_cost(view, given),
+        stock=view.inventory.available[wanted].T.astype(np.int64),
+        cost=_cost(view, given, stations, may_come),
         visits=given.visits,
         decay=given.decay,
     )
 
 
-def _cost(view: View, given: PlanningParameters) -> NDArray[np.float64]:
+def _cost(
+    view: View,
+    given: PlanningParameters,
+    stations: Sequence[PickStation],
+    may_come: NDArray[np.bool_],
+) -> NDArray[np.float64]:
     """Time of a robot for a visit, the way there and back, less its worth, shape (P, S), s."""
-    at, at_hand = view.storage.pod_waypoint, view.storage.is_at_hand
-    cost = np.full((len(at), len(view.pick_stations)), np.inf)
-    for station in view.pick_stations:
+    at = view.storage.pod_waypoint
+    cost = np.full((len(at), len(stations)), np.inf)
+    for number, station in enumerate(stations):
         if station.active:
             way_s = view.travel.to(station.waypoint, loaded=True)[at]
-            cost[at_hand, station.index] = (2 * way_s - given.visit_s)[at_hand]
+            cost[may_come, number] = (2 * way_s - given.visit_s)[may_come]
     return cost
