@@ -14,7 +14,7 @@ from rmfs.errors import InputError
 from rmfs.experiments.design import planning as plans
 from rmfs.experiments.results import load
 from rmfs.experiments.statistics.paired import paired, unpaired
-from rmfs.measure.dictionary import FOOTPRINT, names, reproducible
+from rmfs.measure.dictionary import FOOTPRINT, learnt, names, reproducible
 from rmfs.measure.folder import PARAMETERS, load_run
 
 if TYPE_CHECKING:
@@ -23,7 +23,13 @@ if TYPE_CHECKING:
 ARM_SIGN = "#"
 """Between a folder and the name of one of its arms."""
 
-NUMBERS = [column.name for column in FOOTPRINT if column.is_number and column.name != "seed"]
+
+def numbers() -> list[str]:
+    """Columns that are compared: those of every footprint, and of the measures of users met."""
+    columns = (*FOOTPRINT, *learnt())
+    return [column.name for column in columns if column.is_number and column.name != "seed"]
+
+
 NOT_INPUT = ("written", "machine", "check")
 """Parts of run.json that say nothing about what was simulated."""
 
@@ -117,13 +123,14 @@ def _compared(first: Side, other: Side, confidence: float) -> Comparison:
     if together:
         a, b = a.loc[common], b.loc[common]
     rows = {}
-    for column in NUMBERS:
+    for column in numbers():
         if column in a and column in b and (a[column].notna().any() or b[column].notna().any()):
             told = (paired if together else unpaired)(b[column], a[column], confidence=confidence)
             rows[column] = {"baseline": a[column].mean(), "other": b[column].mean(), **told}
     outputs = pd.DataFrame.from_dict(rows, orient="index").drop(columns="pairs", errors="ignore")
     outputs.index.name = "column"
-    shared = [c for c in reproducible("footprint") if c in first.rows and c in other.rows]
+    repeating = [*reproducible("footprint"), *(c.name for c in learnt() if not c.measured)]
+    shared = [c for c in repeating if c in first.rows and c in other.rows]
     same = len(first.rows) == len(other.rows) and _text(first, shared) == _text(other, shared)
     return Comparison(first, other, _input_differences(first, other), outputs, len(common), same)
 
@@ -133,7 +140,7 @@ def _by_seed(side: Side) -> pd.DataFrame:
     if key not in side.rows:
         raise InputError(f"{side.name}: has no column seed")
     rows = side.rows.drop_duplicates(key).set_index(key)
-    present = [column for column in NUMBERS if column in rows]
+    present = [column for column in numbers() if column in rows]
     return rows[present].astype("Float64").astype(float)
 
 
@@ -204,7 +211,7 @@ def _table_sides(path: Path, arm: str) -> list[Side]:
         frame = pd.read_csv(path) if path.suffix.lower() == ".csv" else pd.read_parquet(path)
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: cannot be read ({error})") from None
-    if not set(frame.columns) & set(NUMBERS):
+    if not set(frame.columns) & set(numbers()):
         raise InputError(f"{path}: has no column of a footprint")
     if "arm" not in frame:
         return [Side(str(path), frame, _constant(frame))]
@@ -270,7 +277,7 @@ def chosen_columns(
     there = list(comparison.outputs.index)
     wrong = [column for column in columns if column not in there]
     if wrong:
-        valid = ", ".join(c for c in names("footprint") if c in there)
+        valid = ", ".join(c for c in (*names("footprint"), *numbers()) if c in there)
         raise InputError(f"column {', '.join(wrong)}: not in both; valid: {valid}")
     if columns:
         return list(columns)

@@ -14,7 +14,7 @@ from rmfs.experiments.design.arms import PARTS
 from rmfs.experiments.design.stages import schedule
 from rmfs.experiments.running.job import run_key
 from rmfs.experiments.store import PROVENANCE, Store
-from rmfs.measure.dictionary import names, reproducible
+from rmfs.measure.dictionary import learnt, names, reproducible
 
 if TYPE_CHECKING:
     from rmfs.experiments.design.planning import Plan
@@ -115,6 +115,7 @@ def reproducible_table(frame: pd.DataFrame) -> pd.DataFrame:
     Two experiments are identical if this, written as CSV, is the same byte for byte.
     """
     gone = {*names("footprint")} - {*reproducible("footprint")}
+    gone |= {column.name for column in learnt() if column.measured}
     gone |= {*PROVENANCE, "run", "arm_digest", "design", "design_hash"}
     kept = frame[[column for column in frame.columns if column not in gone]]
     return kept.sort_values(["arm", "replication"], kind="stable", ignore_index=True)

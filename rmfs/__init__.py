@@ -5,16 +5,25 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from rmfs.measure.base import Measure as Measure
+    from rmfs.measure.columns import Column as Column
     from rmfs.simulation.run import Run as Run
     from rmfs.simulation.run import simulate as simulate
 
-__all__ = ["Run", "simulate"]
+_PLACES = {
+    "Column": "rmfs.measure.columns",
+    "Measure": "rmfs.measure.base",
+    "Run": "rmfs.simulation.run",
+    "simulate": "rmfs.simulation.run",
+}
+
+__all__ = ["Column", "Measure", "Run", "simulate"]
 
 
 def __getattr__(name: str) -> Any:
     """Load what is exported when it is first used: parts of the package need less than all."""
-    if name in __all__:
-        from rmfs.simulation import run
+    if name in _PLACES:
+        import importlib
 
-        return getattr(run, name)
+        return getattr(importlib.import_module(_PLACES[name]), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

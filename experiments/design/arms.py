@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 from rmfs.config import Table, read_toml
 from rmfs.errors import InputError
-from rmfs.measure.dictionary import FOOTPRINT
+from rmfs.measure.dictionary import footprint_column
+from rmfs.measure.registry import RESERVED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -26,9 +27,6 @@ if TYPE_CHECKING:
 
 PARTS = ("layout", "scenario", "controllers")
 """The three inputs of a run."""
-
-RESERVED = {*(column.name for column in FOOTPRINT), "arm", "replication", "stage"}
-"""Columns of a result table that a factor's name must not take."""
 
 Overrides = list[tuple[list[str], Any]]
 
@@ -286,7 +284,8 @@ def _cell(text: str) -> Any:
 
 def _key_problems(design: DesignFile, keys: list[str]) -> Iterator[str]:
     for key in keys:
-        if key in RESERVED and key not in PARTS:
+        known = key in RESERVED or footprint_column(key) is not None
+        if known and key not in PARTS:
             yield f"factor {key}: a column of the results has this name already"
     for number, rule in enumerate(design.exclude, 1):
         if not rule:

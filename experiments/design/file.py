@@ -11,7 +11,10 @@ from pydantic import Field
 from rmfs import config
 from rmfs.config import Model, Table
 from rmfs.errors import InputError
-from rmfs.measure.dictionary import FOOTPRINT, TABLES, better_of
+from rmfs.measure.base import Measure as Measurement
+from rmfs.measure.dictionary import TABLES, better_of, footprint_column
+from rmfs.measure.registry import find_all
+from rmfs.references import anchored
 
 SHIPPED = Path(__file__).resolve().parent.parent / "designs"
 """The folder of shipped designs."""
@@ -20,14 +23,12 @@ Seed = Annotated[int, Field(ge=0)]
 Share = Annotated[float, Field(gt=0, lt=1)]
 Goal = Literal["max", "min"]
 
-NUMBERS = tuple(column.name for column in FOOTPRINT if column.is_number)
-REPRODUCIBLE = tuple(column.name for column in FOOTPRINT if not column.measured)
-
 
 def _measure(name: str) -> str:
-    if name not in NUMBERS:
+    column = footprint_column(name)
+    if column is None or not column.is_number:
         raise ValueError("is not a number of the footprint")
-    if name not in REPRODUCIBLE:
+    if column.measured:
         raise ValueError("is measured by the clock: what is run next would not repeat")
     return name
 
@@ -143,6 +144,11 @@ class DesignFile(Strict):
     check: bool = Field(False, description="prove every run safe; fills `collisions`")
     allow_not_well_formed: bool = False
     keep: list[str] = Field([], description="tables kept of every run beside its footprint")
+    measures: list[str] = Field(
+        [],
+        description="measures of your own: path/to/file.py:Class, module:Class, or the name of an "
+        "installed one",
+    )
 
     base: Table = Field(
         description="layout, scenario, controllers, and parameters that all arms share"
@@ -257,4 +263,28 @@ def read(path: Path) -> tuple[DesignFile, Table]:
         One line that lists every problem with its key.
     """
     table = config.read_toml(path)
+    own_measures(table, path.parent)
     return config.validate(DesignFile, table, str(path)), table
+
+
+def own_measures(table: Table, folder: Path) -> list[type[Measurement]]:
+    """Find the measures that a design names; from now on their columns are known.
+
+    Parameters
+    ----------
+    folder
+        Where their files are looked for first.
+
+    Raises
+    ------
+    InputError
+        If one cannot be found.
+    """
+    given = table.get("measures", [])
+    if not isinstance(given, list):  # the validation says so
+        return []
+    return find_all(
+        anchored(one, folder) if isinstance(one, str) else one
+        for one in given
+        if isinstance(one, str | type)
+    )

@@ -19,6 +19,7 @@ from rmfs.experiments.design.file import DesignFile
 from rmfs.experiments.design.resolve import Resolver
 from rmfs.experiments.running.job import Job
 from rmfs.files import write_text
+from rmfs.measure.registry import columns_of, described
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
@@ -58,6 +59,8 @@ class Plan:
         Hash of every input file.
     problems
         What is wrong; a plan with problems is not run.
+    measures
+        Measures of the user, as `rmfs.measure.registry.described` tells them.
     source
         The file it came from.
     """
@@ -68,6 +71,7 @@ class Plan:
     files: dict[str, str]
     problems: list[str] = field(default_factory=list)
     source: str = ""
+    measures: list[dict[str, Any]] = field(default_factory=list)
 
     @cached_property
     def hash(self) -> str:
@@ -126,6 +130,7 @@ class Plan:
             allow_not_well_formed=self.design.allow_not_well_formed,
             keep=tuple(self.design.keep),
             files=self.files,
+            measures=tuple(one["reference"] for one in self.measures),
         )
 
     def require_sound(self) -> None:
@@ -147,6 +152,7 @@ class Plan:
             "source": self.source,
             "design": self.table,
             "files": self.files,
+            "measures": self.measures,
             "arms": [asdict(arm) for arm in self.arms],
         }
         write_text(folder / FILE, json.dumps(told, indent=1, ensure_ascii=False, default=str))
@@ -182,6 +188,7 @@ def plan(
     """
     path = design_file.locate(name_or_path)
     design, table = design_file.read(path)
+    measures = design_file.own_measures(table, path.parent)
     if base or replications is not None:
         table = {**table, "base": {**table["base"], **(base or {})}}
         if replications is not None:
@@ -192,7 +199,7 @@ def plan(
     made = [arm for arm in made if arm.name not in without]
     if any(problem.startswith("base: ") for problem in problems):
         return Plan(design, table, made, {}, problems, str(path))
-    resolver = Resolver(design.allow_not_well_formed)
+    resolver = Resolver(design.allow_not_well_formed, measures)
     resolved: list[Arm] = []
     wrong: dict[str, list[str]] = {}
     for count, arm in enumerate(made):
@@ -204,7 +211,8 @@ def plan(
             wrong.setdefault(problem, []).append(arm.name)
     problems += [f"{_named(names)}: {problem}" for problem, names in wrong.items()]
     problems += [] if wrong else _twins(resolved)
-    return Plan(design, table, resolved, dict(sorted(resolver.files.items())), problems, str(path))
+    files = dict(sorted(resolver.files.items()))
+    return Plan(design, table, resolved, files, problems, str(path), described(measures))
 
 
 def load(folder: Path) -> Plan:
@@ -225,12 +233,16 @@ def load(folder: Path) -> Plan:
     if not isinstance(told, dict) or told.get("format") != FORMAT:
         raise InputError(f"{path}: expected format {FORMAT!r}")
     try:
+        measures = told.get("measures", [])
+        columns_of(measures)
         design = config.validate(DesignFile, told["design"], str(path))
         made = [
             Arm(**(arm | {"overrides": [(list(keys), value) for keys, value in arm["overrides"]]}))
             for arm in told["arms"]
         ]
-        return Plan(design, told["design"], made, told["files"], source=told["source"])
+        return Plan(
+            design, told["design"], made, told["files"], source=told["source"], measures=measures
+        )
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{path}: corrupted ({error!r})") from None
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from rmfs.control.settings import ControllerSettings
     from rmfs.experiments.design.arms import Arm, Overrides
     from rmfs.layout.model import Layout
+    from rmfs.measure.base import Measure
     from rmfs.scenario import Scenario
 
 _SHIPPED = "instances/"
@@ -48,11 +49,14 @@ class Resolver:
 
     Attributes
     ----------
+    measures
+        Those of the user: what they are written in decides about the columns of a run.
     files
         Hash of every file read so far, by the name under which it was given.
     """
 
     allow_not_well_formed: bool = False
+    measures: list[type[Measure]] = field(default_factory=list)
     files: dict[str, str] = field(default_factory=dict)
     _parts: dict[str, tuple[str, str]] = field(default_factory=dict)
     _made_of: dict[type, list[Path]] = field(default_factory=dict)
@@ -81,6 +85,10 @@ class Resolver:
         except InputError as error:
             problems.append(str(error))
         told = {**found, "pacing": arm.pacing, "check": check, "seeded": sorted(seeded)}
+        if self.measures:
+            files = [[*map(str, sources([one]).values())] for one in self.measures]
+            names = [one.__qualname__ for one in self.measures]
+            told["measures"] = [names, self._with_files(files)]
         return _hash(told), problems
 
     def _part(

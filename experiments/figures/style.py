@@ -9,7 +9,7 @@ import pandas as pd
 
 from rmfs.errors import InputError
 from rmfs.files import replacing
-from rmfs.measure.dictionary import TABLES
+from rmfs.measure.dictionary import TABLES, learnt
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,7 +31,8 @@ def axis_label(column: str, table: str = "footprint", *, per: str = "") -> str:
     per
         What a count is divided by, for example "hour".
     """
-    unit = {one.name: one.unit for one in TABLES[table]}.get(column, "")
+    known = {one.name: one.unit for one in (*TABLES[table], *learnt())}
+    unit = known.get(column, "")
     if column.endswith("_per_h"):
         return f"{_words(column.removesuffix('_per_h'))} per hour"
     for suffix in ("_s", "_m", "_share"):

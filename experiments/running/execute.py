@@ -72,6 +72,7 @@ def _simulated(job: Job) -> dict[str, pd.DataFrame]:
         pacing=job.pacing,
         trace=job.check,
         allow_not_well_formed=job.allow_not_well_formed,
+        measures=job.measures,
     )
     # as if simulate had read the files itself
     layout, scenario, controllers = (Path(given).stem for given in job.inputs.values())

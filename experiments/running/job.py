@@ -22,6 +22,8 @@ class Job:
         The seed as the design counts; the seed of the run itself may be derived from it.
     files
         Hash of every input file of the design: the worker compares.
+    measures
+        References to measures of the user.
     """
 
     design: str
@@ -37,6 +39,7 @@ class Job:
     allow_not_well_formed: bool
     keep: tuple[str, ...]
     files: dict[str, str]
+    measures: tuple[str, ...] = ()
 
     @property
     def key(self) -> str:

@@ -102,6 +102,7 @@ def _tried(job: Job) -> float:
         seed=job.seed,
         pacing=job.pacing,
         allow_not_well_formed=job.allow_not_well_formed,
+        measures=job.measures,
     )
     some_tables(run, job.keep)
     around_s = time.perf_counter() - begun - run.wall_s

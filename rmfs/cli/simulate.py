@@ -80,6 +80,15 @@ def run(
             "--allow-not-well-formed", help="Run a layout in which robots may block each other."
         ),
     ] = False,
+    measure: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--measure",
+            metavar="REF",
+            help="Measure of your own: path/to/file.py:Class, module:Class, or the name of an "
+            "installed one; may be repeated.",
+        ),
+    ] = None,
     live: Annotated[
         bool, typer.Option("--live", help="Show the run in the browser while it happens.")
     ] = False,
@@ -135,6 +144,7 @@ def run(
             pacing=pacing,
             trace=trace or check,
             streams=streams,
+            measures=measure or [],
             allow_not_well_formed=allow_not_well_formed,
             **watching,
         )

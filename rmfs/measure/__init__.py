@@ -1,13 +1,17 @@
 """What a run tells: footprint, tables, heat maps, traces and their independent check.
 
 `Recorder` observes a run; `tables` turns what it wrote down into the tables that `dictionary`
-describes; `folder` writes and reads run folders; `checker` proves a trace safe.
+describes, and `measures` into the footprint; `folder` writes and reads run folders; `checker`
+proves a trace safe.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rmfs.measure.base import Measure as Measure
+from rmfs.measure.columns import Column as Column
+from rmfs.measure.ended import EndedRun as EndedRun
 from rmfs.measure.events import EventLog as EventLog
 from rmfs.measure.folder import RunFolder as RunFolder
 from rmfs.measure.folder import load_run as load_run

@@ -64,13 +64,35 @@ def reproducible(table: str) -> list[str]:
     return [column.name for column in TABLES[table] if not column.measured]
 
 
-def better_of(column: str, columns: Iterable[Column] = FOOTPRINT) -> Better:
+_LEARNT: dict[str, Column] = {}
+
+
+def learn(columns: Iterable[Column]) -> None:
+    """Remember columns of users' measures, so that tables and pictures know what they mean.
+
+    They come from the measures of a run, or from the run folders and experiments that are read.
+    """
+    _LEARNT.update((column.name, column) for column in columns)
+
+
+def footprint_column(name: str) -> Column | None:
+    """Return a column of the footprint, or of a measure of a user that this process has met."""
+    return next((one for one in FOOTPRINT if one.name == name), _LEARNT.get(name))
+
+
+def learnt() -> list[Column]:
+    """Columns of the measures of users that this process has met."""
+    return list(_LEARNT.values())
+
+
+def better_of(column: str) -> Better:
     """Return what is better of a column of the footprint, all else being equal.
 
     "neither" is said of inputs, of counts that are means to an end (tasks, trips, decisions), of
     shares that may be high for good and for bad reasons (busy robots), and of unknown columns.
     """
-    return next((one.better for one in columns if one.name == column), NEITHER)
+    found = footprint_column(column)
+    return NEITHER if found is None else found.better
 
 
 def markdown() -> str:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from rmfs.errors import InputError
 from rmfs.files import replacing, replacing_folder
-from rmfs.measure.dictionary import TABLES, names
+from rmfs.measure.dictionary import TABLES, learn, names
+from rmfs.measure.registry import columns_of
 from rmfs.measure.trace import read_events, read_layout, read_motion, write_trace
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
     from rmfs.layout.model import Layout
     from rmfs.measure.checker import CheckReport
+    from rmfs.measure.columns import Column
     from rmfs.measure.ended import Recorded
 
 FORMAT = "rmfs-run/1"
@@ -145,6 +147,11 @@ class RunFolder:
     parameters: dict[str, Any]
 
     @property
+    def own_columns(self) -> list[Column]:
+        """Columns of the footprint that come from measures of the user."""
+        return columns_of(self.parameters.get("measures", []))
+
+    @property
     def footprint(self) -> pd.Series:
         """The footprint."""
         return self.table("footprint").iloc[0]
@@ -208,7 +215,9 @@ def load_run(path: Path) -> RunFolder:
     told = parameters.get("format") if isinstance(parameters, dict) else None
     if told != FORMAT:
         raise InputError(f"{file}: format {told!r}, expected {FORMAT!r}")
-    return RunFolder(path, parameters)
+    run = RunFolder(path, parameters)
+    learn(run.own_columns)
+    return run
 
 
 def _read_table(path: Path) -> pd.DataFrame:

@@ -18,6 +18,8 @@ from rmfs.digest import digest
 from rmfs.errors import InputError
 from rmfs.layout.loading import split_factors
 from rmfs.layout.parameters import LayoutParameters
+from rmfs.measure.measures import SHIPPED
+from rmfs.measure.registry import described
 from rmfs.scenario import named_files
 from rmfs.sources import sources
 
@@ -25,8 +27,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from rmfs.layout.model import Layout
+    from rmfs.measure.base import Measure
     from rmfs.measure.checker import CheckReport
-    from rmfs.measure.ended import Recorded
+    from rmfs.measure.ended import Measured, Recorded
 
 PACKAGES = (
     "clarabel",
@@ -94,6 +97,7 @@ def describe(
             {"time_s": time_s, "problem": str(choice.problem), "rule": choice.to_table()}
             for time_s, choice in run.interventions
         ],
+        "measures": described(own_measures(run)),
         "overrides": {".".join(path): value for path, value in run.overrides},
         "notes": run.notes,
         "seed": run.seed,
@@ -109,6 +113,11 @@ def describe(
         "machine": machine(),
         "written": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
     }
+
+
+def own_measures(run: Measured) -> list[type[Measure]]:
+    """Return the measures of a run that are not those of every run."""
+    return [type(measure) for measure in run.measures if type(measure) not in SHIPPED]
 
 
 def source(part: str, given: str) -> dict[str, Any]:

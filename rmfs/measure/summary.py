@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rmfs.measure.dictionary import learnt
+
 if TYPE_CHECKING:
     import pandas as pd
     from rich.console import Group
+
+    from rmfs.measure.columns import Column
 
 FIGURES: tuple[tuple[str, str, str], ...] = (
     ("orders completed", "orders_completed", "{:,.0f}"),
@@ -31,7 +35,10 @@ FIGURES: tuple[tuple[str, str, str], ...] = (
 
 
 def summary(footprint: pd.Series) -> Group:
-    """Return the main figures as an aligned table; what was not measured shows as -."""
+    """Return the main figures as an aligned table; what was not measured shows as -.
+
+    What measures of the user say stands below.
+    """
     from rich import box
     from rich.console import Group
     from rich.table import Table
@@ -43,7 +50,21 @@ def summary(footprint: pd.Series) -> Group:
     table.add_column(justify="right")
     for label, column, form in FIGURES:
         table.add_row(label, shown(footprint[column], column, form))
+    for own in own_columns(footprint):
+        table.add_row(*figure(footprint, own))
     return Group(title, table)
+
+
+def own_columns(footprint: pd.Series) -> list[Column]:
+    """Return the columns of a footprint that come from measures of the user."""
+    return [column for column in learnt() if column.name in footprint]
+
+
+def figure(footprint: pd.Series, column: Column) -> tuple[str, str]:
+    """Return label and value of a column that is not among the main figures."""
+    label = f"{column.name}, {column.unit}" if column.unit else column.name
+    form = "{:,.6g}" if column.is_number else "{}"
+    return label, shown(footprint[column.name], column.name, form)
 
 
 def shown(value: Any, column: str, form: str) -> str:

@@ -15,6 +15,7 @@ from rmfs.errors import InputError
 from rmfs.measure.checker import Slow, check
 from rmfs.measure.measures import SHIPPED
 from rmfs.measure.provenance import MARK
+from rmfs.measure.registry import find_all
 from rmfs.simulation.inputs import Overrides, load_inputs, name_of
 from rmfs.simulation.pacing import Replay, ReplayPacing, pacing_settings
 from rmfs.simulation.simulation import Simulation
@@ -137,6 +138,7 @@ def simulate(
     seed: int = 0,
     overrides: Sequence[tuple[list[str], Any]] = (),
     observers: Sequence[Observer] = (),
+    measures: Sequence[str | type[Measure]] = (),
     driver: Driver = Simulation.run,
     pacing: str = "instant",
     trace: bool = False,
@@ -160,6 +162,9 @@ def simulate(
         from files.
     observers
         Told of everything that happens, besides the recorder of the usual measures.
+    measures
+        What is measured besides: classes derived from `rmfs.Measure`, or how they are named
+        (`module:Class`, `path/to/file.py:Class`, the name of an installed one).
     driver
         Takes the simulation from its first event to its last: for who lets a run wait for somebody.
         By default it goes on without a stop.
@@ -199,7 +204,7 @@ def simulate(
             for note in notes:
                 remark(part, note)
     recorder = measure.Recorder()
-    measures = [kind() for kind in SHIPPED]
+    measuring = [kind() for kind in (*SHIPPED, *find_all(measures))]
     if events is None and trace:
         events = measure.EventLog()
     planner = planner_settings(rules.choices[Problem.PP], seed)
@@ -211,7 +216,7 @@ def simulate(
         work,
         rules,
         seed=seed,
-        observers=[recorder, *([events] if events is not None else []), *measures, *observers],
+        observers=[recorder, *([events] if events is not None else []), *measuring, *observers],
         pacing=_with_answers(pace),
         traffic=traffic,
         streams=streams,
@@ -237,7 +242,7 @@ def simulate(
         traffic=traffic,
         statistics=list(simulation.deciding.statistics.values()),
         recorder=recorder,
-        measures=measures,
+        measures=measuring,
         disturbances=simulation.disturbances,
         events=events,
         interventions=list(simulation.interventions),
