@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import time
+import zlib
 from functools import cache
 from pathlib import Path
 
@@ -28,7 +29,7 @@ def footprint(job: Job) -> pd.DataFrame:
     units = 500.0 + ROBOTS * given.get("layout.robots", 16)
     units += EFFECT.get(str(given.get("controllers.psa")), 0.0)
     shared = rng.normal(0.0, 20.0)
-    own = np.random.default_rng([job.seed, int(job.arm_digest[:8], 16)]).normal(0.0, 5.0)
+    own = np.random.default_rng([job.seed, zlib.crc32(job.arm.encode())]).normal(0.0, 5.0)
     row = {
         "seed": job.seed,
         "robots": given.get("layout.robots", 16),
