@@ -72,7 +72,7 @@ def test_an_interrupted_sequential_experiment_wants_the_same_runs(design, tmp_pa
 
 
 def test_the_best_arm_is_selected(design, tmp_path):
-    select = {"column": "units_per_h", "indifference": 1.0, "max_seeds": 60}
+    select = {"column": "units_per_h", "indifference": 0.5, "max_seeds": 60}
     stages = [{"name": "select", "seeds": [1, 2, 3, 4, 5], "select": select}]
     plan = made(design, seeds=None, stages=stages)
     store = Store(tmp_path / "out")
@@ -91,7 +91,7 @@ def test_failed_runs_do_not_hold_up_a_stage(design, tmp_path):
             return Outcome(error="ValueError: lost")
         return Outcome(footprint(job))
 
-    select = {"column": "units_per_h", "indifference": 1.0, "max_seeds": 60}
+    select = {"column": "units_per_h", "indifference": 0.5, "max_seeds": 60}
     for number, rule in enumerate(({"select": select}, {"until": UNTIL})):
         stages = [
             {"name": "first", "seeds": [1, 2, 3], **rule},
