@@ -24,6 +24,8 @@ class Alarms:
     ----------
     due
         Told of a problem whose controller is to be asked because its time has come.
+    outside
+        Problems that are decided outside; their rules still name times.
 
     Attributes
     ----------
@@ -32,8 +34,13 @@ class Alarms:
     """
 
     def __init__(
-        self, agenda: Agenda, controllers: ControllerSet, due: Callable[[Problem], None]
+        self,
+        agenda: Agenda,
+        controllers: ControllerSet,
+        due: Callable[[Problem], None],
+        outside: frozenset[Problem] = frozenset(),
     ) -> None:
+        self._outside = outside
         self._agenda = agenda
         self._controllers = controllers
         self._due = due
@@ -66,6 +73,8 @@ class Alarms:
         if problem in self._set and self._set[problem][0] == time_s:
             return
         self.cancel(problem)
+        if problem in self._outside and time_s <= self._agenda.now_us / 1e6:
+            return  # the outside has just been asked, and decided otherwise than the rule
         if time_s < inf:
             # never at the present instant, or a controller could keep it from ending
             time_us = max(us_at(time_s), self._agenda.now_us + 1)

@@ -52,7 +52,7 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
     task_rule = choices[Problem.TA]
     if problems & ASKED_BY_TA and task_rule.controller.optimisers:
         raise InputError(
-            f"outside {', '.join(sorted(problems & ASKED_BY_TA))}: TA {task_rule.name} asks these "
+            f"outside {', '.join(sorted(problems & ASKED_BY_TA))}: ta {task_rule.name} asks these "
             "questions while it carries out the answer of an optimiser, and cannot be interrupted; "
             "choose a rule for TA, or decide TA outside"
         )

@@ -131,11 +131,12 @@ class Simulation:
         self.dispatch = Dispatch(layout, world, fleet, events, installed, services)
         late_binding = LateBinding(world, travel, installed)
         due = Due(world, installed)
-        alarms = Alarms(agenda, installed, due.want)
+        decided_outside = problems_outside(outside, controllers.choices)
+        alarms = Alarms(agenda, installed, due.want, decided_outside)
         self.deciding = Deciding(world, events, installed, alarms, controllers.choices)
         self.phase = DecisionPhase(
             controllers.choices,
-            Outside(problems_outside(outside, controllers.choices)),
+            Outside(decided_outside),
             agenda=agenda,
             world=world,
             view=self.view,

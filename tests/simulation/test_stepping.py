@@ -1,0 +1,227 @@
+"""Decisions from outside: a run that follows the advice of its rules is the run of these rules."""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cache
+from typing import Any
+
+import pytest
+
+from rmfs.control.decisions import AssignOrder, BringForPicks, Park
+from rmfs.control.pp import planner_settings
+from rmfs.control.problems import Problem
+from rmfs.errors import InputError
+from rmfs.simulation import Simulation
+from rmfs.simulation.decision import Decision, ImpossibleError
+from rmfs.simulation.inputs import load_inputs
+from rmfs.traffic import Traffic
+
+DURATION_S = 250
+NEVER_ASKED = ("mm", "repositioning")  # by default: rules that never do anything
+DECIDED_BY_RULES = ["poa", "roa", "rps", "pps", "psa", "ta", "sa", "mm", "repositioning"]
+
+
+def simulation(
+    *outside: str, controllers: str = "default", seed: int = 3, **given: Any
+) -> Simulation:
+    keys = {"layout.robots": 10, "scenario.warmup_s": 60, "scenario.duration_s": DURATION_S}
+    keys |= {key.replace("__", "."): value for key, value in given.items()}
+    inputs = load_inputs(
+        "default",
+        "default",
+        controllers,
+        [(key.split("."), value) for key, value in keys.items()],
+    )
+    planner = planner_settings(inputs.controllers.choices[Problem.PP], seed)
+    traffic = Traffic(inputs.layout, record_trace=True, planner=planner)
+    return Simulation(
+        inputs.layout,
+        inputs.scenario,
+        inputs.controllers,
+        seed=seed,
+        outside=outside,
+        traffic=traffic,
+    )
+
+
+def told(run: Simulation) -> dict[str, Any]:
+    """What tells runs apart: the motion of all robots, orders, stock, and decisions counted."""
+    motion = hashlib.sha256()
+    for name, values in sorted(run.traffic.trace().items()):
+        motion.update(name.encode() + values.tobytes())
+    world = run.world
+    return {
+        "now_s": run.now_s,
+        "motion": motion.hexdigest(),
+        "stock": hashlib.sha256(world.inventory.contained.tobytes()).hexdigest(),
+        "orders": world.orders_completed,
+        "units": world.units_picked,
+        "decisions": {str(p): s.decisions for p, s in run.deciding.statistics.items()},
+    }
+
+
+def follow(run: Simulation) -> int:
+    """Take the advice of the rules to the end; returns how many questions were asked."""
+    asked = 0
+    while (decision := run.step()) is not None:
+        asked += 1
+        take(decision)
+    return asked
+
+
+def take(decision: Decision) -> None:
+    advice = decision.advice()
+    if advice is None:
+        decision.decline()
+    else:
+        decision.answer(advice)
+
+
+RULES: dict[str, dict[str, Any]] = {
+    "default": {},
+    "random": {"controllers": "random"},
+    "swarm": {"controllers__ta": "swarm"},
+    "repositioning": {"controllers__repositioning": "utility", "controllers__psa": "utility"},
+    "scheduled": {
+        "controllers__poa": "queue",
+        "controllers__mm": {
+            "name": "scheduled",
+            "exchanges": [{"at_s": 100.0, "psa": "random"}, {"at_s": 300.0, "poa": "related"}],
+        },
+        "controllers__sa": {"name": "backlog-threshold", "pause_s": 60.0},
+    },
+}
+
+
+@pytest.mark.parametrize("rules", RULES)
+@pytest.mark.parametrize("problem", DECIDED_BY_RULES)
+def test_a_run_that_follows_the_advice_is_the_run_of_the_rule(problem: str, rules: str) -> None:
+    run = simulation(problem, **RULES[rules])
+    assert follow(run) > 0 or problem in NEVER_ASKED
+    assert told(run) == of_the_rules(rules)
+
+
+@cache
+def of_the_rules(rules: str) -> dict[str, Any]:
+    inside = simulation(**RULES[rules])
+    inside.run()
+    return told(inside)
+
+
+def test_all_problems_at_once() -> None:
+    inside = simulation()
+    inside.run()
+    run = simulation(*DECIDED_BY_RULES)
+    assert follow(run) > 1000
+    assert told(run) == told(inside)
+
+
+def test_how_often_a_run_stops_changes_nothing() -> None:
+    inside, run = simulation(), simulation()
+    inside.run()
+    for time_s in range(0, 2000, 7):
+        assert run.run_until(time_s) is None
+        assert run.now_s == min(time_s, run.end_s)
+    assert run.ended
+    assert told(run) == told(inside)
+
+
+def test_a_question_stands_until_it_is_answered() -> None:
+    run = simulation("poa")
+    decision = run.step()
+    assert decision is not None
+    assert decision.is_open
+    for again in (run.step(), run.run_until(500.0)):
+        assert again is not None
+        assert (again.problem, again.now_s) == (decision.problem, decision.now_s)
+    with pytest.raises(RuntimeError, match="poa is decided outside"):
+        run.run()
+
+
+def test_what_is_not_possible_is_refused_and_the_question_stands() -> None:
+    run = simulation("poa")
+    run.step().decline()
+    decision = run.step()
+    order = next(iter(run.view.orders))
+    robot = run.view.robots[0]
+    for wrong, reason in [
+        (AssignOrder(order, 99), "there is no pick station 99"),
+        (AssignOrder(order, "first"), "no number of a pick station"),
+        ((order, 0), "takes AssignOrder, AssignLines, QueueOrder"),
+        (Park(robot, 3), "takes AssignOrder"),
+        (None, "takes AssignOrder"),
+    ]:
+        with pytest.raises(ImpossibleError, match=reason):
+            decision.answer(wrong)
+        assert decision.is_open
+    decision.answer(AssignOrder(order, 0))
+    with pytest.raises(ImpossibleError, match="is not in the backlog"):
+        decision.answer(AssignOrder(order, 0))
+    decision.decline()
+    with pytest.raises(ImpossibleError, match="has been answered"):
+        decision.answer(AssignOrder(order, 0))
+
+
+def test_a_full_station_takes_no_order() -> None:
+    run = simulation("poa")
+    while (decision := run.step()) is not None and len(decision.candidates):
+        decision.answer(decision.candidates[0])
+    order = next(iter(run.view.orders))
+    with pytest.raises(ImpossibleError, match="has no free slot"):
+        decision.answer(AssignOrder(order, 0))
+
+
+def test_impossible_tasks_are_refused() -> None:
+    run = simulation("ta")
+    while not any(robot.task for robot in run.view.robots):
+        take(run.step())
+    decision = run.step()
+    busy = next(robot for robot in run.view.robots if robot.task and robot.task.pod >= 0)
+    free = next(robot for robot in run.view.robots if robot.index in run.view.asking)
+    with pytest.raises(ImpossibleError, match=f"robot {busy.index} has a task"):
+        decision.answer(BringForPicks(busy, busy.task.pod, 0))
+    with pytest.raises(ImpossibleError, match=f"pod {busy.task.pod} is not at hand"):
+        decision.answer(BringForPicks(free, busy.task.pod, 0))
+    with pytest.raises(ImpossibleError, match="carries no pod"):
+        decision.answer(Park(free, 0))
+
+
+@pytest.mark.parametrize(
+    "problem", ["poa", "roa", "rps", "pps", "psa", "ta", "sa", "repositioning"]
+)
+def test_every_candidate_is_possible(problem: str) -> None:
+    """What is listed can be chosen; a run goes on whatever is chosen."""
+    run = simulation(problem, scenario__duration_s=200, controllers__repositioning="utility")
+    chosen = 0
+    while (decision := run.step()) is not None:
+        candidates = decision.candidates
+        assert {len(column) for column in candidates.columns.values()} == {len(candidates)}
+        if len(candidates) and chosen % 3 < 2 and chosen < 300:
+            decision.answer(candidates[chosen * 7 % len(candidates)])
+        elif decision.kind == "next station":
+            decision.answer(decision.stations[0])
+        else:
+            decision.decline()
+        chosen += 1
+    assert run.ended
+
+
+@pytest.mark.parametrize(
+    ("outside", "rules", "reason"),
+    [
+        ("pp", {}, "no problem that can be decided outside"),
+        ("pick", {}, "no problem that can be decided outside; valid: poa, roa"),
+        (
+            "pps",
+            {"controllers__ta": "random", "controllers__pps": "dummy"},
+            "ta random decides pps as well",
+        ),
+        ("psa", {"controllers__ta": "dispatch"}, "ta dispatch asks these questions while"),
+    ],
+)
+def test_what_cannot_be_decided_outside_is_refused(
+    outside: str, rules: dict[str, Any], reason: str
+) -> None:
+    with pytest.raises(InputError, match=reason):
+        simulation(outside, **rules)
