@@ -8,16 +8,18 @@ if TYPE_CHECKING:
     from rmfs.measure.base import Measure as Measure
     from rmfs.measure.columns import Column as Column
     from rmfs.simulation.run import Run as Run
+    from rmfs.simulation.run import Simulation as Simulation
     from rmfs.simulation.run import simulate as simulate
 
 _PLACES = {
     "Column": "rmfs.measure.columns",
     "Measure": "rmfs.measure.base",
     "Run": "rmfs.simulation.run",
+    "Simulation": "rmfs.simulation.run",
     "simulate": "rmfs.simulation.run",
 }
 
-__all__ = ["Column", "Measure", "Run", "simulate"]
+__all__ = ["Column", "Measure", "Run", "Simulation", "simulate"]
 
 
 def __getattr__(name: str) -> Any:

@@ -5,7 +5,7 @@ import signal
 import pytest
 from bounds import Counter
 
-from rmfs.simulation.simulation import Simulation
+from rmfs.simulation.kernel import Kernel
 
 # a shell ignores SIGINT in what it puts into the background, and children inherit that
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -20,11 +20,11 @@ def no_run_exceeds_its_bound(pytestconfig):
     if pytestconfig.getoption("markexpr") == "benchmark":
         yield
         return
-    build = Simulation.__init__
+    build = Kernel.__init__
 
     def bounded(self, *arguments, observers=(), **named):
         build(self, *arguments, observers=[*observers, Counter()], **named)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Simulation, "__init__", bounded)
+        patch.setattr(Kernel, "__init__", bounded)
         yield

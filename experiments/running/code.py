@@ -2,47 +2,19 @@
 
 from __future__ import annotations
 
-import hashlib
-import os
 from functools import cache
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import rmfs
+from rmfs.code import code_hash
 from rmfs.measure.provenance import commit, version
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-NOT_SIMULATED = ("experiments", "tools")
-"""Parts of the package that make no result: what is changed there needs no new run."""
-
-SUFFIXES = (".py", ".so", ".pyd")
 
 
 @cache
 def code() -> dict[str, Any]:
-    """Return version, commit and a hash of the code that runs are made with.
-
-    The hash covers the Python files and the compiled core of what simulates and decides, so that
-    runs of a checkout with changes can be told apart, too.
-    """
-    root = Path(rmfs.__file__).resolve().parent
-    state = hashlib.sha256()
-    for path in sorted(_sources(root)):
-        state.update(path.relative_to(root).as_posix().encode())
-        state.update(path.read_bytes())
+    """Return version, commit and hash of the code that runs are made with (`rmfs.code`)."""
     told = commit()["git_commit"]
     return {
         "rmfs_version": version(),
         "git_commit": told if told is not None else "",
-        "code": state.hexdigest()[:16],
+        "code": code_hash(),
     }
-
-
-def _sources(root: Path) -> Iterator[Path]:
-    """Find the files of the code; in a checkout some folders of the package are links."""
-    for folder, below, files in os.walk(root, followlinks=True):
-        if Path(folder) == root:
-            below[:] = [name for name in below if name not in NOT_SIMULATED]
-        yield from (Path(folder, name) for name in files if Path(name).suffix in SUFFIXES)

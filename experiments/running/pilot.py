@@ -11,8 +11,8 @@ import numpy as np
 from rmfs.errors import InputError
 from rmfs.experiments.design import resolve
 from rmfs.measure.footprints import some_tables
+from rmfs.simulation.kernel import StalledError
 from rmfs.simulation.run import simulate
-from rmfs.simulation.simulation import StalledError
 
 if TYPE_CHECKING:
     from rmfs.experiments.design.planning import Plan

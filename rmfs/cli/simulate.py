@@ -168,9 +168,9 @@ def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
     options
         Further parameters of `rmfs.simulate`.
     """
+    from rmfs.simulation.kernel import StalledError
     from rmfs.simulation.pacing import OptimiserError, ReplayError
     from rmfs.simulation.run import simulate
-    from rmfs.simulation.simulation import StalledError
 
     def told(part: str, note: str) -> None:
         print(f"rmfs: {inputs[part]}: {note}", file=sys.stderr)

@@ -112,8 +112,8 @@ def demonstrate(
     from rmfs.cli.simulate import conclude, default_name
     from rmfs.cli.terminal import progress, step
     from rmfs.measure.folder import fill, load_run, reserved
+    from rmfs.simulation.kernel import StalledError
     from rmfs.simulation.pacing import OptimiserError
-    from rmfs.simulation.simulation import StalledError
 
     _log_to_stderr()
     inputs = {"layout": layout, "scenario": scenario, "controllers": controllers}

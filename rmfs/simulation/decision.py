@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rmfs.control.candidates import Candidates
     from rmfs.control.questions import Question
     from rmfs.control.view import View
-    from rmfs.simulation.simulation import Simulation
+    from rmfs.simulation.kernel import Kernel
     from rmfs.world.robots import Robot
 
 
@@ -38,7 +38,7 @@ class Decision:
         The world as controllers see it: to be read, never to be changed.
     """
 
-    def __init__(self, question: Question, simulation: Simulation) -> None:
+    def __init__(self, question: Question, simulation: Kernel) -> None:
         self._question = question
         self._simulation = simulation
         self._candidates: Candidates | None = None

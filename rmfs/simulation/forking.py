@@ -9,29 +9,31 @@ from __future__ import annotations
 import io
 import pickle
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rmfs.simulation.arrays import ArrayPickler
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rmfs.simulation.simulation import Simulation
+    from rmfs.simulation.kernel import Kernel
+
+K = TypeVar("K", bound="Kernel")
 
 _SHARED: ContextVar[Sequence[Any]] = ContextVar("_SHARED")
 """What the copy that is being made refers to instead of having it."""
 
 
-def fork(simulation: Simulation) -> Simulation:
-    """Copy a simulation; see `Simulation.fork`."""
+def fork(simulation: K) -> K:
+    """Copy a simulation; see `Kernel.fork`."""
     original, copied = _never_changing(simulation), _never_changing(simulation)
     fleet = original.index(simulation.traffic)
     copied[fleet] = simulation.traffic.fork()
-    twin: Simulation = _copied(simulation, original, copied)
+    twin: K = _copied(simulation, original, copied)
     return twin
 
 
-def _never_changing(simulation: Simulation) -> list[Any]:
+def _never_changing(simulation: Kernel) -> list[Any]:
     """What all copies of a simulation may share, and the fleet, which copies itself."""
     return [
         simulation.traffic,

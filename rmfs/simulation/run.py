@@ -1,8 +1,7 @@
-"""`simulate`: one call from names to results."""
+"""`simulate` and `Simulation`: from names to results, in one call or step by step."""
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -17,12 +16,12 @@ from rmfs.measure.measures import SHIPPED
 from rmfs.measure.provenance import MARK
 from rmfs.measure.registry import find_all
 from rmfs.simulation.inputs import Overrides, load_inputs, name_of
+from rmfs.simulation.kernel import Kernel
 from rmfs.simulation.pacing import Replay, ReplayPacing, pacing_settings
-from rmfs.simulation.simulation import Simulation
 from rmfs.traffic import Traffic
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
 
     import pandas as pd
@@ -41,7 +40,7 @@ if TYPE_CHECKING:
     from rmfs.simulation.statistics import DecisionStatistics
     from rmfs.world import World
 
-    Driver = Callable[[Simulation, Callable[[float, float], None] | None], None]
+    Driver = Callable[[Kernel, Callable[[float, float], None] | None], None]
 
 
 @dataclass
@@ -139,7 +138,7 @@ def simulate(
     overrides: Sequence[tuple[list[str], Any]] = (),
     observers: Sequence[Observer] = (),
     measures: Sequence[str | type[Measure]] = (),
-    driver: Driver = Simulation.run,
+    driver: Driver = Kernel.run,
     pacing: str = "instant",
     trace: bool = False,
     events: EventLog | None = None,
@@ -192,61 +191,141 @@ def simulate(
     InputError
         If something given is wrong; names what and says what would be valid.
     """
-    if seed < 0:
-        raise InputError(f"seed {seed}: must be 0 or greater")
-    inputs = load_inputs(layout, scenario, controllers, overrides)
-    plan, work, rules = inputs.layout, inputs.scenario, inputs.controllers
-    names = name_of(layout), name_of(scenario), name_of(controllers)
-    pace = pacing_settings(pacing, inputs.pacing)
-    layouts.refuse(plan, names[0], allow_not_well_formed=allow_not_well_formed)
-    if remark is not None:
-        for part, notes in inputs.notes.items():
-            for note in notes:
-                remark(part, note)
-    recorder = measure.Recorder()
-    measuring = [kind() for kind in (*SHIPPED, *find_all(measures))]
-    if events is None and trace:
-        events = measure.EventLog()
-    planner = planner_settings(rules.choices[Problem.PP], seed)
-    slow = work.disturbances.slow
-    slower = {} if slow is None else {"slow_shares": (slow.speed_share,)}
-    traffic = traffic_maker(plan, record_trace=events is not None, planner=planner, **slower)
     simulation = Simulation(
-        plan,
-        work,
-        rules,
+        layout,
+        scenario,
+        controllers,
         seed=seed,
-        observers=[recorder, *([events] if events is not None else []), *measuring, *observers],
-        pacing=_with_answers(pace),
-        traffic=traffic,
-        streams=streams,
-    )
-    begun = time.perf_counter()
-    driver(simulation, progress)
-    wall_s = time.perf_counter() - begun
-    return Run(
-        layout=plan,
-        scenario=work,
-        controllers=rules,
-        names=(*names[:2], names[2] + _marks(simulation)),
-        overrides=inputs.overrides,
-        notes=inputs.notes,
-        seed=seed,
+        overrides=overrides,
+        observers=observers,
+        measures=measures,
         pacing=pacing,
-        pacing_settings=pace,
-        warmup_s=work.warmup_s,
-        duration_s=work.duration_s,
-        end_s=simulation.end_s,
-        wall_s=wall_s,
-        world=simulation.world,
-        traffic=traffic,
-        statistics=list(simulation.deciding.statistics.values()),
-        recorder=recorder,
-        measures=measuring,
-        disturbances=simulation.disturbances,
+        trace=trace,
         events=events,
-        interventions=list(simulation.interventions),
+        streams=streams,
+        remark=remark,
+        allow_not_well_formed=allow_not_well_formed,
+        traffic_maker=traffic_maker,
     )
+    driver(simulation, progress)
+    return simulation.result()
+
+
+class Simulation(Kernel):
+    """A run that goes on as far as it is told: the same as `simulate`, step by step.
+
+    Parameters
+    ----------
+    layout, scenario, controllers, seed, overrides, observers, measures, pacing, trace, events, \
+streams, remark, allow_not_well_formed, traffic_maker
+        As for `simulate`.
+    outside
+        Decision problems that `step` hands out, such as `["poa", "pps"]`.
+
+    Raises
+    ------
+    InputError
+        If something given is wrong; names what and says what would be valid.
+    """
+
+    def __init__(
+        self,
+        layout: str | Path | Layout = "default",
+        scenario: str | Path | Scenario = "default",
+        controllers: str | Path | ControllerSettings = "default",
+        *,
+        seed: int = 0,
+        set: Mapping[str, Any] | None = None,
+        outside: Iterable[str] = (),
+        overrides: Sequence[tuple[list[str], Any]] = (),
+        observers: Sequence[Observer] = (),
+        measures: Sequence[str | type[Measure]] = (),
+        pacing: str = "instant",
+        trace: bool = False,
+        events: EventLog | None = None,
+        streams: StreamRecorder | None = None,
+        remark: Callable[[str, str], None] | None = None,
+        allow_not_well_formed: bool = False,
+        traffic_maker: Callable[..., Traffic] = Traffic,
+    ) -> None:
+        if seed < 0:
+            raise InputError(f"seed {seed}: must be 0 or greater")
+        changes = [*overrides, *((key.split("."), value) for key, value in (set or {}).items())]
+        inputs = load_inputs(layout, scenario, controllers, changes)
+        plan, work, rules = inputs.layout, inputs.scenario, inputs.controllers
+        self.names = name_of(layout), name_of(scenario), name_of(controllers)
+        self.inputs = inputs
+        self.pacing_named = pacing
+        self.pacing_settings = pacing_settings(pacing, inputs.pacing)
+        layouts.refuse(plan, self.names[0], allow_not_well_formed=allow_not_well_formed)
+        if remark is not None:
+            for part, notes in inputs.notes.items():
+                for note in notes:
+                    remark(part, note)
+        self.recorder = measure.Recorder()
+        self.measures = [kind() for kind in (*SHIPPED, *find_all(measures))]
+        self.log = measure.EventLog() if events is None and trace else events
+        planner = planner_settings(rules.choices[Problem.PP], seed)
+        slow = work.disturbances.slow
+        slower = {} if slow is None else {"slow_shares": (slow.speed_share,)}
+        super().__init__(
+            plan,
+            work,
+            rules,
+            seed=seed,
+            observers=[
+                self.recorder,
+                *([self.log] if self.log is not None else []),
+                *self.measures,
+                *observers,
+            ],
+            outside=outside,
+            pacing=_with_answers(self.pacing_settings),
+            traffic=traffic_maker(
+                plan, record_trace=self.log is not None, planner=planner, **slower
+            ),
+            streams=streams,
+        )
+
+    def result(self) -> Run:
+        """Return the run: its footprint, its tables, its trace.
+
+        Raises
+        ------
+        InputError
+            If the run has not come to its end: rates and means would be wrong.
+        """
+        if not self.ended:
+            raise InputError(
+                f"the run is at {self.now_s:g} s of {self.end_s:g} s: its results come at its end"
+            )
+        marks = "".join(
+            f"{MARK}{choice.problem}={choice.name}@{time_s:.6f}s"
+            for time_s, choice in self.interventions
+        )
+        return Run(
+            layout=self.layout,
+            scenario=self.scenario,
+            controllers=self.controllers,
+            names=(*self.names[:2], self.names[2] + marks),
+            overrides=self.inputs.overrides,
+            notes=self.inputs.notes,
+            seed=self.seed,
+            pacing=self.pacing_named,
+            pacing_settings=self.pacing_settings,
+            warmup_s=self.warmup_s,
+            duration_s=self.scenario.duration_s,
+            end_s=self.end_s,
+            wall_s=self.wall_s,
+            world=self.world,
+            traffic=self.traffic,
+            statistics=list(self.deciding.statistics.values()),
+            recorder=self.recorder,
+            measures=self.measures,
+            disturbances=self.disturbances,
+            events=self.log,
+            interventions=list(self.interventions),
+        )
 
 
 def _with_answers(pacing: PacingSettings) -> Paced:
@@ -255,11 +334,3 @@ def _with_answers(pacing: PacingSettings) -> Paced:
         return pacing
     answers = measure.load_run(pacing.run).table("answers").to_dict("records")
     return Replay(pacing, answers)  # type: ignore[arg-type]
-
-
-def _marks(simulation: Simulation) -> str:
-    """Name the exchanges by hand, so that nobody takes the run for one of its controllers."""
-    return "".join(
-        f"{MARK}{choice.problem}={choice.name}@{time_s:.6f}s"
-        for time_s, choice in simulation.interventions
-    )

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from rmfs.config import Table
     from rmfs.control.choices import Choice
-    from rmfs.simulation.simulation import Simulation
+    from rmfs.simulation.kernel import Kernel
 
 ABSENT_S = 90.0
 """A page that has not asked for so long is gone; one that nobody sees may ask once a minute."""
@@ -93,7 +93,7 @@ class LiveRun:
         self._pages: dict[str, float] = {}
         self._left: set[str] = set()
         self._visited = False
-        self._simulation: Simulation | None = None
+        self._simulation: Kernel | None = None
         self._ended = ""
         self._braking = False
         self._answered_s = time.process_time()
@@ -101,7 +101,7 @@ class LiveRun:
     # --- the run's thread -----------------------------------------------------------------------
 
     def drive(
-        self, simulation: Simulation, progress: Callable[[float, float], None] | None = None
+        self, simulation: Kernel, progress: Callable[[float, float], None] | None = None
     ) -> None:
         """Let a run go on as the pages want it; what is asked at its end is answered."""
         with self._meeting:

@@ -8,7 +8,7 @@ import pytest
 
 from rmfs import control, layout, scenario
 from rmfs.measure import Recorder, tables
-from rmfs.simulation.simulation import Simulation
+from rmfs.simulation.kernel import Kernel
 
 pytestmark = pytest.mark.benchmark
 
@@ -17,7 +17,7 @@ DURATION_S = 28_800.0
 
 def simulated(recorder: Recorder | None) -> float:
     """Processor time of a run with or without a recorder, in s."""
-    run = Simulation(
+    run = Kernel(
         layout.load("default"),
         scenario.load("pp-minimal", [(["duration_s"], DURATION_S)]),
         control.load("random"),

@@ -11,7 +11,7 @@ from ledger import Ledger
 from rmfs import layout, scenario
 from rmfs.control import registry
 from rmfs.control.problems import Problem
-from rmfs.simulation.simulation import Simulation
+from rmfs.simulation.kernel import Kernel
 
 WAITING_FOR_ROA = ("nearest", "reactive")
 NOT_BY_DEFAULT: list[tuple[str, dict[str, Any]]] = [
@@ -60,7 +60,7 @@ def test_stock_and_requests_are_conserved(warehouse, problem, table) -> None:
     tables[problem] = tables.get(problem, {}) | table
     work = scenario.load("default", [(["duration_s"], 300.0), (["warmup_s"], 0.0)])
     ledger = Ledger()
-    simulation = Simulation(warehouse, work, rules(**tables), observers=[ledger])
+    simulation = Kernel(warehouse, work, rules(**tables), observers=[ledger])
     simulation.run()
     ledger.check()
     world = simulation.world

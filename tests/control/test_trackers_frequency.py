@@ -10,8 +10,8 @@ from rmfs.control.problems import Trigger
 from rmfs.control.trackers.frequency import Frequency, PairFrequency
 from rmfs.control.view import View
 from rmfs.scenario import OrderDraft
+from rmfs.simulation.kernel import Kernel
 from rmfs.simulation.past import PAST_ORDERS
-from rmfs.simulation.simulation import Simulation
 
 PAST = (OrderDraft((0, 1), (2, 1), 0.0, 0), OrderDraft((1,), (1,), 0.0, 0))
 
@@ -55,10 +55,10 @@ def test_pairs(situation) -> None:
 
 
 class TestInARun:
-    def simulation(self, seed: int = 0, **tables) -> Simulation:
+    def simulation(self, seed: int = 0, **tables) -> Kernel:
         plan = layout.load("default", [(["robots"], 4)])
         work = scenario.load("default", [(["duration_s"], 300.0), (["warmup_s"], 0.0)])
-        return Simulation(plan, work, rules(**tables), seed=seed)
+        return Kernel(plan, work, rules(**tables), seed=seed)
 
     def test_pairs_are_counted_as_orders_come(self) -> None:
         simulation = self.simulation(rps={"name": "correlative"})

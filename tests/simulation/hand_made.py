@@ -8,8 +8,8 @@ from doubles import FreeTraffic, quiet_scenario, rules, small_layout
 from ledger import Ledger
 
 from rmfs.observer import Observer
+from rmfs.simulation.kernel import Kernel
 from rmfs.simulation.pacing import PacingSettings
-from rmfs.simulation.simulation import Simulation
 from rmfs.world import Bundle, Order
 
 
@@ -62,7 +62,7 @@ class HandMade:
         plan = small_layout(**(layout or {}))
         self.diary, self.ledger = Diary(), Ledger()
         self.traffic = FreeTraffic(plan, move_up_s)
-        self.simulation = Simulation(
+        self.simulation = Kernel(
             plan,
             quiet_scenario(**(scenario or {})),
             rules(**problems),

@@ -11,7 +11,7 @@ from test_stepping import simulation, told
 from rmfs.control.pp import planner_settings
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
-from rmfs.simulation import Simulation
+from rmfs.simulation import Kernel
 from rmfs.simulation.inputs import load_inputs
 from rmfs.simulation.pacing import pacing_settings
 from rmfs.traffic import Traffic
@@ -21,7 +21,7 @@ def small(controllers: str, scenario: str = "small", pacing: str = "work", seed:
     """A small site with optimisers."""
     inputs = load_inputs("small", scenario, controllers, [(["scenario", "duration_s"], 400)])
     planner = planner_settings(inputs.controllers.choices[Problem.PP], seed)
-    return Simulation(
+    return Kernel(
         inputs.layout,
         inputs.scenario,
         inputs.controllers,

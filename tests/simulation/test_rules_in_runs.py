@@ -15,7 +15,7 @@ from rmfs.control import registry
 from rmfs.control.problems import Problem
 from rmfs.control.settings import DEFAULTS, settings
 from rmfs.observer import Observer
-from rmfs.simulation.simulation import Simulation
+from rmfs.simulation.kernel import Kernel
 
 DUMMY = {"name": "dummy"}
 ANY_QUEUED = {"consider": "assigned-and-queued", "reserve": "assigned-and-queued"}
@@ -38,12 +38,12 @@ class Exchanges(Observer):
 
 def run(
     robots: int = 12, duration_s: float = 300.0, observers: tuple[Observer, ...] = (), **rules: Any
-) -> tuple[Simulation, Ledger]:
+) -> tuple[Kernel, Ledger]:
     plan = layout.load("default", [(["robots"], robots)])
     work = scenario.load("basic", [(["duration_s"], duration_s), (["warmup_s"], 0.0)])
     table = {"format": "rmfs-controllers/1", "name": "test", **named(**rules)}
     ledger = Ledger()
-    simulation = Simulation(plan, work, settings(table), observers=[ledger, *observers])
+    simulation = Kernel(plan, work, settings(table), observers=[ledger, *observers])
     simulation.run()
     ledger.check()
     return simulation, ledger

@@ -8,7 +8,7 @@ from ledger import Ledger
 from rmfs import control, layout, scenario, simulate
 from rmfs.errors import InputError
 from rmfs.observer import Observer
-from rmfs.simulation.simulation import Simulation
+from rmfs.simulation.kernel import Kernel
 
 
 def run(
@@ -18,11 +18,11 @@ def run(
     duration_s: float = 1200.0,
     observers: tuple[Observer, ...] = (),
     scenario_name: str = "basic",
-) -> tuple[Simulation, Ledger]:
+) -> tuple[Kernel, Ledger]:
     plan = layout.load("basic", [(["robots"], robots)])
     work = scenario.load(scenario_name, [(["duration_s"], duration_s), (["warmup_s"], 0.0)])
     ledger = Ledger()
-    simulation = Simulation(
+    simulation = Kernel(
         plan, work, control.load(controllers), seed=seed, observers=[ledger, *observers]
     )
     for watch in observers:
@@ -65,7 +65,7 @@ def test_the_same_seed_gives_the_same_events() -> None:
 class IdleWatch(Observer):
     """Checks every minute that no robot rests although PPS would find a pod for its station."""
 
-    simulation: Simulation
+    simulation: Kernel
     checked = 0
 
     def sampled(self, time_s) -> None:
@@ -106,7 +106,7 @@ def test_the_warm_up_and_the_samples() -> None:
 
     calls = Calls()
     work = scenario.load("basic", [(["duration_s"], 150.0), (["warmup_s"], 30.0)])
-    Simulation(layout.load("basic"), work, control.load("default"), observers=[calls]).run()
+    Kernel(layout.load("basic"), work, control.load("default"), observers=[calls]).run()
     assert calls.calls == [("warm-up", 30.0), ("sample", 90.0), ("sample", 150.0), ("end", 180.0)]
 
 

@@ -12,7 +12,7 @@ from rmfs.control.decisions import AssignOrder, BringForPicks, Park
 from rmfs.control.pp import planner_settings
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
-from rmfs.simulation import Simulation
+from rmfs.simulation import Kernel
 from rmfs.simulation.decision import Decision, ImpossibleError
 from rmfs.simulation.inputs import load_inputs
 from rmfs.traffic import Traffic
@@ -22,9 +22,7 @@ NEVER_ASKED = ("mm", "repositioning")  # by default: rules that never do anythin
 DECIDED_BY_RULES = ["poa", "roa", "rps", "pps", "psa", "ta", "sa", "mm", "repositioning"]
 
 
-def simulation(
-    *outside: str, controllers: str = "default", seed: int = 3, **given: Any
-) -> Simulation:
+def simulation(*outside: str, controllers: str = "default", seed: int = 3, **given: Any) -> Kernel:
     keys = {"layout.robots": 10, "scenario.warmup_s": 60, "scenario.duration_s": DURATION_S}
     keys |= {key.replace("__", "."): value for key, value in given.items()}
     inputs = load_inputs(
@@ -35,7 +33,7 @@ def simulation(
     )
     planner = planner_settings(inputs.controllers.choices[Problem.PP], seed)
     traffic = Traffic(inputs.layout, record_trace=True, planner=planner)
-    return Simulation(
+    return Kernel(
         inputs.layout,
         inputs.scenario,
         inputs.controllers,
@@ -45,7 +43,7 @@ def simulation(
     )
 
 
-def told(run: Simulation) -> dict[str, Any]:
+def told(run: Kernel) -> dict[str, Any]:
     """What tells runs apart: the motion of all robots, orders, stock, and decisions counted."""
     motion = hashlib.sha256()
     for name, values in sorted(run.traffic.trace().items()):
@@ -61,7 +59,7 @@ def told(run: Simulation) -> dict[str, Any]:
     }
 
 
-def follow(run: Simulation) -> int:
+def follow(run: Kernel) -> int:
     """Take the advice of the rules to the end; returns how many questions were asked."""
     asked = 0
     while (decision := run.step()) is not None:

@@ -12,7 +12,7 @@ from doubles import KIND, FreeTraffic, small_layout, small_skus
 import rmfs
 from rmfs import layout as layouts
 from rmfs.measure.bound import BoundExceededWarning, units_per_h_bound, warn_if_exceeded
-from rmfs.simulation.simulation import Simulation
+from rmfs.simulation.kernel import Kernel
 from rmfs.solvers.models.run_bound import Throughput, solve, violations
 from rmfs.solvers.run_bound import run_bound
 from rmfs.traffic import Traffic
@@ -105,7 +105,7 @@ def test_every_simulation_of_the_tests_is_counted():
     from rmfs import control, scenario
 
     work = scenario.load("basic", [(["duration_s"], 60.0)])
-    built = Simulation(layouts.load("basic"), work, control.load("default"))
+    built = Kernel(layouts.load("basic"), work, control.load("default"))
     counters = [one for one in vars(built.observers).values() if isinstance(
         getattr(one, "__self__", None), Counter)]  # fmt: skip
     assert counters

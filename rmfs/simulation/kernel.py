@@ -1,9 +1,10 @@
-"""The simulation: world, fleet, controllers and agenda of one run, and its loop."""
+"""The kernel: world, fleet, controllers and agenda of one run, and its loop."""
 
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, Self
 
 from rmfs.control.problems import Trigger
 from rmfs.control.travel import Travel
@@ -11,7 +12,7 @@ from rmfs.control.view import View
 from rmfs.errors import InputError
 from rmfs.observer import Observed
 from rmfs.scenario import initial_stock, sku_set
-from rmfs.simulation import forking
+from rmfs.simulation import forking, saving
 from rmfs.simulation.agenda import LAST, Agenda, us_at
 from rmfs.simulation.alarms import Alarms
 from rmfs.simulation.applying import Applying
@@ -36,6 +37,7 @@ from rmfs.world import World
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
+    from pathlib import Path
 
     from rmfs.control.choices import Choice
     from rmfs.control.settings import ControllerSettings
@@ -58,7 +60,7 @@ class StalledError(RuntimeError):
     """Nothing can move any more; the message lists every robot."""
 
 
-class Simulation:
+class Kernel:
     """One run, which goes on as far as it is told.
 
     Events happen at their exact times; all that happens at one instant is handled before the
@@ -92,6 +94,8 @@ class Simulation:
         When the run ends.
     interventions
         Controllers exchanged by hand, and when (s).
+    wall_s
+        Wall time of simulating so far.
 
     Raises
     ------
@@ -118,6 +122,7 @@ class Simulation:
         self.seed = seed
         self.warmup_s = scenario.warmup_s
         self.end_s = scenario.warmup_s + scenario.duration_s
+        self.pacing: Paced = pacing or InstantPacing()
         self.interventions: list[tuple[float, Choice]] = []
         self.traffic = fleet = traffic if traffic is not None else Traffic(layout)
         self.agenda = agenda = Agenda()
@@ -160,7 +165,7 @@ class Simulation:
             recorder=streams,
         )
         self.optimisers = OptimiserGateway(
-            pacing_of(pacing or InstantPacing(), seed),
+            pacing_of(self.pacing, seed),
             agenda=agenda,
             world=world,
             events=events,
@@ -176,6 +181,7 @@ class Simulation:
         self._end_us = us_at(self.end_s)
         self._moved_us = 0
         self._begun = self._ended = False
+        self.wall_s = 0.0
         self._unsettled = self._quiet = False
         self._handlers = _traffic_handlers(self.dispatch)
 
@@ -262,6 +268,16 @@ class Simulation:
         if not self._begun:
             self._begin()
         agenda, end_us = self.agenda, until_us
+        if end_us < agenda.now_us:
+            return self.decision
+        started_s = perf_counter()
+        try:
+            return self._go_on_until(end_us, limit)
+        finally:
+            self.wall_s += perf_counter() - started_s
+
+    def _go_on_until(self, end_us: int, limit: Limit | None) -> Decision | None:
+        agenda = self.agenda
         waits = self.optimisers.limit_us if self.optimisers.waits else None
         while not self._ended:
             if not self._unsettled:
@@ -329,7 +345,7 @@ class Simulation:
 
     # --- copies -----------------------------------------------------------------------------------
 
-    def fork(self) -> Simulation:
+    def fork(self) -> Self:
         """Copy the simulation as it is, a decision that waits included.
 
         The copy goes on as this one would, bit for bit, and neither changes the other. Layout,
@@ -341,6 +357,29 @@ class Simulation:
             If the pacing is `wall`: a solver at work cannot be copied.
         """
         return forking.fork(self)
+
+    def save(self, path: Path) -> None:
+        """Write the simulation as it is into a file, from which `load` goes on.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or the pacing is `wall`.
+        """
+        saving.save(self, path)
+
+    @classmethod
+    def load(cls, path: Path) -> Self:
+        """Go on from a file that `save` has written, to the same end, bit for bit.
+
+        The file holds pickled objects, which can run any code: load only what you trust.
+
+        Raises
+        ------
+        InputError
+            If it is no such file, is damaged, or was written by another version of the code.
+        """
+        return saving.load(cls, path)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return everything, unless a solver is at work elsewhere."""

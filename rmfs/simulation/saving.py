@@ -1,0 +1,96 @@
+"""Simulations in files: a header that says what it is, and the simulation itself."""
+
+from __future__ import annotations
+
+import io
+import json
+import pickle
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from rmfs.code import code_hash
+from rmfs.digest import digest
+from rmfs.errors import InputError
+from rmfs.files import replacing
+from rmfs.simulation.arrays import ArrayPickler
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rmfs.simulation.kernel import Kernel
+
+FORMAT = "rmfs-checkpoint/1"
+
+K = TypeVar("K", bound="Kernel")
+
+
+def save(simulation: Kernel, path: Path) -> None:
+    """Write a simulation; see `Kernel.save`."""
+    stream = io.BytesIO()
+    ArrayPickler(stream).dump(simulation)
+    header = {
+        "format": FORMAT,
+        "code": code_hash(),
+        "time_s": simulation.now_s,
+        "inputs": inputs_of(simulation),
+    }
+    with replacing(path) as temporary, temporary.open("wb") as file:
+        file.write(json.dumps(header).encode() + b"\n")
+        file.write(stream.getbuffer())
+
+
+def load(kind: type[K], path: Path) -> K:
+    """Read a simulation; see `Kernel.load`."""
+    try:
+        with path.open("rb") as file:
+            header, content = _header(file.readline(), path), file.read()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
+    if header["code"] != code_hash():
+        raise InputError(
+            f"{path}: written by another version of rmfs ({header['code']}, this is "
+            f"{code_hash()}): begin anew"
+        )
+    try:
+        simulation = pickle.loads(content)
+    except Exception as error:
+        raise InputError(f"{path}: damaged ({type(error).__name__}: {error})") from None
+    if not isinstance(simulation, kind):
+        raise InputError(f"{path}: holds a {type(simulation).__name__}, not a {kind.__name__}")
+    return simulation
+
+
+def refuse_other(path: Path, simulation: Kernel) -> None:
+    """Refuse to go on from a file whose run had other inputs than a simulation.
+
+    Raises
+    ------
+    InputError
+        Naming what differs.
+    """
+    with path.open("rb") as file:
+        header = _header(file.readline(), path)
+    now = inputs_of(simulation)
+    other = [name for name in now if header["inputs"].get(name) != now[name]]
+    if other:
+        raise InputError(f"{path}: its run had another {', '.join(other)}: begin anew")
+
+
+def inputs_of(simulation: Kernel) -> dict[str, str]:
+    """Return hashes of what a simulation was made from."""
+    return {
+        "layout": digest(simulation.layout),
+        "scenario": digest(simulation.scenario.model_dump(mode="json")),
+        "controllers": digest(simulation.controllers.to_table()),
+        "seed": str(simulation.seed),
+        "pacing": digest(simulation.pacing),
+    }
+
+
+def _header(line: bytes, path: Path) -> dict[str, Any]:
+    try:
+        header = json.loads(line)
+    except ValueError:
+        header = None
+    if not isinstance(header, dict) or header.get("format") != FORMAT:
+        raise InputError(f"{path}: no checkpoint ({FORMAT})")
+    return header
