@@ -89,6 +89,18 @@ def run(
             "installed one; may be repeated.",
         ),
     ] = None,
+    checkpoint_every: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            help="Save the run every S simulated seconds, in FOLDER.checkpoint beside the run "
+            "folder, until it has ended.",
+            show_default=False,
+        ),
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on from the checkpoint of a run that was killed.")
+    ] = False,
     live: Annotated[
         bool, typer.Option("--live", help="Show the run in the browser while it happens.")
     ] = False,
@@ -112,6 +124,7 @@ def run(
     from rmfs.config import parse_override
     from rmfs.measure.folder import fill, load_run, reserved
     from rmfs.scenario import StreamRecorder, write_streams
+    from rmfs.simulation.checkpoints import Checkpoints
 
     overrides = [parse_override(text) for text in set_ or []]
     inputs = {"layout": layout, "scenario": scenario, "controllers": controllers}
@@ -119,6 +132,8 @@ def run(
     streams = None if record is None else StreamRecorder()
     if speed is not None and not live:
         raise InputError("--speed: only with --live")
+    if (checkpoint_every is not None or resume) and (live or record is not None):
+        raise InputError("--checkpoint-every, --resume: not with --live or --record")
     with ExitStack() as stack:
         stack.enter_context(terminable())
         watching: dict[str, Any] = {}
@@ -137,6 +152,11 @@ def run(
             )
             watching = {"events": watcher.events, "driver": watcher.drive}
         folder = stack.enter_context(reserved(target, force=force))
+        file = target.with_name(f"{target.name}.checkpoint")
+        if checkpoint_every is not None:
+            watching["driver"] = Checkpoints(file, checkpoint_every)
+        if resume:
+            watching["resume"] = file
         done = simulated(
             inputs,
             seed=seed,
@@ -155,6 +175,8 @@ def run(
         step("writing the tables")
         fill(folder, done, report=report, trace=trace, inputs=inputs)
         footprint = load_run(folder).footprint
+    if resume:
+        file.unlink(missing_ok=True)
     conclude(target, footprint, report)
 
 

@@ -15,6 +15,7 @@ from rmfs.measure.checker import Slow, check
 from rmfs.measure.measures import SHIPPED
 from rmfs.measure.provenance import MARK
 from rmfs.measure.registry import find_all
+from rmfs.simulation.checkpoints import resumed
 from rmfs.simulation.inputs import Overrides, load_inputs, name_of
 from rmfs.simulation.kernel import Kernel
 from rmfs.simulation.pacing import Replay, ReplayPacing, pacing_settings
@@ -147,6 +148,7 @@ def simulate(
     remark: Callable[[str, str], None] | None = None,
     allow_not_well_formed: bool = False,
     traffic_maker: Callable[..., Traffic] = Traffic,
+    resume: Path | None = None,
 ) -> Run:
     """Simulate a warehouse.
 
@@ -185,6 +187,8 @@ def simulate(
         Whether to run a layout in which robots may block each other for ever.
     traffic_maker
         Makes the traffic layer, from what `Traffic` is made from: the demonstrator has its own.
+    resume
+        A file that `Simulation.save` has written in a run of the same inputs, to go on from.
 
     Raises
     ------
@@ -207,6 +211,8 @@ def simulate(
         allow_not_well_formed=allow_not_well_formed,
         traffic_maker=traffic_maker,
     )
+    if resume is not None:
+        simulation = resumed(resume, simulation)
     driver(simulation, progress)
     return simulation.result()
 

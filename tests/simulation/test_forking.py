@@ -5,29 +5,21 @@ from __future__ import annotations
 import random
 from typing import Any
 
+import numpy as np
 import pytest
 from test_stepping import simulation, told
 
-from rmfs.control.pp import planner_settings
-from rmfs.control.problems import Problem
+import rmfs
 from rmfs.errors import InputError
-from rmfs.simulation import Kernel
-from rmfs.simulation.inputs import load_inputs
-from rmfs.simulation.pacing import pacing_settings
-from rmfs.traffic import Traffic
 
 
-def small(controllers: str, scenario: str = "small", pacing: str = "work", seed: int = 1) -> Any:
+def small(
+    controllers: str, scenario: str = "small", pacing: str = "work", seed: int = 1
+) -> rmfs.Simulation:
     """A small site with optimisers."""
-    inputs = load_inputs("small", scenario, controllers, [(["scenario", "duration_s"], 400)])
-    planner = planner_settings(inputs.controllers.choices[Problem.PP], seed)
-    return Kernel(
-        inputs.layout,
-        inputs.scenario,
-        inputs.controllers,
-        seed=seed,
-        pacing=pacing_settings(pacing),  # type: ignore[arg-type]
-        traffic=Traffic(inputs.layout, record_trace=True, planner=planner),
+    given = {"scenario.duration_s": 400}
+    return rmfs.Simulation(
+        "small", scenario, controllers, seed=seed, set=given, pacing=pacing, trace=True
     )
 
 
@@ -135,8 +127,6 @@ def test_views_of_arrays_stay_views() -> None:
 
 
 def np_shares(one: Any, other: Any) -> bool:
-    import numpy as np
-
     return bool(np.shares_memory(one, other))
 
 

@@ -8,42 +8,27 @@ from typing import Any
 
 import pytest
 
+import rmfs
 from rmfs.control.decisions import AssignOrder, BringForPicks, Park
-from rmfs.control.pp import planner_settings
-from rmfs.control.problems import Problem
 from rmfs.errors import InputError
-from rmfs.simulation import Kernel
 from rmfs.simulation.decision import Decision, ImpossibleError
-from rmfs.simulation.inputs import load_inputs
-from rmfs.traffic import Traffic
 
 DURATION_S = 250
 NEVER_ASKED = ("mm", "repositioning")  # by default: rules that never do anything
 DECIDED_BY_RULES = ["poa", "roa", "rps", "pps", "psa", "ta", "sa", "mm", "repositioning"]
 
 
-def simulation(*outside: str, controllers: str = "default", seed: int = 3, **given: Any) -> Kernel:
+def simulation(
+    *outside: str, controllers: str = "default", seed: int = 3, **given: Any
+) -> rmfs.Simulation:
     keys = {"layout.robots": 10, "scenario.warmup_s": 60, "scenario.duration_s": DURATION_S}
     keys |= {key.replace("__", "."): value for key, value in given.items()}
-    inputs = load_inputs(
-        "default",
-        "default",
-        controllers,
-        [(key.split("."), value) for key, value in keys.items()],
-    )
-    planner = planner_settings(inputs.controllers.choices[Problem.PP], seed)
-    traffic = Traffic(inputs.layout, record_trace=True, planner=planner)
-    return Kernel(
-        inputs.layout,
-        inputs.scenario,
-        inputs.controllers,
-        seed=seed,
-        outside=outside,
-        traffic=traffic,
+    return rmfs.Simulation(
+        "default", "default", controllers, seed=seed, set=keys, outside=outside, trace=True
     )
 
 
-def told(run: Kernel) -> dict[str, Any]:
+def told(run: rmfs.Simulation) -> dict[str, Any]:
     """What tells runs apart: the motion of all robots, orders, stock, and decisions counted."""
     motion = hashlib.sha256()
     for name, values in sorted(run.traffic.trace().items()):
@@ -59,7 +44,7 @@ def told(run: Kernel) -> dict[str, Any]:
     }
 
 
-def follow(run: Kernel) -> int:
+def follow(run: rmfs.Simulation) -> int:
     """Take the advice of the rules to the end; returns how many questions were asked."""
     asked = 0
     while (decision := run.step()) is not None:

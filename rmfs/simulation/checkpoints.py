@@ -1,0 +1,65 @@
+"""Runs that leave checkpoints, from which they go on if they are killed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.errors import InputError
+from rmfs.simulation import saving
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from rmfs.simulation.run import Simulation
+
+
+class Checkpoints:
+    """A driver that saves the simulation now and then, and removes the file at the end.
+
+    Parameters
+    ----------
+    path
+        The file.
+    every_s
+        Simulated seconds between two checkpoints.
+    """
+
+    def __init__(self, path: Path, every_s: float) -> None:
+        if not every_s > 0:
+            raise InputError(f"--checkpoint-every {every_s:g}: must be greater than 0")
+        self._path = path
+        self._every_s = every_s
+
+    def __call__(
+        self, simulation: Simulation, progress: Callable[[float, float], None] | None = None
+    ) -> None:
+        """Simulate to the end."""
+        number = int(simulation.now_s // self._every_s)
+        while not simulation.ended:
+            number += 1
+            simulation.run_until(min(number * self._every_s, simulation.end_s))
+            if progress is not None:
+                progress(simulation.now_s, simulation.end_s)
+            if not simulation.ended:
+                simulation.save(self._path)
+        self._path.unlink(missing_ok=True)
+
+
+def resumed(path: Path, simulation: Simulation) -> Simulation:
+    """Go on from a checkpoint.
+
+    Parameters
+    ----------
+    simulation
+        A run of the same inputs that has not begun.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it is of another run or another version of the code.
+    """
+    if not path.is_file():
+        raise InputError(f"{path}: no checkpoint to go on from (is it of another folder or seed?)")
+    saving.refuse_other(path, simulation)
+    return type(simulation).load(path)
