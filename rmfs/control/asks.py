@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from rmfs.control.base import Controller
     from rmfs.control.problems import Problem
 
 Q = TypeVar("Q")
@@ -94,6 +93,16 @@ class Outcome(StrEnum):
     """The controller was exchanged before the answer came."""
 
 
+class Asker(Protocol):
+    """Who asks: a controller (`rmfs.control.base.Controller`)."""
+
+    in_flight: int
+
+    def answered(self, call: Call) -> Iterator[Any]:
+        """Yield the decisions of an answer."""
+        ...
+
+
 @dataclass(eq=False)
 class Call:
     """One question in the course of a run.
@@ -119,7 +128,7 @@ class Call:
 
     number: int
     problem: Problem
-    controller: Controller[Any]
+    controller: Asker
     ask: Ask[Any]
     requested_us: int
     state: str

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 import pydantic
 
 from rmfs.config import Model, Table
-from rmfs.control.decisions import Prepare
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -131,7 +130,7 @@ class Controller(Generic[P]):
 
         What is prepared ahead counts when it is done.
         """
-        return not isinstance(decision, Prepare)
+        return not getattr(decision, "is_ahead", False)
 
     def draw(self, count: int) -> int:
         """Draw a number from 0 to `count` - 1, all equally likely."""

@@ -123,7 +123,12 @@ class MovePod(NamedTuple):
     robot: Robot
 
 
-class Prepare(NamedTuple):
+class _Ahead(NamedTuple):
+    robot: Robot
+    tasks: tuple[TaskDecision, ...]
+
+
+class Prepare(_Ahead):
     """TA: what a robot is to do after its present task, one after another; the last word counts.
 
     Prepared tasks keep nothing for the robot. One that is impossible when its turn comes (the pod
@@ -131,8 +136,8 @@ class Prepare(NamedTuple):
     asked as usual.
     """
 
-    robot: Robot
-    tasks: tuple[TaskDecision, ...]
+    __slots__ = ()
+    is_ahead = True  # counts when it is done
 
 
 class SwitchStation(NamedTuple):

@@ -11,16 +11,27 @@ if TYPE_CHECKING:
 
     from rmfs.simulation.dispatch import Dispatch
     from rmfs.simulation.events import Events
-    from rmfs.simulation.phase import DecisionPhase
     from rmfs.world import World
     from rmfs.world.orders import Bundle, Order
 
 
 class Applying:
-    """Applies decisions, each as soon as it is taken."""
+    """Applies decisions, each as soon as it is taken.
+
+    Parameters
+    ----------
+    prepare, exchange
+        What is done with tasks prepared ahead, and with another controller.
+    """
 
     def __init__(
-        self, world: World, events: Events, dispatch: Dispatch, phase: DecisionPhase
+        self,
+        world: World,
+        events: Events,
+        dispatch: Dispatch,
+        *,
+        prepare: Callable[[say.Prepare], None],
+        exchange: Callable[[say.Exchange], None],
     ) -> None:
         self._world = world
         self._events = events
@@ -37,8 +48,8 @@ class Applying:
             say.Park: dispatch.park,
             say.Reposition: dispatch.reposition,
             say.Rest: dispatch.rest,
-            say.Prepare: phase.prepare,
-            say.Exchange: phase.exchange_controller,
+            say.Prepare: prepare,
+            say.Exchange: exchange,
         }
 
     def __call__(self, decision: Any) -> None:

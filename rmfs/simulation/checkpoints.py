@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from rmfs.errors import InputError
 from rmfs.simulation import saving
@@ -11,7 +11,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from rmfs.simulation.run import Simulation
+    from rmfs.simulation.kernel import Kernel
+
+K = TypeVar("K", bound="Kernel")
 
 
 class Checkpoints:
@@ -32,7 +34,7 @@ class Checkpoints:
         self._every_s = every_s
 
     def __call__(
-        self, simulation: Simulation, progress: Callable[[float, float], None] | None = None
+        self, simulation: Kernel, progress: Callable[[float, float], None] | None = None
     ) -> None:
         """Simulate to the end."""
         number = int(simulation.now_s // self._every_s)
@@ -42,11 +44,11 @@ class Checkpoints:
             if progress is not None:
                 progress(simulation.now_s, simulation.end_s)
             if not simulation.ended:
-                simulation.save(self._path)
+                saving.save(simulation, self._path)
         self._path.unlink(missing_ok=True)
 
 
-def resumed(path: Path, simulation: Simulation) -> Simulation:
+def resumed(path: Path, simulation: K) -> K:
     """Go on from a checkpoint.
 
     Parameters
@@ -62,4 +64,4 @@ def resumed(path: Path, simulation: Simulation) -> Simulation:
     if not path.is_file():
         raise InputError(f"{path}: no checkpoint to go on from (is it of another folder or seed?)")
     saving.refuse_other(path, simulation)
-    return type(simulation).load(path)
+    return saving.load(type(simulation), path)

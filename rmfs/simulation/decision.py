@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from rmfs.control.asks import Ask
 from rmfs.control.candidates import candidates_for
@@ -13,12 +13,38 @@ if TYPE_CHECKING:
     from rmfs.control.candidates import Candidates
     from rmfs.control.questions import Question
     from rmfs.control.view import View
-    from rmfs.simulation.kernel import Kernel
+    from rmfs.simulation.controller_set import ControllerSet
+    from rmfs.simulation.deciding import Deciding
+    from rmfs.simulation.phase import DecisionPhase
     from rmfs.world.robots import Robot
 
 
 class ImpossibleError(ValueError):
     """An answer that is not possible; the message says why, and the question stands."""
+
+
+class Asking(Protocol):
+    """The parts of a simulation that a decision needs."""
+
+    @property
+    def view(self) -> View:
+        """The world as controllers see it."""
+        ...
+
+    @property
+    def phase(self) -> DecisionPhase:
+        """Where the question is pending."""
+        ...
+
+    @property
+    def deciding(self) -> Deciding:
+        """What keeps count of decisions."""
+        ...
+
+    @property
+    def controller_set(self) -> ControllerSet:
+        """The rules that give advice."""
+        ...
 
 
 class Decision:
@@ -38,7 +64,7 @@ class Decision:
         The world as controllers see it: to be read, never to be changed.
     """
 
-    def __init__(self, question: Question, simulation: Kernel) -> None:
+    def __init__(self, question: Question, simulation: Asking) -> None:
         self._question = question
         self._simulation = simulation
         self._candidates: Candidates | None = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 from rmfs.control.problems import Trigger
 from rmfs.control.travel import Travel
@@ -12,7 +12,6 @@ from rmfs.control.view import View
 from rmfs.errors import InputError
 from rmfs.observer import Observed
 from rmfs.scenario import initial_stock, sku_set
-from rmfs.simulation import forking, saving
 from rmfs.simulation.agenda import LAST, Agenda, us_at
 from rmfs.simulation.alarms import Alarms
 from rmfs.simulation.applying import Applying
@@ -37,7 +36,6 @@ from rmfs.world import World
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
-    from pathlib import Path
 
     from rmfs.control.choices import Choice
     from rmfs.control.settings import ControllerSettings
@@ -153,7 +151,13 @@ class Kernel:
             dispatch=self.dispatch,
             late_binding=late_binding,
         )
-        self.applying = Applying(world, events, self.dispatch, self.phase)
+        self.applying = Applying(
+            world,
+            events,
+            self.dispatch,
+            prepare=self.phase.prepare,
+            exchange=self.phase.exchange_controller,
+        )
         self.arrivals = ArrivalProcess(
             layout,
             scenario,
@@ -342,44 +346,6 @@ class Kernel:
         """Exchange a controller by hand at this instant; the run remembers it."""
         self.interventions.append((self.world.now_s, choice))
         self.phase.exchange(choice)
-
-    # --- copies -----------------------------------------------------------------------------------
-
-    def fork(self) -> Self:
-        """Copy the simulation as it is, a decision that waits included.
-
-        The copy goes on as this one would, bit for bit, and neither changes the other. Layout,
-        scenario and tables of travel times, which never change, are shared.
-
-        Raises
-        ------
-        InputError
-            If the pacing is `wall`: a solver at work cannot be copied.
-        """
-        return forking.fork(self)
-
-    def save(self, path: Path) -> None:
-        """Write the simulation as it is into a file, from which `load` goes on.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, or the pacing is `wall`.
-        """
-        saving.save(self, path)
-
-    @classmethod
-    def load(cls, path: Path) -> Self:
-        """Go on from a file that `save` has written, to the same end, bit for bit.
-
-        The file holds pickled objects, which can run any code: load only what you trust.
-
-        Raises
-        ------
-        InputError
-            If it is no such file, is damaged, or was written by another version of the code.
-        """
-        return saving.load(cls, path)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return everything, unless a solver is at work elsewhere."""

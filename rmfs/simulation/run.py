@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from rmfs import layout as layouts
 from rmfs import measure
@@ -15,6 +15,7 @@ from rmfs.measure.checker import Slow, check
 from rmfs.measure.measures import SHIPPED
 from rmfs.measure.provenance import MARK
 from rmfs.measure.registry import find_all
+from rmfs.simulation import forking, saving
 from rmfs.simulation.checkpoints import resumed
 from rmfs.simulation.inputs import Overrides, load_inputs, name_of
 from rmfs.simulation.kernel import Kernel
@@ -292,6 +293,42 @@ streams, remark, allow_not_well_formed, traffic_maker
             ),
             streams=streams,
         )
+
+    def fork(self) -> Self:
+        """Copy the simulation as it is, a decision that waits included.
+
+        The copy goes on as this one would, bit for bit, and neither changes the other. Layout,
+        scenario and tables of travel times, which never change, are shared.
+
+        Raises
+        ------
+        InputError
+            If the pacing is `wall`: a solver at work cannot be copied.
+        """
+        return forking.fork(self)
+
+    def save(self, path: Path) -> None:
+        """Write the simulation as it is into a file, from which `load` goes on.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or the pacing is `wall`.
+        """
+        saving.save(self, path)
+
+    @classmethod
+    def load(cls, path: Path) -> Self:
+        """Go on from a file that `save` has written, to the same end, bit for bit.
+
+        The file holds pickled objects, which can run any code: load only what you trust.
+
+        Raises
+        ------
+        InputError
+            If it is no such file, is damaged, or was written by another version of the code.
+        """
+        return saving.load(cls, path)
 
     def result(self) -> Run:
         """Return the run: its footprint, its tables, its trace.
