@@ -54,6 +54,10 @@ format: setup ## Format the Python and Rust sources
 browse: setup ## Test the viewer in Chromium and build its page again, where Chromium and npm are
 	$(BIN)/python -m pytest -m slow -rs tests/view
 
+.PHONY: wheel
+wheel: setup ## Build the wheel and try it in a project with folders of the same names
+	$(BIN)/python -m pytest -m slow tests/project/test_hostile_folder.py
+
 .PHONY: bench
 bench: setup ## Measure speed
 	$(BIN)/rmfs bench
