@@ -13,18 +13,17 @@ import typer
 
 from rmfs.errors import InputError
 from rmfs.experiments.console import open_console
+from rmfs.experiments.opening import RESULTS, made_below, opened, shipped
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from rmfs.experiments.design.planning import Plan
     from rmfs.experiments.figures.pareto import Goal
-    from rmfs.experiments.store import Store
     from rmfs.experiments.tables import Table
 
 app = typer.Typer(help="Experiments: many arms, many seeds, one table.", no_args_is_help=True)
 
-RESULTS = Path("results")
 FAILED = 1
 """Exit code where runs failed."""
 
@@ -33,6 +32,13 @@ INCOMPLETE = 3
 
 Design = Annotated[
     str, typer.Argument(metavar="DESIGN", help="A design file, or the name of a shipped design.")
+]
+Made = Annotated[
+    str,
+    typer.Argument(
+        metavar="DESIGN",
+        help="A design file, the name of a shipped design, or a folder of results.",
+    ),
 ]
 Out = Annotated[
     Path | None,
@@ -64,6 +70,32 @@ Bootstrap = Annotated[
 ]
 
 
+@app.command("list")
+def list_experiments(
+    folder: Annotated[Path, typer.Argument(help="Where results lie.", show_default=True)] = RESULTS,
+) -> None:
+    """List the shipped designs, and the experiments that have results."""
+    from rich import box
+    from rich.table import Table as RichTable
+
+    from rmfs.experiments.running.driver import progress_of
+
+    console = open_console()
+    designs = RichTable("shipped design", "description", box=box.SIMPLE_HEAD)
+    for name, description in shipped():
+        designs.add_row(name, description)
+    console.print(designs)
+    results = RichTable("results", "design", "runs", "failed", box=box.SIMPLE_HEAD)
+    for one in made_below(folder):
+        done = progress_of(one.plan, one.store)
+        counts = f"{done.finished} of {done.wanted}", str(len(done.failed))
+        results.add_row(str(one.store.folder), one.plan.design.name, *counts)
+    if results.row_count:
+        console.print(results)
+    else:
+        typer.echo(f"{folder}: no results of experiments")
+
+
 @app.command()
 def plan(
     design: Design,
@@ -79,9 +111,8 @@ def plan(
     from rmfs.experiments.running import cores
     from rmfs.experiments.running.pilot import estimate
 
-    made = _planned(design)
-    store = _store(made, out)
-    _refuse(made)
+    one = opened(design, out)
+    made, store = one.plan, one.store
     runs = schedule(made, assigned(made, store), failed_pairs(made, store))
     finished = store.finished(made.design.keep)
     keys = _keys(made, runs.runs)
@@ -137,9 +168,10 @@ def run(
     from rmfs.experiments.running import run as run_plan
     from rmfs.experiments.running.progress import watching
 
-    made = _planned(design)
-    _refuse(made)
-    store = _store(made, out)
+    if Path(design).is_dir():
+        raise InputError(f"{design}: is a folder; name the design file, and --out {design}")
+    one = opened(design, out)
+    made, store = one.plan, one.store
     with watching(made.design.name) as watcher:
         done = run_plan(made, store.folder, processes=jobs, dask=dask, watcher=watcher)
     typer.echo(f"{done.finished} of {done.wanted} runs finished, {len(done.failed)} failed")
@@ -149,14 +181,13 @@ def run(
 
 
 @app.command()
-def status(design: Design, out: Out = None) -> None:
+def status(design: Made, out: Out = None) -> None:
     """Say how far an experiment has come, and what failed."""
     from rmfs.experiments.results import assigned, failed
     from rmfs.experiments.running.driver import progress_of
 
-    made = _planned(design)
-    _refuse(made)
-    store = _store(made, out)
+    one = opened(design, out)
+    made, store = one.plan, one.store
     done = progress_of(made, store)
     typer.echo(f"{made.design.name}: {done.finished} of {done.wanted} runs finished")
     rows = store.rows(["arm_digest", "arm", "replication", "seed"])
@@ -180,7 +211,7 @@ def status(design: Design, out: Out = None) -> None:
 
 @app.command()
 def table(
-    design: Design,
+    design: Made,
     out: Out = None,
     columns: Columns = None,
     baseline: Annotated[
@@ -192,6 +223,15 @@ def table(
     interactions: Interactions = True,
     confidence: Confidence = 0.95,
     bootstrap: Bootstrap = False,
+    by_factor: Annotated[
+        bool, typer.Option("--by-factor", help="A column per factor instead of the arms' names.")
+    ] = False,
+    across: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FACTOR", help="The levels of this factor as columns, the others as rows."
+        ),
+    ] = None,
     file: Annotated[
         Path | None,
         typer.Option("--file", "-f", help="Write a .tex, .md, .csv or .html file."),
@@ -206,19 +246,24 @@ def table(
 
     Exit code 3 if runs of the design are lacking: a note on the table says how many.
     """
-    from rmfs.experiments import tables
+    from rmfs.experiments import arranging, tables
     from rmfs.experiments.results import to_csv
 
-    made, frame, note = _results(design, out)
+    one = opened(design, out)
+    made, (frame, note) = one.plan, one.rows()
     chosen = list(columns or tables.COLUMNS)
     _require_columns(frame, chosen)
     if anova:
         shown = _anovas(made, frame, chosen, interactions=interactions)
     else:
         shown = [_table(made, frame, chosen, baseline, confidence, bootstrap=bootstrap)]
+        if across is not None:
+            shown = [arranging.across(shown[0], made, across)]
+        elif by_factor:
+            shown = [arranging.by_factors(shown[0], made)]
     if file is not None and len(shown) > 1:
         raise InputError("--anova: one column for one file")
-    shown = [one.noted(note) for one in shown]
+    shown = [made_table.noted(note) for made_table in shown]
     if rows is not None:
         to_csv(frame, rows)
         typer.echo(f"{rows}: {len(frame)} rows written")
@@ -226,8 +271,8 @@ def table(
         _write_table(shown[0], file, made, frame, chosen)
     elif rows is None:
         console = open_console()
-        for one in shown:
-            console.print(one.rich())
+        for shown_table in shown:
+            console.print(shown_table.rich())
     _tell_lacking(note, allowed=allow_incomplete)
 
 
@@ -283,7 +328,7 @@ def _table(
 
 @app.command()
 def plot(
-    design: Design,
+    design: Made,
     out: Out = None,
     kind: Annotated[
         str,
@@ -323,11 +368,12 @@ def plot(
 
     if kind not in KINDS:
         raise InputError(f"--kind {kind}: no such picture; valid: {', '.join(KINDS)}")
-    made, frame, note = _results(design, out)
+    one = opened(design, out)
+    made, (frame, note) = one.plan, one.rows()
     chosen = list(columns or KINDS[kind])
     if kind != "progression":
         _require_columns(frame, chosen)
-    folder = _store(made, out).folder
+    folder = one.store.folder
     target = file if file is not None else folder / f"{kind}-{'-'.join(chosen)}.png"
     wish = Wish(confidence, interactions, tuple(factors or ()), _goals(goals or []), note)
     draw(kind, made, frame, folder, chosen, target, wish)
@@ -362,40 +408,6 @@ def _tell_lacking(note: str, *, allowed: bool) -> None:
         typer.echo(f"rmfs: {note}", err=True)
         if not allowed:
             raise typer.Exit(INCOMPLETE)
-
-
-def _planned(design: str) -> Plan:
-    from rmfs.experiments.design.planning import plan as make
-
-    return make(design)
-
-
-def _refuse(made: Plan) -> None:
-    """Print everything that is wrong with a plan, a line each, and end with code 2."""
-    if made.problems:
-        for problem in made.problems:
-            typer.echo(f"rmfs: {made.source}: {' '.join(problem.split())}", err=True)
-        raise typer.Exit(2)
-
-
-def _store(made: Plan, out: Path | None) -> Store:
-    from rmfs.experiments.store import Store
-
-    return Store(out if out is not None else RESULTS / made.design.name)
-
-
-def _results(design: str, out: Path | None) -> tuple[Plan, pd.DataFrame, str]:
-    """Return the plan and the finished rows of an experiment, and what it lacks."""
-    from rmfs.experiments.complete import lacking
-    from rmfs.experiments.results import assigned
-
-    made = _planned(design)
-    _refuse(made)
-    store = _store(made, out)
-    frame = assigned(made, store)
-    if frame.empty:
-        raise InputError(f"{store.folder}: no finished runs yet; rmfs experiment run {design}")
-    return made, frame, lacking(made, store)
 
 
 def _keys(made: Plan, runs: Any) -> list[str]:

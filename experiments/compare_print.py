@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rmfs.experiments.console import open_console
+from rmfs.experiments.wording import p_value
 
 if TYPE_CHECKING:
     from rmfs.experiments.compare import Comparison
@@ -71,7 +72,7 @@ def _outputs(one: Comparison, columns: list[str]) -> Any:
         cells.append(_relative(row["difference"], row["baseline"], scale))
         if several:
             cells.append(f"{_number(row['low'], scale)} to {_number(row['high'], scale)}")
-            cells.append("-" if p != p else f"{p:.4f}")
+            cells.append(p_value(p))
         shown.add_row(column, *cells)
     return shown
 

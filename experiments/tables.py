@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from html import escape
 from math import floor, isfinite, log10
 from typing import TYPE_CHECKING, Any, Literal, cast
 
@@ -11,6 +12,7 @@ import pandas as pd
 from rmfs.errors import InputError
 from rmfs.experiments.extras import optional
 from rmfs.experiments.statistics import against, per_arm
+from rmfs.experiments.wording import heading, p_value
 from rmfs.files import write_text
 from rmfs.measure.dictionary import FOOTPRINT
 
@@ -83,13 +85,13 @@ class Table:
         r"""Return it for LaTeX: needs \usepackage{booktabs,siunitx}."""
         optional("jinja2", "experiments", "a LaTeX table")
         frame = self.frame.copy()
-        frame.columns = _latex_header(_columns(frame))
+        frame.columns = _latex_header(columns_of(frame))
         frame.index.names = [name and _escaped(str(name)) for name in frame.index.names]
         style = frame.style.format(
             precision=0,
             formatter={
-                new: _fixed(self.decimals.get(old, 0))
-                for new, old in zip(frame.columns, _columns(self.frame), strict=True)
+                new: self._form(old)
+                for new, old in zip(frame.columns, columns_of(self.frame), strict=True)
             },
             na_rep="{-}",
         )
@@ -117,17 +119,23 @@ class Table:
         """Return it as CSV, in full precision."""
         flat = self.frame.copy()
         flat.columns = pd.Index(
-            [" ".join(part for part in column if part) for column in _columns(flat)]
+            [" ".join(part for part in column if part) for column in columns_of(flat)]
         )
         return flat.to_csv(lineterminator="\n")
 
     def html(self) -> str:
         """Return it as an HTML table."""
         optional("jinja2", "experiments", "an HTML table")
+        frame = self.frame.copy()
+        frame.columns = pd.MultiIndex.from_tuples(
+            [(heading(measure), statistic) for measure, statistic in columns_of(frame)]
+        )
         forms: dict[Any, str | Callable[[object], str] | None] = {
-            column: _fixed(self.decimals.get(column, 0)) for column in _columns(self.frame)
+            new: _for_html(self._form(old))
+            for new, old in zip(columns_of(frame), columns_of(self.frame), strict=True)
         }
-        style = self.frame.style.format(forms, na_rep="-").format_index(escape="html", axis=0)
+        style = frame.style.format(forms, na_rep="-")
+        style = style.format_index(escape="html", axis=0).format_index(escape="html", axis=1)
         # a name of its own instead of a random one: the same table is the same file
         return str(style.set_uuid("rmfs").set_caption(self.caption).to_html()) + "\n"
 
@@ -140,7 +148,9 @@ class Table:
         made = RichTable(box=box.SIMPLE_HEAD, caption=self.caption, caption_justify="left")
         for number, column in enumerate(shown.columns):
             made.add_column(
-                str(column), justify="left" if number == 0 else "right", overflow="fold"
+                str(column),
+                justify="left" if number < self.frame.index.nlevels else "right",
+                overflow="fold",
             )
         for row in shown.itertuples(index=False):
             made.add_row(*(str(cell) for cell in row))
@@ -162,10 +172,10 @@ class Table:
     def _shown(self) -> pd.DataFrame:
         """Return the cells as text, mean and half width in one."""
         made: dict[str, list[str]] = {}
-        for measure, statistic in _columns(self.frame):
+        for measure, statistic in columns_of(self.frame):
             if statistic == HALF:
                 continue
-            form = _fixed(self.decimals.get((measure, statistic), 0))
+            form = self._form((measure, statistic))
             cells = [form(value) for value in self.frame[measure, statistic]]
             if (measure, HALF) in self.frame and statistic in ("mean", "difference"):
                 halves = self.frame[measure, HALF]
@@ -173,9 +183,13 @@ class Table:
                     cell if pd.isna(half) else f"{cell} ± {form(half)}"
                     for cell, half in zip(cells, halves, strict=True)
                 ]
-            name = measure if statistic in ("mean", "") else f"{measure} {statistic}".strip()
-            made[name] = cells
+            name = heading(measure)
+            made[name if statistic in ("mean", "") else f"{name}, {statistic}"] = cells
         return pd.DataFrame(made, index=self.frame.index)
+
+    def _form(self, column: tuple[str, str]) -> Callable[[object], str]:
+        """Return what writes the cells of a column."""
+        return _p_value if "p" in column else _Fixed(self.decimals.get(column, 0))
 
     def _alignment(self) -> tuple[str, ...]:
         shown = self._shown()
@@ -184,10 +198,13 @@ class Table:
     def _specification(self) -> str:
         r"""Return the column types: numbers aligned at the point, words to the left."""
         parts = []
-        for column in _columns(self.frame):
+        for column in columns_of(self.frame):
             values = self.frame[column]
             if not pd.api.types.is_numeric_dtype(values):
                 parts.append("l")
+                continue
+            if "p" in column:
+                parts.append("S[table-format=<1.3]")
                 continue
             decimals = self.decimals.get(column, 0)
             whole = max((len(f"{abs(v):.0f}") for v in values.dropna()), default=1)
@@ -216,7 +233,7 @@ def means(
         parts["seeds", ""] = found["count"]
     made = pd.DataFrame(parts)
     made = made[[("seeds", ""), *(c for c in made if c != ("seeds", ""))]]
-    made.columns = pd.MultiIndex.from_tuples(_columns(made))
+    made.columns = pd.MultiIndex.from_tuples(columns_of(made))
     caption = f"Means over seeds with {confidence:.0%} confidence intervals ({_called(method)})."
     return Table(made, decimals, caption)
 
@@ -251,7 +268,7 @@ def differences(
         parts["pairs", ""] = table["pairs"]
     made = pd.DataFrame(parts)
     made = made[[("pairs", ""), *(c for c in made if c != ("pairs", ""))]]
-    made.columns = pd.MultiIndex.from_tuples(_columns(made))
+    made.columns = pd.MultiIndex.from_tuples(columns_of(made))
     caption = (
         f"Arm minus {baseline}, seed by seed, with {confidence:.0%} confidence intervals "
         f"({_called(method)}); p values of paired t tests, corrected by Holm over the table."
@@ -266,7 +283,7 @@ def effects(found: pd.DataFrame, column: str) -> Table:
     made = found[chosen].copy()
     shown = [digits(made["sum_sq"] / 1000, made["sum_sq"]), 0, 2, 4, 3, 3, 3, 3, 3]
     made.columns = pd.MultiIndex.from_tuples([(name, "") for name in chosen])
-    decimals = dict(zip(_columns(made), shown, strict=True))
+    decimals = dict(zip(columns_of(made), shown, strict=True))
     told = found.attrs.get("interactions", "")
     how = f"type II sums of squares; {told}" if told else "type II sums of squares"
     caption = (
@@ -291,7 +308,7 @@ def rows_frame(rows: Mapping[str, Mapping[tuple[str, str], float]], name: str) -
     return pd.DataFrame(cells, index=pd.Index(list(rows), name=name), columns=columns)
 
 
-def _columns(frame: pd.DataFrame) -> list[tuple[str, str]]:
+def columns_of(frame: pd.DataFrame) -> list[tuple[str, str]]:
     """Return the columns as pairs of measure and statistic."""
     return cast("list[tuple[str, str]]", list(frame.columns))
 
@@ -311,8 +328,12 @@ def digits(halves: pd.Series, values: pd.Series) -> int:
     return int(min(6, max(0, 1 - floor(log10(sorted(known)[len(known) // 2])))))
 
 
-def _fixed(decimals: int) -> _Fixed:
-    return _Fixed(decimals)
+def _for_html(form: Callable[[object], str]) -> Callable[[object], str]:
+    return lambda value: escape(form(value))
+
+
+def _p_value(value: object) -> str:
+    return value if isinstance(value, str) else p_value(float(value))  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)
@@ -333,14 +354,19 @@ def _latex_header(columns: list[tuple[str, str]]) -> pd.MultiIndex:
     signs = {HALF: r"{$\pm$}", "mean": "{mean}", "difference": "{difference}", "p": "{$p$}"}
     return pd.MultiIndex.from_tuples(
         [
-            (f"{{{_escaped(first)}}}", signs.get(second, second and f"{{{_escaped(second)}}}"))
+            (_braced(heading(first)), signs.get(second, second and _braced(second)))
             for first, second in columns
         ]
     )
 
 
+def _braced(text: str) -> str:
+    return f"{{{_escaped(text)}}}"
+
+
 def _escaped(text: str) -> str:
     signs = {sign: f"\\{sign}" for sign in "_%&#${}"}
     signs |= {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}
-    signs |= {"±": r"$\pm$", "<": r"$<$", ">": r"$>$"}
+    signs |= {"±": r"$\pm$", "<": r"$<$", ">": r"$>$", "²": "$^2$"}
+    signs |= {"η": r"$\eta$", "ω": r"$\omega$"}
     return "".join(signs.get(sign, sign) for sign in text)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from rmfs.errors import InputError
+from rmfs.experiments.wording import axis_label as axis_label
 from rmfs.files import replacing
-from rmfs.measure.dictionary import TABLES, learnt
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -21,30 +21,6 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 """Told apart by people who see colours differently (Okabe and Ito)."""
 
 FORMATS = ("png", "pdf", "svg")
-
-
-def axis_label(column: str, table: str = "footprint", *, per: str = "") -> str:
-    """Return a label with the unit of a column.
-
-    Parameters
-    ----------
-    per
-        What a count is divided by, for example "hour".
-    """
-    known = {one.name: one.unit for one in (*TABLES[table], *learnt())}
-    unit = known.get(column, "")
-    if column.endswith("_per_h"):
-        return f"{_words(column.removesuffix('_per_h'))} per hour"
-    for suffix in ("_s", "_m", "_share"):
-        column = column.removesuffix(suffix)
-    words = _words(column)
-    if unit and unit not in words:
-        return f"{words} ({unit} per {per})" if per else f"{words} ({unit})"
-    return f"{words} per {per}" if per else words
-
-
-def _words(column: str) -> str:
-    return column.replace("_", " ")
 
 
 def levels(frame: pd.DataFrame, factor: str) -> dict[str, pd.DataFrame]:

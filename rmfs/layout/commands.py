@@ -11,11 +11,12 @@ from typing import Annotated, Any
 
 import typer
 
+from rmfs import instances
 from rmfs.config import apply_overrides, parse_override, validate
 from rmfs.errors import InputError
 from rmfs.files import write_text
 from rmfs.layout.checks import IMPOSSIBLE, check
-from rmfs.layout.loading import load_with_notes
+from rmfs.layout.loading import load, load_with_notes
 from rmfs.layout.parameters import LayoutParameters
 from rmfs.layout.toml import to_toml
 from rmfs.rawsimo.layout.writing import SUFFIXES, import_layout
@@ -46,6 +47,24 @@ def new(
     table = apply_overrides({"name": path.stem}, _overrides(settings))
     write_text(path, to_toml(validate(LayoutParameters, table, str(path))))
     typer.echo(f"{path}: written")
+
+
+@app.command("list")
+def list_layouts() -> None:
+    """List the shipped layouts."""
+    from rich.console import Console
+    from rich.table import Table
+
+    heads = ("name", "tiers", "robots", "pods", "pick", "replenish", "waypoints")
+    table = Table(heads[0], box=None)
+    for head in heads[1:]:
+        table.add_column(head, justify="right")
+    for name in instances.names("layouts"):
+        layout = load(name)
+        counts = (len(layout.tiers), layout.robots, layout.pods, len(layout.pick_stations))
+        more = (len(layout.replenishment_stations), layout.waypoints)
+        table.add_row(name, *(f"{count:,}" for count in (*counts, *more)))
+    Console().print(table)
 
 
 @app.command()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pandas as pd
@@ -136,6 +137,10 @@ def test_tables_on_the_terminal_and_in_files(made, tmp_path, capsys):
     assert main(["experiment", "table", made, *arguments]) == 0
     out = told(capsys)
     assert "interactions are in the residual" in out and "robots x psa" not in out
+    assert main(["experiment", "table", made, "--across", "psa", "-c", "units_per_h"]) == 0
+    assert "units per hour, psa=random" in told(capsys)
+    assert main(["experiment", "table", "results/tiny", "--by-factor"]) == 0
+    assert re.search(r"16 +random ", told(capsys))
     arguments = ["--baseline", "robots=8,psa=nearest", "--file", "table.tex"]
     assert main(["experiment", "table", made, *arguments]) == 0
     assert told(capsys) == "table.tex: written, with table.tex.provenance.json\n"
@@ -144,6 +149,35 @@ def test_tables_on_the_terminal_and_in_files(made, tmp_path, capsys):
     assert main(["experiment", "table", made, "--rows", "rows.csv"]) == 0
     rows = pd.read_csv("rows.csv")
     assert len(rows) == 12 and "wall_s" not in rows and "code" not in rows
+
+
+def test_results_are_found_from_their_folder(made, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir("/")
+    folder = str(tmp_path / "results" / "tiny")
+    Path(made).unlink()
+    assert main(["experiment", "status", folder]) == 0
+    assert "tiny: 12 of 12 runs finished" in told(capsys)
+    assert main(["experiment", "table", folder, "-c", "units_per_h"]) == 0
+    assert "robots=8,psa=nearest" in told(capsys)
+    assert main(["experiment", "plot", folder]) == 0
+    assert (tmp_path / "results" / "tiny" / "intervals-units_per_h.png").exists()
+    for arguments, text in (
+        (["status", str(tmp_path)], "holds no experiment"),
+        (["table", folder, "--out", "x"], "is a folder of results itself"),
+        (["run", folder], "name the design file, and --out"),
+    ):
+        assert main(["experiment", *arguments]) == 2
+        assert text in capsys.readouterr().err
+
+
+def test_experiments_are_listed(made, capsys):
+    assert main(["experiment", "list"]) == 0
+    out = told(capsys)
+    assert "rule-screening" in out and "72 of 1620 controllers" in out
+    (line,) = [line for line in out.splitlines() if "results/tiny" in line]
+    assert line.split() == ["results/tiny", "tiny", "12", "of", "12", "0"]
+    assert main(["experiment", "list", "elsewhere"]) == 0
+    assert "elsewhere: no results of experiments" in told(capsys)
 
 
 def test_pictures(made, capsys):

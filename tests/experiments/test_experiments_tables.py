@@ -10,7 +10,7 @@ from stand_in import Inline
 
 from rmfs import experiments
 from rmfs.errors import InputError
-from rmfs.experiments import provenance, tables
+from rmfs.experiments import arranging, provenance, tables
 from rmfs.experiments.figures import effects, front, interaction, pareto, progression
 from rmfs.experiments.figures.progression import per_bin
 from rmfs.experiments.figures.style import axis_label, saving
@@ -18,6 +18,8 @@ from rmfs.experiments.plotting import KINDS, Wish, draw
 from rmfs.experiments.running.driver import drive
 from rmfs.experiments.statistics import anova
 from rmfs.experiments.store import Store
+
+RULES = ("nearest", "random")
 
 
 @pytest.fixture
@@ -33,7 +35,7 @@ def test_means_in_every_format(results, tmp_path):
     table = tables.means(frame, ["units_per_h", "robots"])
     latex = table.to("latex")
     assert r"\toprule" in latex and r"\bottomrule" in latex
-    assert r"\multicolumn{2}{c}{{units\_per\_h}}" in latex
+    assert r"\multicolumn{2}{c}{{units per hour}}" in latex
     assert "S[table-format=" in latex
     body = latex.split(r"\midrule")[1]
     assert body.count(r"\\") == 4
@@ -41,7 +43,7 @@ def test_means_in_every_format(results, tmp_path):
     row = next(line for line in markdown.splitlines() if "robots=8,psa=nearest" in line)
     assert re.search(r"\| +3 \| +6\d\d(\.\d)? ± \d+(\.\d)? \| +8 ± 0 \|", row), row
     html = table.to("html")
-    assert html.count("<tr>") == 7 and "robots=8,psa=nearest" in html
+    assert html.count("<tr>") == 7 and "units per hour" in html and "robots=8,psa=nearest" in html
     assert html == table.to("html")
     csv = table.to("csv").splitlines()
     assert csv[0] == "arm,seeds,units_per_h mean,units_per_h ±,robots mean,robots ±"
@@ -62,14 +64,44 @@ def test_differences_are_corrected_over_the_whole_table(results):
     assert found["pairs", ""].tolist() == [3, 3, 3]
     assert found["robots", "difference"].tolist() == [0.0, 8.0, 8.0]
     assert found["robots", "p"].tolist() == [1.0, 0.0, 0.0]
-    assert "units_per_h p" in table.to("markdown")
+    text = table.to("markdown")
+    assert "units per hour, p" in text and "<0.001" in text and "1.000" in text
+    assert "<0.001" in table.to("latex") and "table-format=<1.3" in table.to("latex")
+    assert "&lt;0.001" in table.to("html")
+    assert "<0.001" not in table.to("csv") and "units_per_h p" in table.to("csv")
+
+
+def test_factors_as_columns_and_side_by_side(results):
+    plan, frame, _ = results
+    table = tables.means(frame, ["units_per_h"])
+    apart = arranging.by_factors(table, plan)
+    assert apart.frame.index.names == ["robots", "psa"]
+    assert apart.frame.index.tolist() == [(r, p) for r in ("8", "16") for p in RULES]
+    assert apart.frame.to_numpy().tolist() == table.frame.to_numpy().tolist()
+    assert re.search(r"\| 8 +\| nearest +\|", apart.to("markdown"))
+    wide = arranging.across(table, plan, "psa")
+    assert wide.frame.index.tolist() == ["8", "16"] and wide.frame.index.name == "robots"
+    for rule in RULES:
+        cell = wide.frame.loc["16", (f"units_per_h, psa={rule}", "mean")]
+        assert cell == table.frame.loc[f"robots=16,psa={rule}", ("units_per_h", "mean")]
+    text = wide.to("markdown")
+    assert "units per hour, psa=random" in text and "3 seeds a cell." in text
+    assert arranging.across(table, plan, "controllers.psa").to("csv") == wide.to("csv")
+    fewer = tables.means(frame[frame["arm"] != "robots=16,psa=random"], ["units_per_h"])
+    assert "- |" in arranging.across(fewer, plan, "psa").to("markdown")
+    for form in tables.SUFFIXES.values():
+        assert "random" in wide.to(form) and "random" in apart.to(form)
+    with pytest.raises(InputError, match=r"--across poa: no factor .* valid: robots, psa"):
+        arranging.across(table, plan, "poa")
 
 
 def test_anova_as_a_table(results):
     plan, frame, _ = results
     found = anova(frame, "units_per_h", plan.factors, names=plan.short_names)
     text = tables.effects(found, "units_per_h").to("markdown")
-    assert "| robots" in text and "| robots x psa" in text and "omega_sq" in text
+    assert "| robots" in text and "| robots x psa" in text and "partial η²" in text
+    latex = tables.effects(found, "units_per_h").to("latex")
+    assert r"{$\eta$$^2$}" in latex and "ω" not in latex
     assert "interactions of two factors have a row each" in text
 
 

@@ -8,6 +8,7 @@ import pytest
 from layout_reference import INSTANCES, needs_reference
 from typer.testing import CliRunner
 
+from rmfs import instances
 from rmfs.config import read_toml, validate
 from rmfs.errors import InputError
 from rmfs.layout import LayoutParameters, generate, load, save_json
@@ -113,3 +114,10 @@ def test_import_of_parameters(tmp_path):
 @pytest.mark.parametrize("name", ["a.txt", "a.json"])
 def test_import_of_something_else(name, tmp_path):
     assert "expected a .xinst or .xlayo file" in refused("import", tmp_path / name)
+
+
+def test_shipped_layouts_are_listed():
+    listed = CliRunner().invoke(app, ["list"])
+    rows = [line.split() for line in listed.output.splitlines()]
+    assert ["small", "1", "10", "100", "2", "2", "448"] in rows
+    assert [row[0] for row in rows[1:]] == instances.names("layouts")

@@ -1,0 +1,96 @@
+"""The rows of a table by the levels of factors instead of by arm, and one factor as columns."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from rmfs.errors import InputError
+from rmfs.experiments.tables import columns_of
+
+if TYPE_CHECKING:
+    from rmfs.experiments.design.planning import Plan
+    from rmfs.experiments.tables import Table
+
+COUNTS = ("seeds", "pairs")
+"""Columns that count runs."""
+
+
+def by_factors(table: Table, plan: Plan) -> Table:
+    """Give a table of arms a column per factor in place of the arm's name.
+
+    Raises
+    ------
+    InputError
+        If the factors do not tell the arms apart.
+    """
+    levels = _levels(table, plan)
+    frame = table.frame.copy()
+    frame.index = pd.MultiIndex.from_frame(levels)
+    return replace(table, frame=frame)
+
+
+def across(table: Table, plan: Plan, factor: str) -> Table:
+    """Put the levels of a factor side by side; the rows are those of the other factors.
+
+    Parameters
+    ----------
+    factor
+        Its key or short name.
+
+    Raises
+    ------
+    InputError
+        If there is no such factor among several, or the factors do not tell the arms apart.
+    """
+    levels = _levels(table, plan)
+    name = plan.short_names.get(factor, factor)
+    if name not in levels or levels.shape[1] < 2:
+        valid = ", ".join(map(str, levels.columns)) if levels.shape[1] > 1 else "needs two factors"
+        raise InputError(f"--across {factor}: no factor beside another one; valid: {valid}")
+    rows = pd.MultiIndex.from_frame(levels.drop(columns=name))
+    order = rows.drop_duplicates()
+    parts: dict[tuple[str, str], pd.Series] = {}
+    decimals = {}
+    for level in levels[name].unique():
+        chosen = (levels[name] == level).to_numpy()
+        part = table.frame[chosen].set_axis(rows[chosen], axis=0).reindex(order)
+        for measure, statistic in columns_of(table.frame):
+            if measure not in COUNTS:
+                label = f"{measure}, {name}={level}"
+                parts[label, statistic] = part[measure, statistic]
+                decimals[label, statistic] = table.decimals.get((measure, statistic), 0)
+    made = pd.DataFrame(parts)
+    made.columns = pd.MultiIndex.from_tuples(list(parts))
+    if made.index.nlevels == 1:
+        made.index = made.index.get_level_values(0)
+    counts = [table.frame[pair] for pair in columns_of(table.frame) if pair[0] in COUNTS]
+    return replace(table, frame=made, decimals=decimals, caption=f"{table.caption}{_told(counts)}")
+
+
+def _levels(table: Table, plan: Plan) -> pd.DataFrame:
+    """Return the levels of the factors that differ, as text, a row per arm of a table."""
+    short = plan.short_names
+    rows = [
+        {short[factor]: _text(level) for factor, level in plan.arm(str(arm)).levels.items()}
+        for arm in table.frame.index
+    ]
+    made = pd.DataFrame(rows, index=table.frame.index)
+    made = made[[column for column in made if len(made[column].unique()) > 1]]
+    if made.empty or made.duplicated().any():
+        raise InputError("the factors of this design do not tell its arms apart")
+    return made
+
+
+def _text(level: object) -> str:
+    return "none" if level is None else str(level)
+
+
+def _told(counts: list[pd.Series]) -> str:
+    """Say how many runs a cell stands for."""
+    if not counts:
+        return ""
+    least, most = int(counts[0].min()), int(counts[0].max())
+    return f" {least} seeds a cell." if least == most else f" {least} to {most} seeds a cell."

@@ -1,0 +1,108 @@
+"""From what a user types to an experiment: a design file, the name of a shipped one, or results."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import pandas as pd
+
+    from rmfs.experiments.design.planning import Plan
+    from rmfs.experiments.store import Store
+
+RESULTS = Path("results")
+
+
+@dataclass(frozen=True)
+class Opened:
+    """An experiment with the folder of its results.
+
+    Attributes
+    ----------
+    name
+        As the user named it.
+    """
+
+    name: str
+    plan: Plan
+    store: Store
+
+    def rows(self) -> tuple[pd.DataFrame, str]:
+        """Return the finished runs, and what is lacking.
+
+        Raises
+        ------
+        InputError
+            If there are none.
+        """
+        from rmfs.experiments.complete import lacking
+        from rmfs.experiments.results import assigned
+
+        frame = assigned(self.plan, self.store)
+        if frame.empty:
+            raise InputError(
+                f"{self.store.folder}: no finished runs yet; rmfs experiment run {self.name}"
+            )
+        return frame, lacking(self.plan, self.store)
+
+
+def opened(design: str, out: Path | None = None) -> Opened:
+    """Open an experiment; print everything that is wrong with its design and end with code 2.
+
+    Parameters
+    ----------
+    design
+        A design file, the name of a shipped design, or a folder of results, which holds the plan
+        that it was made with.
+    out
+        The folder of results. Default: `results/NAME`.
+
+    Raises
+    ------
+    InputError
+        If there is no such design, or the folder holds no experiment.
+    """
+    from rmfs.experiments.design import planning
+    from rmfs.experiments.store import Store
+
+    folder = Path(design)
+    if folder.is_dir():
+        if out is not None:
+            raise InputError(f"--out: {design} is a folder of results itself")
+        return Opened(design, planning.load(folder), Store(folder))
+    made = planning.plan(design)
+    refuse(made)
+    return Opened(design, made, Store(out if out is not None else RESULTS / made.design.name))
+
+
+def refuse(made: Plan) -> None:
+    """Print everything that is wrong with a plan, a line each, and end with code 2."""
+    if made.problems:
+        for problem in made.problems:
+            typer.echo(f"rmfs: {made.source}: {' '.join(problem.split())}", err=True)
+        raise typer.Exit(2)
+
+
+def shipped() -> Iterator[tuple[str, str]]:
+    """Yield name and description of the shipped designs."""
+    from rmfs.experiments.design import file
+
+    for path in sorted(file.SHIPPED.glob("*.toml")):
+        yield path.stem, file.read(path)[0].description
+
+
+def made_below(folder: Path) -> Iterator[Opened]:
+    """Yield the experiments whose results lie in a folder, or in one of its folders."""
+    from rmfs.experiments.design import planning
+    from rmfs.experiments.store import Store
+
+    for path in sorted({*folder.glob(planning.FILE), *folder.glob(f"*/{planning.FILE}")}):
+        yield Opened(str(path.parent), planning.load(path.parent), Store(path.parent))
