@@ -52,7 +52,12 @@ Jobs = Annotated[
 ]
 Columns = Annotated[
     list[str] | None,
-    typer.Option("--column", "-c", help="Column of the footprint; may be repeated."),
+    typer.Option(
+        "--column",
+        "-c",
+        help="Column of the footprint; may be repeated. [default: the main ones]",
+        show_default=False,
+    ),
 ]
 Confidence = Annotated[float, typer.Option(min=0.5, max=0.999, help="Of the intervals.")]
 Interactions = Annotated[
@@ -388,6 +393,42 @@ def plot(
         **({"note": note} if note else {}),
     )
     typer.echo(f"{target}: written, with {beside.name}")
+    _tell_lacking(note, allowed=allow_incomplete)
+
+
+@app.command()
+def report(
+    design: Made,
+    out: Out = None,
+    columns: Columns = None,
+    baseline: Annotated[
+        str | None,
+        typer.Option(
+            help="Arm that all others are compared with. [default: the first]", show_default=False
+        ),
+    ] = None,
+    confidence: Confidence = 0.95,
+    file: Annotated[
+        Path | None,
+        typer.Option(
+            "--file", "-f", help="[default: report.html in the folder]", show_default=False
+        ),
+    ] = None,
+    allow_incomplete: Lacking = False,
+) -> None:
+    """Write everything into one HTML file: means, differences, analyses of variance, pictures.
+
+    Exit code 3 if runs of the design are lacking: a note says how many.
+    """
+    from rmfs.experiments import tables
+    from rmfs.experiments.report import write_report
+
+    one = opened(design, out)
+    chosen = list(columns or tables.COLUMNS)
+    _require_columns(one.rows()[0], chosen)
+    target = file if file is not None else one.store.folder / "report.html"
+    note = write_report(one, target, chosen, baseline=baseline, confidence=confidence)
+    typer.echo(f"{target}: written")
     _tell_lacking(note, allowed=allow_incomplete)
 
 

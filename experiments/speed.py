@@ -19,7 +19,7 @@ import rmfs
 from rmfs.files import write_text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
 RUNS = 5
@@ -88,12 +88,28 @@ def measure(case: Case, seed: int) -> dict[str, float]:
 
 
 def table(
-    cases: Iterable[Case] = CASES, runs: int = RUNS, tell: Callable[[str], None] = print
+    cases: Sequence[Case] = CASES,
+    runs: int = RUNS,
+    tell: Callable[[str], None] = print,
+    advance: Callable[[float, float], None] = lambda done, total: None,
 ) -> pd.DataFrame:
-    """Time the cases: medians over `runs` seeds, one row a case."""
+    """Time the cases: medians over `runs` seeds, one row a case.
+
+    Parameters
+    ----------
+    tell
+        Given a line per case.
+    advance
+        Told after each run how many are done, and how many there are.
+    """
     rows = []
-    for case in cases:
-        measured = [measure(case, seed) for seed in range(runs)]
+    total = len(cases) * runs
+    advance(0, total)
+    for number, case in enumerate(cases):
+        measured = []
+        for seed in range(runs):
+            measured.append(measure(case, seed))
+            advance(number * runs + seed + 1, total)
         middle = {key: statistics.median(row[key] for row in measured) for key in measured[0]}
         wall_s = middle["wall_s"]
         rows.append(

@@ -294,6 +294,10 @@ def _told_apart(data: _Data, mains: list[Effect], pairs: list[Effect]) -> bool:
 
 def _with_sizes(raw: pd.DataFrame, confidence: float) -> pd.DataFrame:
     made = raw.copy()
+    # a factor may explain a column to the last digit: what is left is rounding
+    made["sum_sq"] = made["sum_sq"].where(
+        made["sum_sq"] > NEGLIGIBLE**2 * made["sum_sq"].sum(), 0.0
+    )
     rest, rest_df = float(made["sum_sq"][RESIDUAL]), int(made["df"][RESIDUAL])
     total, mean_square = made["sum_sq"].sum(), rest / rest_df
     effect = made.index != RESIDUAL

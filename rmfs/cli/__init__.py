@@ -15,15 +15,14 @@ import typer
 
 from rmfs.cli.defects import told
 from rmfs.cli.exit_codes import DEFECT, INTERRUPTED, WRONG_INPUT
-from rmfs.cli.groups import LazyGroup
+from rmfs.cli.groups import LazyGroup, tell_defaults
 from rmfs.cli.results import compare, plot, report, view
 from rmfs.cli.simulate import run
-from rmfs.cli.terminal import step
+from rmfs.cli.terminal import progress, step
 from rmfs.errors import InputError, InternalError
 
 app = typer.Typer(
     cls=LazyGroup,
-    add_completion=False,
     pretty_exceptions_enable=False,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -43,7 +42,7 @@ def main(arguments: list[str] | None = None) -> int:
     int
         The exit code.
     """
-    command = typer.main.get_command(app)
+    command = tell_defaults(typer.main.get_command(app))
     try:
         code = command.main(args=arguments, prog_name="rmfs", standalone_mode=False)
     except InputError as error:
@@ -99,7 +98,8 @@ def bench(
     """Measure how fast runs are and where their time goes."""
     from rmfs.experiments import speed
 
-    frame = speed.table(runs=runs, tell=step)
+    with progress("timing", wordy=False) as advance:
+        frame = speed.table(runs=runs, tell=step, advance=advance)
     speed.save(frame, out)
     typer.echo(speed.to_markdown(frame))
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import importlib
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import typer
 from typer.core import TyperGroup
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 SUB_COMMANDS = {
     "layout": ("rmfs.layout.commands", "Make, draw, check and import layouts."),
@@ -24,6 +27,17 @@ COMMANDS = {
 """The same of commands that are no groups."""
 
 ELSEWHERE = {**SUB_COMMANDS, **COMMANDS}
+
+
+def names_of(kind: Literal["layouts", "scenarios", "controllers"]) -> Callable[[str], list[str]]:
+    """Return what completes the name of a shipped instance."""
+
+    def complete(incomplete: str) -> list[str]:
+        from rmfs import instances
+
+        return [name for name in instances.names(kind) if name.startswith(incomplete)]
+
+    return complete
 
 
 class LazyGroup(TyperGroup):
@@ -46,9 +60,21 @@ class LazyGroup(TyperGroup):
         return super().resolve_command(ctx, args)
 
 
+def tell_defaults(command: Any) -> Any:
+    """Let the help of every option say its default, also where that is none."""
+    for one in getattr(command, "commands", {}).values():
+        tell_defaults(one)
+    for parameter in command.params:
+        told = getattr(parameter, "help", None) or ""
+        is_option = parameter.param_type_name == "option" and not parameter.required
+        if is_option and parameter.default is None and "[default:" not in told:
+            parameter.help = f"{told} [default: none]".lstrip()
+    return command
+
+
 def _loaded(name: str) -> Any:
     """Import a command or group; it is put below another so that it gets no options of its own."""
     module = importlib.import_module(ELSEWHERE[name][0])
     above = typer.Typer(add_completion=False)
     above.add_typer(module.app, name=name if name in SUB_COMMANDS else None)
-    return typer.main.get_group(above).commands[name]
+    return tell_defaults(typer.main.get_group(above).commands[name])

@@ -98,7 +98,12 @@ def compare(
     ],
     columns: Annotated[
         list[str] | None,
-        typer.Option("--column", "-c", help="Column of the footprint; may be repeated."),
+        typer.Option(
+            "--column",
+            "-c",
+            help="Column of the footprint; may be repeated. [default: the main ones]",
+            show_default=False,
+        ),
     ] = None,
     everything: Annotated[
         bool, typer.Option("--all", help="Show every column that differs.")

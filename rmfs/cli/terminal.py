@@ -19,13 +19,18 @@ def step(text: str) -> None:
 
 
 @contextmanager
-def progress(text: str) -> Iterator[Callable[[float, float], None]]:
+def progress(text: str, *, wordy: bool = True) -> Iterator[Callable[[float, float], None]]:
     """Yield a function that is told (done, total): a bar on a terminal, one line elsewhere.
 
     The line is printed at the first call: what is wrong with the input is noticed before.
+
+    Parameters
+    ----------
+    wordy
+        Whether there is a line elsewhere. Default yes.
     """
     if not sys.stderr.isatty():
-        yield lambda done, total: None if done else step(text)
+        yield lambda done, total: None if done or not wordy else step(text)
         return
     from rich.console import Console
     from rich.progress import (

@@ -6,9 +6,12 @@ import sys
 from pathlib import Path
 
 import pytest
+import typer
 
+from rmfs import cli
 from rmfs.cli import main
 from rmfs.cli import simulate as simulate_command
+from rmfs.cli.groups import ELSEWHERE, _loaded, tell_defaults
 from rmfs.cli.simulate import default_name
 from rmfs.errors import InputError, InternalError, LayoutError
 from rmfs.measure import load_run
@@ -220,6 +223,28 @@ def test_a_defect_keeps_its_traceback(calls, monkeypatch):
     with pytest.raises(ZeroDivisionError):
         main(["run"])
     assert files() == []
+
+
+def test_every_option_tells_its_default():
+    root = tell_defaults(typer.main.get_command(cli.app))
+    lacking, seen = [], 0
+
+    def look(command, name):
+        nonlocal seen
+        for word, one in getattr(command, "commands", {}).items():
+            look(one, f"{name} {word}")
+        context = command.make_context(name, [], resilient_parsing=True)
+        for option in command.params:
+            if option.param_type_name == "option" and not option.hidden and not option.is_flag:
+                seen += 1
+                told = " ".join(option.get_help_record(context) or ("",))
+                if "default:" not in told and not option.required:
+                    lacking.append(f"{name} {option.opts[0]}")
+
+    look(root, "rmfs")
+    for name in ELSEWHERE:
+        look(_loaded(name), f"rmfs {name}")
+    assert lacking == [] and seen > 80
 
 
 def test_help_names_all_commands_without_loading_them(capsys):

@@ -170,6 +170,25 @@ def test_results_are_found_from_their_folder(made, tmp_path, monkeypatch, capsys
         assert text in capsys.readouterr().err
 
 
+def test_report_is_one_file_with_everything(made, design, capsys):
+    assert main(["experiment", "report", made, "-c", "units_per_h", "-c", "robots"]) == 0
+    assert told(capsys) == "results/tiny/report.html: written\n"
+    text = Path("results/tiny/report.html").read_text()
+    assert "12 runs of 4 arms, 3 seeds" in text and "incomplete" not in text
+    assert "Differences to robots=8,psa=nearest" in text and "robots x psa" in text
+    assert text.count("data:image/png;base64,") == 4
+    assert "Every run: units per hour" in text and "http" not in text
+    # a design without factors, and with runs lacking
+    path = str(design(file="more.toml", factors=None, seeds=[1, 2], name="single"))
+    drive(experiments.plan(path), Store(Path("results/single")), Inline())
+    design(file="more.toml", factors=None, seeds=[1, 2, 3], name="single", description="a < b")
+    assert main(["experiment", "report", path, "-f", "r.html"]) == 3
+    text = Path("r.html").read_text()
+    assert "incomplete: 2 of 3 runs are in" in text and "a &lt; b" in text
+    assert "Differences" not in text
+    assert main(["experiment", "report", made, "--baseline", "x"]) == 2
+
+
 def test_experiments_are_listed(made, capsys):
     assert main(["experiment", "list"]) == 0
     out = told(capsys)

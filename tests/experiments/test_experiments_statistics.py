@@ -268,6 +268,14 @@ def test_where_runs_run_out_interactions_stay_in_the_residual():
         anova(twins, "y", ["a", "b"])
 
 
+def test_a_factor_that_explains_everything():
+    data = factorial({"a": 3, "b": 2}, seeds=4)
+    found = anova(data.assign(y=data["a"] / 3), "y", ["a", "b"])
+    assert found["sum_sq"].tolist()[1:] == [0.0] * 4 and found.loc["a", "eta_sq"] == 1.0
+    assert found.loc["a", "p"] == 0.0 and np.isnan(found.loc["b", "f"])
+    assert anova(data.assign(y=1.0), "y", ["a", "b"])["sum_sq"].tolist() == [0.0] * 5
+
+
 def test_balanced_anova_is_the_textbook_decomposition():
     data = pd.DataFrame({"f": list("aabbcc"), "y": [1.0, 2.0, 4.0, 5.0, 9.0, 9.0]})
     found = anova(data, "y", ["f"], block=None)
