@@ -59,7 +59,7 @@ class Core:
         queue: NDArray[np.bool_],
         stations: list[list[int]],
         elevators: list[list[int]],
-        lifts: list[tuple[int, int, int]],
+        rides: list[tuple[int, int, int]],
         robots: list[tuple[int, float, int]],
         kinds: list[tuple[float, float, float, int, int]],
         planner: tuple[str, dict[str, float], int, object | None],

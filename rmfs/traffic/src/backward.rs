@@ -33,7 +33,7 @@ enum Arrival {
     FromStorage,
     FromAisle,
     /// Perhaps by elevator.
-    OverLift,
+    OverElevator,
 }
 
 /// Resumable backward search from a goal, led towards a start if there is one.
@@ -228,8 +228,8 @@ impl Backward {
             }
         }
         self.walk = walk;
-        for lift in network.lifts_to(node) {
-            self.offer(network, lift.from, heading, 0, cost + lift.travel as u32);
+        for ride in network.rides_to(node) {
+            self.offer(network, ride.from, heading, 0, cost + ride.travel as u32);
         }
     }
 
@@ -259,7 +259,7 @@ impl Backward {
     fn comes(&self, network: &Network, node: u32, before: u8, heading: u8) -> bool {
         match self.arrivals[network.index(node, before)] {
             Arrival::Never => false,
-            Arrival::OverLift => true,
+            Arrival::OverElevator => true,
             _ if before == heading || network.opposite(before) == Some(heading) => false,
             Arrival::FromAisle => true,
             Arrival::FromStorage => {
@@ -309,8 +309,8 @@ fn bounds(
 
 fn arrival(network: &Network, node: u32, heading: u8) -> Arrival {
     let before = network.behind(node, heading);
-    if network.is_lift(node) {
-        Arrival::OverLift
+    if network.is_elevator(node) {
+        Arrival::OverElevator
     } else if before.is_empty() {
         Arrival::Never
     } else if before.iter().all(|&(from, _)| network.storage[from as usize]) {

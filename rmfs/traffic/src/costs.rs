@@ -114,9 +114,9 @@ impl Model {
                         loaded,
                     );
                 }
-                for lift in network.lifts_from(node) {
-                    let cost = cost + lift.travel as u32;
-                    queue.improve(network.index(lift.to, heading) * 2, cost, cost);
+                for ride in network.rides_from(node) {
+                    let cost = cost + ride.travel as u32;
+                    queue.improve(network.index(ride.to, heading) * 2, cost, cost);
                 }
             }
         }

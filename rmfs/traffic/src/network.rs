@@ -13,7 +13,7 @@ const CLOSED: u32 = u32::MAX - 1;
 
 /// One directed way between tiers.
 #[derive(Clone, Debug, Serialize)]
-pub struct Lift {
+pub struct Ride {
     pub from: u32,
     pub to: u32,
     pub travel: Us,
@@ -33,7 +33,7 @@ pub struct Plan {
     pub stations: Vec<Vec<u32>>,
     /// Waypoints of each elevator.
     pub elevators: Vec<Vec<u32>>,
-    pub lifts: Vec<Lift>,
+    pub rides: Vec<Ride>,
     /// Headings of robots at the start, which need not be those of an edge.
     pub extra_headings: Vec<MicroTurn>,
 }
@@ -58,7 +58,7 @@ impl Plan {
             return Err(format!("elevator {elevator} has no waypoint"));
         }
         let places = self.stations.iter().chain(&self.elevators).flatten();
-        let ends = self.lifts.iter().flat_map(|lift| [&lift.from, &lift.to]);
+        let ends = self.rides.iter().flat_map(|ride| [&ride.from, &ride.to]);
         let mut named = self.edge_target.iter().chain(places).chain(ends);
         match named.find(|&&waypoint| waypoint as usize >= nodes) {
             Some(waypoint) => Err(format!("there is no waypoint {waypoint}")),
@@ -93,8 +93,8 @@ pub struct Network {
     pub stations: Vec<Vec<u32>>,
     /// Which part of the graph a waypoint belongs to that elevators alone connect with others.
     pub island: Vec<u32>,
-    lifts_from: Vec<Vec<Lift>>,
-    lifts_to: Vec<Vec<Lift>>,
+    rides_from: Vec<Vec<Ride>>,
+    rides_to: Vec<Vec<Ride>>,
     x: Vec<f64>,
     y: Vec<f64>,
     /// Distinct coordinates, and which of them each waypoint has.
@@ -154,11 +154,11 @@ impl Network {
         let (columns, column) = distinct(&plan.x);
         let (rows, row) = distinct(&plan.y);
         let (resource, resources) = shared_resources(&plan.elevators, nodes);
-        let mut lifts_from = vec![Vec::new(); nodes];
-        let mut lifts_to = vec![Vec::new(); nodes];
-        for lift in plan.lifts {
-            lifts_to[lift.to as usize].push(lift.clone());
-            lifts_from[lift.from as usize].push(lift);
+        let mut rides_from = vec![Vec::new(); nodes];
+        let mut rides_to = vec![Vec::new(); nodes];
+        for ride in plan.rides {
+            rides_to[ride.to as usize].push(ride.clone());
+            rides_from[ride.from as usize].push(ride);
         }
         Ok(Self {
             nodes,
@@ -175,8 +175,8 @@ impl Network {
             resources,
             stations: plan.stations,
             island,
-            lifts_from,
-            lifts_to,
+            rides_from,
+            rides_to,
             x: plan.x,
             y: plan.y,
             columns,
@@ -226,28 +226,28 @@ impl Network {
     }
 
     /// Whether a waypoint is a stop of an elevator.
-    pub fn is_lift(&self, node: u32) -> bool {
-        !self.lifts_from[node as usize].is_empty()
+    pub fn is_elevator(&self, node: u32) -> bool {
+        !self.rides_from[node as usize].is_empty()
     }
 
     /// Elevator rides that start at `node`; to a closed waypoint only from a closed one.
-    pub fn lifts_from(&self, node: u32) -> impl Iterator<Item = &Lift> {
-        self.lifts_from[node as usize].iter().filter(|lift| self.may_ride(lift))
+    pub fn rides_from(&self, node: u32) -> impl Iterator<Item = &Ride> {
+        self.rides_from[node as usize].iter().filter(|ride| self.may_ride(ride))
     }
 
     /// Elevator rides that end at `node`.
-    pub fn lifts_to(&self, node: u32) -> impl Iterator<Item = &Lift> {
-        self.lifts_to[node as usize].iter().filter(|lift| self.may_ride(lift))
+    pub fn rides_to(&self, node: u32) -> impl Iterator<Item = &Ride> {
+        self.rides_to[node as usize].iter().filter(|ride| self.may_ride(ride))
     }
 
     /// All elevator rides that start on an island.
-    pub fn lifts_off(&self, island: u32) -> impl Iterator<Item = &Lift> {
-        let rides = self.lifts_from.iter().flatten();
-        rides.filter(move |lift| self.island[lift.from as usize] == island && self.may_ride(lift))
+    pub fn rides_off(&self, island: u32) -> impl Iterator<Item = &Ride> {
+        let rides = self.rides_from.iter().flatten();
+        rides.filter(move |ride| self.island[ride.from as usize] == island && self.may_ride(ride))
     }
 
-    fn may_ride(&self, lift: &Lift) -> bool {
-        !self.is_closed(lift.to) || self.is_closed(lift.from)
+    fn may_ride(&self, ride: &Ride) -> bool {
+        !self.is_closed(ride.to) || self.is_closed(ride.from)
     }
 
     /// Whether a robot on its way to `goal` may drive from `from` onto `to`: queue zones are for
@@ -286,7 +286,7 @@ impl Network {
         };
         let kinds: Vec<_> = kinds.iter().map(numbers).collect();
         let places = (&self.x, &self.y, &self.storage, &self.zone, &self.resource, &self.stations);
-        let ways = (&self.headings, &self.next, &self.lifts_from);
+        let ways = (&self.headings, &self.next, &self.rides_from);
         let all = postcard::to_stdvec(&(places, ways, kinds)).expect("numbers can be written");
         crc32fast::hash(&all)
     }
@@ -322,11 +322,11 @@ fn distinct(values: &[f64]) -> (Vec<f64>, Vec<u32>) {
 }
 
 fn is_axis_parallel(plan: &Plan, headings: &[MicroTurn]) -> bool {
-    let straight_up = |lift: &Lift| {
-        let (from, to) = (lift.from as usize, lift.to as usize);
+    let straight_up = |ride: &Ride| {
+        let (from, to) = (ride.from as usize, ride.to as usize);
         (plan.x[from] - plan.x[to]).abs() + (plan.y[from] - plan.y[to]).abs() < 1e-6
     };
-    plan.lifts.iter().all(straight_up) && headings.iter().all(|heading| heading % 250_000 == 0)
+    plan.rides.iter().all(straight_up) && headings.iter().all(|heading| heading % 250_000 == 0)
 }
 
 /// Flattens lists into offsets and items.

@@ -77,9 +77,9 @@ pub fn route(
                 offer((node, heading), dearer, departure, end, false);
             }
         }
-        for lift in network.lifts_from(state.0) {
-            if let Some(dearer) = penalty(lift.to) {
-                offer((lift.to, state.1), dearer, arrival, arrival + lift.travel, true);
+        for ride in network.rides_from(state.0) {
+            if let Some(dearer) = penalty(ride.to) {
+                offer((ride.to, state.1), dearer, arrival, arrival + ride.travel, true);
             }
         }
     }

@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashSet};
 
 use _core::costs::Model;
 use _core::kinematics::Kind;
-use _core::network::{Lift, Network, Plan};
+use _core::network::{Network, Plan, Ride};
 use _core::reservations::{Interval, Table};
 use _core::search::{End, Guide, Outcome, Pathfinder, Query};
 use _core::units::{FOREVER, Us, ceil_us, floor_us};
@@ -63,7 +63,7 @@ fn random_network(random: &mut Random, floors: usize) -> Network {
         edge_start.push(edge_target.len() as u32);
     }
     let shafts = if floors == 1 { Vec::new() } else { vec![[0, 6], [5, 11]] };
-    let ride = |from: u32, to: u32| Lift { from, to, travel: 2_000_000 };
+    let ride = |from: u32, to: u32| Ride { from, to, travel: 2_000_000 };
     Network::new(Plan {
         x: (0..nodes).map(|v| (v % columns) as f64).collect(),
         y: (0..nodes).map(|v| (v / columns % (rows / floors)) as f64).collect(),
@@ -76,7 +76,7 @@ fn random_network(random: &mut Random, floors: usize) -> Network {
         queue: vec![false; nodes],
         stations: Vec::new(),
         elevators: shafts.iter().map(|ends| ends.to_vec()).collect(),
-        lifts: shafts.iter().flat_map(|&[v, w]| [ride(v, w), ride(w, v)]).collect(),
+        rides: shafts.iter().flat_map(|&[v, w]| [ride(v, w), ride(w, v)]).collect(),
         extra_headings: vec![0, 250_000, 500_000, 750_000],
     })
     .expect("a grid")
@@ -130,9 +130,9 @@ fn brute_force(world: &World, query: &Query) -> Option<Us> {
         if time > 60_000_000 {
             return None;
         }
-        for lift in network.lifts_from(node) {
-            if free(world, node, time, time + lift.travel) {
-                open.insert((time + lift.travel, lift.to, heading));
+        for ride in network.rides_from(node) {
+            if free(world, node, time, time + ride.travel) {
+                open.insert((time + ride.travel, ride.to, heading));
             }
         }
         for towards in 0..network.heading_count() as u8 {

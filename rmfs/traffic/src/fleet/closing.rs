@@ -112,7 +112,7 @@ impl Fleet {
         };
         let row = self.table.row(self.network.resource[node as usize]);
         let others = row.iter().filter(|used| used.robot != robot);
-        !self.network.is_lift(node) && others.clone().all(|used| used.end <= since)
+        !self.network.is_elevator(node) && others.clone().all(|used| used.end <= since)
     }
 
     /// Gives up what a robot has planned after its first moves; it stays there and tries again.

@@ -186,7 +186,7 @@ impl Fleet {
             step.start += late;
             step.end += late;
         }
-        let outside = |at: &usize| !self.network.is_lift(wish[*at].to);
+        let outside = |at: &usize| !self.network.is_elevator(wish[*at].to);
         let ends: Vec<usize> = (0..wish.len()).filter(outside).take(rolling.runs).collect();
         let most = ends.last().map_or(0, |last| last + 1);
         let moves: Vec<Move> = wish.range(..most).cloned().collect();

@@ -13,8 +13,8 @@ use crate::search::Move;
 use crate::units::{FOREVER, Us};
 
 use super::deadlock::{Deadlocks, run};
-use super::draft::Clash;
-use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
+use super::rolling::Clash;
+use super::{Agent, Answer, Planner, Rhythm, Scene, rolling};
 
 /// The planner and its parameters.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -35,7 +35,7 @@ impl Planner for Bcp {
     }
 
     fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
-        let times = draft::times(scene, agents);
+        let times = rolling::times(scene, agents);
         let mut dearer = vec![BTreeMap::new(); agents.len()];
         let mut ways: Vec<Option<Vec<Move>>> = Vec::new();
         for (agent, times) in agents.iter().zip(&times) {
@@ -86,16 +86,16 @@ impl Bcp {
         agents: &[Agent],
         ways: &[Option<Vec<Move>>],
     ) -> Vec<(usize, Clash)> {
-        draft::block(scene, agents, &mut self.table);
+        rolling::block(scene, agents, &mut self.table);
         agents.iter().for_each(|agent| self.hold_start(scene, agent));
         let mut found = Vec::new();
         for (index, (agent, way)) in agents.iter().zip(ways).enumerate() {
             let Some(moves) = way else { continue };
-            if let Some(clash) = draft::clash(scene, &self.table, agent, moves) {
+            if let Some(clash) = rolling::clash(scene, &self.table, agent, moves) {
                 found.push((index, clash));
                 continue;
             }
-            for held in draft::occupied(scene, agent, moves, FOREVER) {
+            for held in rolling::occupied(scene, agent, moves, FOREVER) {
                 let interval = Interval { start: held.start, end: held.end, robot: agent.robot };
                 self.table.cover(held.resource, interval);
             }
@@ -124,7 +124,7 @@ fn quickest(
     dearer: &BTreeMap<u32, Us>,
 ) -> Option<Vec<Move>> {
     let penalty = |node: u32| Some(dearer.get(&node).copied().unwrap_or(0));
-    draft::way(scene, agent, &[], agent.ready, times, penalty)
+    rolling::way(scene, agent, &[], agent.ready, times, penalty)
 }
 
 /// The way with a stop before the waypoint where it clashes, or `None` if that is its next one.
@@ -150,7 +150,7 @@ fn stop_before(
     if way.is_empty() {
         return None;
     }
-    let rest = draft::way(scene, agent, &way, 0, times, |_| Some(0))?;
+    let rest = rolling::way(scene, agent, &way, 0, times, |_| Some(0))?;
     way.extend(rest);
     Some(way)
 }

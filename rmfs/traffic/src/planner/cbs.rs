@@ -18,7 +18,7 @@ use crate::units::{FOREVER, Us};
 
 use super::conflicts::{self, Conflict};
 use super::deadlock::Deadlocks;
-use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
+use super::{Agent, Answer, Planner, Rhythm, Scene, rolling};
 
 /// The planner and its parameters.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -75,8 +75,8 @@ impl Planner for Cbs {
     }
 
     fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
-        let times = draft::times(scene, agents);
-        draft::block(scene, agents, &mut self.table);
+        let times = rolling::times(scene, agents);
+        rolling::block(scene, agents, &mut self.table);
         let mut alone = Vec::new();
         for (agent, times) in agents.iter().zip(&times) {
             alone.push(self.search(scene, agent, times, &[]).map(Rc::new));
@@ -149,12 +149,12 @@ impl Cbs {
         times: &[u32],
         forbidden: &[Held],
     ) -> Option<Plan> {
-        let before = draft::overlay(&mut self.table, forbidden);
+        let before = rolling::overlay(&mut self.table, forbidden);
         let (ready, end) = (agent.ready, End::Arrival);
-        let found = draft::search(scene, &self.table, agent, ready, times, end, self.labels);
-        draft::restore(&mut self.table, before);
+        let found = rolling::search(scene, &self.table, agent, ready, times, end, self.labels);
+        rolling::restore(&mut self.table, before);
         let moves = found?;
-        let occupied = draft::occupied(scene, agent, &moves, 0);
+        let occupied = rolling::occupied(scene, agent, &moves, 0);
         Some(Plan { moves, occupied })
     }
 }

@@ -60,7 +60,7 @@ impl Deadlocks {
                 let (next, length) = network.ahead(agent.start, heading)?;
                 let enters = network.may_enter(agent.start, next, agent.goal, agent.loaded);
                 let held = scene.table.final_holder(network.resource[next as usize]);
-                (enters && held.is_none() && !network.is_lift(next) && allowed(next))
+                (enters && held.is_none() && !network.is_elevator(next) && allowed(next))
                     .then_some((heading, next, length))
             })
             .collect();

@@ -13,8 +13,8 @@ use crate::search::Move;
 use crate::units::Us;
 
 use super::deadlock::{Deadlocks, run};
-use super::draft::Clash;
-use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
+use super::rolling::Clash;
+use super::{Agent, Answer, Planner, Rhythm, Scene, rolling};
 
 /// How a robot gets out of the way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -56,7 +56,7 @@ impl Planner for Far {
     }
 
     fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
-        let times = draft::times(scene, agents);
+        let times = rolling::times(scene, agents);
         let standing: Vec<u32> = agents.iter().map(|agent| agent.robot).collect();
         self.memory.retain(|robot, _| standing.contains(robot));
         let mut answers = vec![Answer::Keep; agents.len()];
@@ -86,7 +86,7 @@ impl Far {
             self.memory.insert(agent.robot, memory);
             return Answer::Keep;
         }
-        let way = draft::way(scene, agent, &[], agent.ready, times, |_| Some(0));
+        let way = rolling::way(scene, agent, &[], agent.ready, times, |_| Some(0));
         let tried = way.as_ref().map(|way| first_hop(scene, agent, way));
         let answer = match tried {
             Some(Ok(moves)) if !memory.evaded_to.contains(&moves[0].to) => {
@@ -147,7 +147,7 @@ impl Far {
             Evasion::Reroute => {
                 let closed = obstacle?.node;
                 let open = |node: u32| (node != closed).then_some(0);
-                let way = draft::way(scene, agent, &[], agent.ready, times, open)?;
+                let way = rolling::way(scene, agent, &[], agent.ready, times, open)?;
                 let hop = first_hop(scene, agent, &way).ok()?;
                 memory.moved = scene.now;
                 Some(hop)
@@ -172,10 +172,10 @@ impl Far {
 /// stay (a run onto an elevator with the ride and the run off it); or what blocks its first edge.
 fn first_hop(scene: &Scene, agent: &Agent, way: &[Move]) -> Result<Vec<Move>, Clash> {
     let network = scene.network;
-    let outside = way.iter().position(|step| !network.is_lift(step.to));
+    let outside = way.iter().position(|step| !network.is_elevator(step.to));
     let whole = &way[..=outside.unwrap_or(0)];
     let line: Vec<(u32, f64)> = network.line(way[0].from, way[0].to, way[0].heading).collect();
-    let Some(blocked) = draft::clash(scene, scene.table, agent, whole) else {
+    let Some(blocked) = rolling::clash(scene, scene.table, agent, whole) else {
         return Ok(whole.to_vec());
     };
     let mut stops = if whole.len() > 1 { line.len() - 1 } else { line.len() };
@@ -186,7 +186,7 @@ fn first_hop(scene: &Scene, agent: &Agent, way: &[Move]) -> Result<Vec<Move>, Cl
             return Err(obstacle);
         };
         let hop = vec![run(scene, agent, way[0].heading, to, length)];
-        match draft::clash(scene, scene.table, agent, &hop) {
+        match rolling::clash(scene, scene.table, agent, &hop) {
             None => return Ok(hop),
             Some(clash) => obstacle = clash,
         }

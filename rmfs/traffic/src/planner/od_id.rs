@@ -16,7 +16,7 @@ use crate::units::Us;
 
 use super::deadlock::Deadlocks;
 use super::partial::Partial;
-use super::{Agent, Answer, Planner, Rhythm, Scene, conflicts, draft};
+use super::{Agent, Answer, Planner, Rhythm, Scene, conflicts, rolling};
 
 /// The planner and its parameters.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -66,8 +66,8 @@ impl Planner for OdId {
     }
 
     fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
-        let times = draft::times(scene, agents);
-        draft::block(scene, agents, &mut self.table);
+        let times = rolling::times(scene, agents);
+        rolling::block(scene, agents, &mut self.table);
         let mut parts: Vec<Option<Partial>> = agents
             .iter()
             .zip(&times)
@@ -77,7 +77,7 @@ impl Planner for OdId {
         let mut answers = Vec::new();
         for ((agent, part), times) in agents.iter().zip(parts).zip(&times) {
             let way = part.map(|mut part| {
-                draft::append_rest(scene, agent, &mut part.moves, part.time, times);
+                rolling::append_rest(scene, agent, &mut part.moves, part.time, times);
                 part.moves
             });
             answers.push(Answer::of(way));
@@ -91,7 +91,7 @@ impl OdId {
     fn plan_alone(&self, scene: &mut Scene, agent: &Agent, times: &[u32]) -> Option<Partial> {
         let until = scene.now + self.window;
         let (ready, end) = (agent.ready, End::Window(until));
-        let moves = draft::search(scene, &self.table, agent, ready, times, end, self.labels)?;
+        let moves = rolling::search(scene, &self.table, agent, ready, times, end, self.labels)?;
         let mut part = Partial::begin(scene, agent, times)?;
         for step in moves {
             part = part.with(scene, step, times);
@@ -192,7 +192,7 @@ impl OdId {
         let end = scene.now + self.window;
         let is_done = |at: &usize| {
             let part = &state.parts[*at];
-            let rests = part.time >= end && !scene.network.is_lift(part.node);
+            let rests = part.time >= end && !scene.network.is_elevator(part.node);
             rests || part.node == agents[members[*at]].goal
         };
         (0..members.len()).filter(|at| !is_done(at)).min_by_key(|&at| (state.parts[at].time, at))
@@ -217,7 +217,7 @@ impl OdId {
                 held.extend(part.occupied(scene, agent, until));
             }
         }
-        let before = draft::overlay(&mut self.table, &held);
+        let before = rolling::overlay(&mut self.table, &held);
         let (agent, times) = (&agents[members[member]], &times[members[member]]);
         let part = &state.parts[member];
         let mut stops = part.next(scene, &self.table, agent, times, self.window);
@@ -225,7 +225,7 @@ impl OdId {
         stops.truncate(self.choices);
         let waits_until = part.time + self.wait;
         let waits = part.can_wait(scene, &self.table, waits_until);
-        draft::restore(&mut self.table, before);
+        rolling::restore(&mut self.table, before);
         let waiting = waits.then(|| Partial { time: waits_until, ..part.clone() });
         let driving = stops.into_iter().map(|stop| part.with(scene, stop.step, times));
         driving.chain(waiting).collect()

@@ -6,7 +6,7 @@ use crate::robot::Held;
 use crate::search::{End, Guide, Move, Query, Stop};
 use crate::units::{FOREVER, Us};
 
-use super::{Agent, Scene, draft};
+use super::{Agent, Scene, rolling};
 
 /// The part of a way that is decided.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ pub struct Partial {
 impl Partial {
     /// Nothing decided; `None` if there is no way at all.
     pub fn begin(scene: &Scene, agent: &Agent, times: &[u32]) -> Option<Self> {
-        let to_go = draft::to_go(scene, agent, times);
+        let to_go = rolling::to_go(scene, agent, times);
         Some(Self {
             moves: Vec::new(),
             node: agent.start,
@@ -87,11 +87,12 @@ impl Partial {
     /// Whether the agent can stay where it is until a time.
     pub fn can_wait(&self, scene: &Scene, table: &Table, until: Us) -> bool {
         let resource = scene.network.resource[self.node as usize];
-        !scene.network.is_lift(self.node) && table.occupant(resource, self.time, until).is_none()
+        !scene.network.is_elevator(self.node)
+            && table.occupant(resource, self.time, until).is_none()
     }
 
     /// What the way occupies, its end until the agent may go on, or `until`.
     pub fn occupied(&self, scene: &Scene, agent: &Agent, until: Us) -> Vec<Held> {
-        draft::occupied(scene, agent, &self.moves, self.time.max(until))
+        rolling::occupied(scene, agent, &self.moves, self.time.max(until))
     }
 }

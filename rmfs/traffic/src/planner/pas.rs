@@ -15,7 +15,7 @@ use crate::units::Us;
 
 use super::deadlock::Deadlocks;
 use super::partial::Partial;
-use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
+use super::{Agent, Answer, Planner, Rhythm, Scene, rolling};
 
 /// The planner and its parameters.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -57,8 +57,8 @@ impl Planner for Pas {
     }
 
     fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
-        let times = draft::times(scene, agents);
-        draft::block(scene, agents, &mut self.table);
+        let times = rolling::times(scene, agents);
+        rolling::block(scene, agents, &mut self.table);
         let end = scene.now + self.window;
         let begin = |(agent, times): (&Agent, &Arc<[u32]>)| {
             let part = Partial::begin(scene, agent, times)?;
@@ -75,7 +75,7 @@ impl Planner for Pas {
         let mut answers = Vec::new();
         for ((agent, track), times) in agents.iter().zip(tracks).zip(&times) {
             let way = track.map(|Track { mut part, .. }| {
-                draft::append_rest(scene, agent, &mut part.moves, part.time, times);
+                rolling::append_rest(scene, agent, &mut part.moves, part.time, times);
                 part.moves
             });
             answers.push(Answer::of(way));
@@ -90,7 +90,7 @@ impl Tracks<'_, '_> {
     fn furthest_behind(&self) -> Option<usize> {
         let network = self.scene.network;
         let open = |track: &Track| {
-            let rests = track.part.time >= self.end && !network.is_lift(track.part.node);
+            let rests = track.part.time >= self.end && !network.is_elevator(track.part.node);
             !track.is_home && !rests
         };
         let times = self.tracks.iter().enumerate().filter_map(|(index, track)| {

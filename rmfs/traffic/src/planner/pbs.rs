@@ -15,7 +15,7 @@ use crate::units::{FOREVER, Us};
 
 use super::conflicts::{self, Conflict};
 use super::deadlock::Deadlocks;
-use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
+use super::{Agent, Answer, Planner, Rhythm, Scene, rolling};
 
 /// The planner and its parameters.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -95,8 +95,8 @@ impl Planner for Pbs {
     }
 
     fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
-        let times = draft::times(scene, agents);
-        draft::block(scene, agents, &mut self.table);
+        let times = rolling::times(scene, agents);
+        rolling::block(scene, agents, &mut self.table);
         let plans = agents
             .iter()
             .zip(&times)
@@ -110,7 +110,7 @@ impl Planner for Pbs {
         for ((agent, plan), times) in agents.iter().zip(best.plans).zip(&times) {
             let mut moves = plan.map(|plan| plan.moves.clone());
             if let Some(moves) = &mut moves {
-                draft::append_rest(scene, agent, moves, end, times);
+                rolling::append_rest(scene, agent, moves, end, times);
             }
             answers.push(Answer::of(moves));
         }
@@ -191,12 +191,12 @@ impl Pbs {
         occupied: &[Held],
     ) -> Option<Plan> {
         let until = scene.now + self.window;
-        let before = draft::overlay(&mut self.table, occupied);
+        let before = rolling::overlay(&mut self.table, occupied);
         let (ready, end) = (agent.ready, End::Window(until));
-        let found = draft::search(scene, &self.table, agent, ready, times, end, self.labels);
-        draft::restore(&mut self.table, before);
+        let found = rolling::search(scene, &self.table, agent, ready, times, end, self.labels);
+        rolling::restore(&mut self.table, before);
         let moves = found?;
-        let occupied = draft::occupied(scene, agent, &moves, until);
+        let occupied = rolling::occupied(scene, agent, &moves, until);
         let (node, heading, end) = moves
             .last()
             .map_or((agent.start, agent.heading, agent.ready), |l| (l.to, l.heading, l.end));

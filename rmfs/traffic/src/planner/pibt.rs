@@ -17,7 +17,7 @@ use crate::units::{FOREVER, Us};
 
 use super::deadlock::Deadlocks;
 use super::partial::Partial;
-use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
+use super::{Agent, Answer, Planner, Rhythm, Scene, rolling};
 
 /// The planner and its parameters.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -54,8 +54,8 @@ impl Planner for Pibt {
 
     fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
         self.note_goals(scene, agents);
-        let times = draft::times(scene, agents);
-        draft::block(scene, agents, &mut self.table);
+        let times = rolling::times(scene, agents);
+        rolling::block(scene, agents, &mut self.table);
         let (detour, choices) = (self.detour, self.choices);
         let answers = vec![Answer::Keep; agents.len()];
         let (table, waiting) = (&mut self.table, BTreeMap::new());
@@ -151,7 +151,7 @@ impl Round<'_, '_> {
     }
 
     fn take(&mut self, index: usize, run: Partial) -> bool {
-        draft::reserve(self.scene, self.table, &self.agents[index], &run.moves, FOREVER);
+        rolling::reserve(self.scene, self.table, &self.agents[index], &run.moves, FOREVER);
         self.answers[index] = Answer::Way(run.moves);
         true
     }
@@ -174,11 +174,11 @@ impl Round<'_, '_> {
         let Some(here) = Partial::begin(self.scene, agent, times) else { return Vec::new() };
         let mut runs = Vec::new();
         for stop in here.next(self.scene, self.table, agent, times, self.detour) {
-            let is_lift = self.scene.network.is_lift(stop.step.to);
+            let is_elevator = self.scene.network.is_elevator(stop.step.to);
             let stays = stop.until == FOREVER;
             let run = here.with(self.scene, stop.step, times);
-            if is_lift {
-                runs.extend(self.off_the_lift(index, run));
+            if is_elevator {
+                runs.extend(self.off_the_elevator(index, run));
             } else if stays {
                 runs.push(run);
             }
@@ -189,13 +189,13 @@ impl Round<'_, '_> {
     }
 
     /// A way that ends in an elevator, with the best ride and run off it.
-    fn off_the_lift(&mut self, index: usize, mut run: Partial) -> Option<Partial> {
+    fn off_the_elevator(&mut self, index: usize, mut run: Partial) -> Option<Partial> {
         let (agent, times) = (&self.agents[index], &self.times[index]);
-        while self.scene.network.is_lift(run.node) {
+        while self.scene.network.is_elevator(run.node) {
             let stops = run.next(self.scene, self.table, agent, times, self.detour);
             let network = self.scene.network;
             let next = stops.into_iter().find(|stop| {
-                stop.step.ride || (stop.until == FOREVER && !network.is_lift(stop.step.to))
+                stop.step.ride || (stop.until == FOREVER && !network.is_elevator(stop.step.to))
             })?;
             if next.step.ride && run.moves.last().is_some_and(|last| last.ride) {
                 return None;

@@ -13,7 +13,7 @@ use crate::search::{End, Move};
 use crate::units::{FOREVER, Us};
 
 use super::deadlock::Deadlocks;
-use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
+use super::{Agent, Answer, Planner, Rhythm, Scene, rolling};
 
 /// The planner and its parameters.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -35,12 +35,12 @@ impl Planner for WhcaPersistent {
     }
 
     fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
-        let times = draft::times(scene, agents);
+        let times = rolling::times(scene, agents);
         self.restore(scene, agents);
         let mut order: Vec<usize> = (0..agents.len()).filter(|&i| agents[i].needs_plan).collect();
         order.sort_by_key(|&index| {
             let agent = &agents[index];
-            (!agent.loaded, draft::to_go(scene, agent, &times[index]), agent.robot)
+            (!agent.loaded, rolling::to_go(scene, agent, &times[index]), agent.robot)
         });
         let mut answers = vec![Answer::Keep; agents.len()];
         for index in order {
@@ -55,7 +55,7 @@ impl WhcaPersistent {
     /// Fills the table: what is granted, then the ways that stand, then the starts of those that
     /// need a new one.
     fn restore(&mut self, scene: &Scene, agents: &[Agent]) {
-        draft::block(scene, agents, &mut self.table);
+        rolling::block(scene, agents, &mut self.table);
         let mut reserved = std::mem::take(&mut self.reserved);
         for agent in agents.iter().filter(|agent| !agent.needs_plan) {
             if let Some(held) = reserved.remove(&agent.robot) {
@@ -108,7 +108,8 @@ impl WhcaPersistent {
     fn replan(&mut self, scene: &mut Scene, agent: &Agent, times: &[u32]) -> Option<Vec<Move>> {
         self.release_start(scene, agent);
         let end = End::WindowForGood(scene.now + self.window);
-        let found = draft::search(scene, &self.table, agent, agent.ready, times, end, self.labels);
+        let found =
+            rolling::search(scene, &self.table, agent, agent.ready, times, end, self.labels);
         let Some(moves) = found.filter(|moves| !moves.is_empty()) else {
             // it stays, and whoever wanted to pass will be refused
             let resource = scene.network.resource[agent.start as usize];
@@ -116,7 +117,7 @@ impl WhcaPersistent {
                 .cover(resource, Interval { start: agent.ready, end: FOREVER, robot: agent.robot });
             return None;
         };
-        let held = draft::occupied(scene, agent, &moves, FOREVER);
+        let held = rolling::occupied(scene, agent, &moves, FOREVER);
         for held in &held {
             let interval = Interval { start: held.start, end: held.end, robot: agent.robot };
             self.table.insert(held.resource, interval, scene.now);

@@ -13,7 +13,7 @@ use crate::search::{End, Move};
 use crate::units::Us;
 
 use super::deadlock::Deadlocks;
-use super::{Agent, Answer, Planner, Rhythm, Scene, draft};
+use super::{Agent, Answer, Planner, Rhythm, Scene, rolling};
 
 /// The planner and its parameters.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -40,7 +40,7 @@ impl Planner for WhcaVolatile {
 
     fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
         let end = scene.now + self.window;
-        let times = draft::times(scene, agents);
+        let times = rolling::times(scene, agents);
         let mut priorities = vec![0; agents.len()];
         let mut plans = Vec::new();
         for round in 1..=self.rounds {
@@ -55,7 +55,7 @@ impl Planner for WhcaVolatile {
         }
         for ((agent, plan), times) in agents.iter().zip(&mut plans).zip(&times) {
             if let Some(moves) = plan {
-                draft::append_rest(scene, agent, moves, end, times);
+                rolling::append_rest(scene, agent, moves, end, times);
             }
         }
         let mut answers: Vec<Answer> = plans.into_iter().map(Answer::of).collect();
@@ -80,7 +80,7 @@ impl WhcaVolatile {
         let end = scene.now + self.window;
         let mut plans = vec![None; agents.len()];
         let mut failed = Vec::new();
-        draft::block(scene, agents, &mut self.table);
+        rolling::block(scene, agents, &mut self.table);
         for &index in order {
             let (agent, times) = (&agents[index], times[index].as_ref());
             let steps = (1_i64 << priorities[index].min(10)) / 2;
@@ -89,10 +89,10 @@ impl WhcaVolatile {
             let stays = self.table.occupant(start, agent.ready, ready).is_none();
             let found = stays.then(|| {
                 let end = End::Window(end);
-                draft::search(scene, &self.table, agent, ready, times, end, self.labels)
+                rolling::search(scene, &self.table, agent, ready, times, end, self.labels)
             });
             if let Some(moves) = found.flatten() {
-                draft::reserve(scene, &mut self.table, agent, &moves, end);
+                rolling::reserve(scene, &mut self.table, agent, &moves, end);
                 plans[index] = Some(moves);
             } else {
                 failed.push(index);
@@ -115,7 +115,7 @@ fn order(
     let mut order: Vec<usize> = (0..agents.len()).collect();
     order.sort_by_key(|&index| {
         let agent = &agents[index];
-        let to_go = draft::to_go(scene, agent, times[index].as_ref());
+        let to_go = rolling::to_go(scene, agent, times[index].as_ref());
         (Reverse(priorities[index]), !agent.loaded, to_go, agent.robot)
     });
     order

@@ -15,7 +15,7 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::costs;
 use crate::fleet::{CutOff, Event, Fleet, Rest, Shift};
 use crate::kinematics::Kind;
-use crate::network::{Lift, Network, Plan};
+use crate::network::{Network, Plan, Ride};
 use crate::planner::{Planner, Rhythm, Settings, build};
 use crate::robot::Step;
 use crate::units::{Us, from_radians, to_radians};
@@ -129,7 +129,7 @@ impl Core {
         queue: PyReadonlyArray1<bool>,
         stations: Vec<Vec<u32>>,
         elevators: Vec<Vec<u32>>,
-        lifts: Vec<(u32, u32, Us)>,
+        rides: Vec<(u32, u32, Us)>,
         robots: Vec<(u32, f64, u8)>,
         kinds: Vec<KindTuple>,
         planner: (String, HashMap<String, f64>, u64, Option<Py<PyAny>>),
@@ -147,7 +147,7 @@ impl Core {
             queue: queue.as_slice()?.to_vec(),
             stations,
             elevators,
-            lifts: lifts.into_iter().map(|(from, to, travel)| Lift { from, to, travel }).collect(),
+            rides: rides.into_iter().map(|(from, to, travel)| Ride { from, to, travel }).collect(),
             extra_headings: robots.iter().map(|robot| from_radians(robot.1)).collect(),
         };
         let kinds: Vec<Kind> = kinds.into_iter().map(kind_of).collect();

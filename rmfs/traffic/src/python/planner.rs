@@ -10,7 +10,7 @@ use pyo3::exceptions::{PyStopIteration, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
-use crate::planner::{Agent, Answer, Planner, Resumable, Rhythm, Scene, conflicts, draft};
+use crate::planner::{Agent, Answer, Planner, Resumable, Rhythm, Scene, conflicts, rolling};
 use crate::reservations::Table;
 use crate::search::{End, Move};
 use crate::units::{Us, to_radians};
@@ -147,14 +147,14 @@ impl Planner for PlannerInPython {
     }
 
     fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer> {
-        draft::block(scene, agents, &mut self.table);
+        rolling::block(scene, agents, &mut self.table);
         let fault = Arc::clone(&self.fault);
         let Ok(mut fault) = fault.lock() else { return vec![Answer::Keep; agents.len()] };
         let nothing = || vec![Answer::Keep; agents.len()];
         if fault.is_some() || agents.is_empty() {
             return nothing();
         }
-        let times = draft::times(scene, agents);
+        let times = rolling::times(scene, agents);
         let degrees = scene.network.headings.iter().map(|&heading| to_radians(heading));
         let headings = Arc::new(degrees.collect());
         let table = &mut self.table;
@@ -183,7 +183,7 @@ impl Desk<'_, '_> {
             .iter()
             .zip(self.times)
             .map(|(agent, times)| {
-                let to_go = crate::costs::time(draft::to_go(self.scene, agent, times));
+                let to_go = crate::costs::time(rolling::to_go(self.scene, agent, times));
                 let Agent { robot, start, heading, ready, goal, loaded, needs_plan, .. } = *agent;
                 let angle = self.headings[heading as usize];
                 (robot, start, angle, ready, goal, loaded, needs_plan, to_go)
@@ -237,12 +237,12 @@ impl Desk<'_, '_> {
         let mut held = Vec::new();
         for way in &search.around {
             let way = way.get();
-            held.extend(draft::occupied(self.scene, self.agent(way.agent)?, &way.moves, until));
+            held.extend(rolling::occupied(self.scene, self.agent(way.agent)?, &way.moves, until));
         }
-        let before = draft::overlay(self.table, &held);
+        let before = rolling::overlay(self.table, &held);
         let (ready, labels) = (agent.ready, search.labels);
-        let found = draft::search(self.scene, self.table, &agent, ready, times, end, labels);
-        draft::restore(self.table, before);
+        let found = rolling::search(self.scene, self.table, &agent, ready, times, end, labels);
+        rolling::restore(self.table, before);
         found.map(|moves| Py::new(py, self.way(search.agent, moves, until))).transpose()
     }
 
@@ -255,9 +255,9 @@ impl Desk<'_, '_> {
         let mut time = along.ready_us.unwrap_or(agent.ready).max(agent.ready);
         let mut moves: Vec<Move> = Vec::new();
         for &to in &along.stops {
-            let ride = network.lifts_from(from).find(|lift| lift.to == to);
+            let ride = network.rides_from(from).find(|ride| ride.to == to);
             let (heading, start, end) = match ride {
-                Some(lift) => (before, time, time + lift.travel),
+                Some(ride) => (before, time, time + ride.travel),
                 None => {
                     let (heading, length) = self.straight(agent, from, to)?;
                     let start = time + Us::from(model.turning(before, heading));
@@ -317,7 +317,7 @@ impl Desk<'_, '_> {
         for way in &conflict.ways {
             let way = way.get();
             let agent = self.agent(way.agent)?;
-            held.push(draft::occupied(self.scene, agent, &way.moves, conflict.until_us));
+            held.push(rolling::occupied(self.scene, agent, &way.moves, conflict.until_us));
         }
         let first = conflicts::first(held.iter().map(Vec::as_slice));
         let found = first.map(|at| (at.agents[0], at.agents[1], at.resource, at.start, at.end));
@@ -349,7 +349,7 @@ impl Desk<'_, '_> {
             let mut moves = way.moves.clone();
             let agent = &self.agents[index];
             let times = &self.times[index];
-            draft::append_rest(self.scene, agent, &mut moves, way.end_us, times);
+            rolling::append_rest(self.scene, agent, &mut moves, way.end_us, times);
             Ok(Answer::Way(moves))
         };
         ways.into_iter().enumerate().map(wish).collect()

@@ -12,7 +12,7 @@
 //! Related: SIPP (Phillips, Likhachev 2011), stationary SIPP in MASS (Yan, Li 2025), free time
 //! windows (ter Mors 2010).
 
-mod lifts;
+mod elevators;
 mod next;
 mod query;
 mod runs;
@@ -175,7 +175,7 @@ struct Search<'a> {
     /// Arrivals after this are of no use.
     latest: Us,
     /// Nobody who is still where only elevators lead to the goal reaches it before this.
-    lift_free: Us,
+    elevator_free: Us,
 }
 
 impl<'a> Search<'a> {
@@ -194,7 +194,7 @@ impl<'a> Search<'a> {
         } else {
             table.row(network.resource[query.goal as usize]).last().map_or(0, |last| last.end)
         };
-        Self { memory, network, table, query, weight, goal_free, latest: FOREVER, lift_free: 0 }
+        Self { memory, network, table, query, weight, goal_free, latest: FOREVER, elevator_free: 0 }
     }
 
     fn run(&mut self, budget: u64) -> Outcome {
@@ -213,7 +213,7 @@ impl<'a> Search<'a> {
         if query.goal != NONE {
             // with an eye on speed, what leads to the ride at once comes first
             let haste = if self.weight > STAGES[0].0 { HASTE } else { 0 };
-            self.lift_free = match self.lift_bound() {
+            self.elevator_free = match self.elevator_bound() {
                 0 => 0,
                 bound => bound + haste,
             };
@@ -268,7 +268,7 @@ impl<'a> Search<'a> {
 
     /// Whether a window may end with the robot here: not in an elevator.
     fn may_rest(&self, node: u32) -> bool {
-        !self.network.is_lift(node)
+        !self.network.is_elevator(node)
     }
 
     /// When waiting at a label is an end of its own: the window closes while the robot stands there.
@@ -329,9 +329,9 @@ impl<'a> Search<'a> {
     /// Total time over a label: when it is reached, and a (weighted) bound of the rest.
     fn estimate(&self, node: u32, arrival: Us, to_go: Us) -> Us {
         let estimate = (arrival + to_go * self.weight / 4).max(self.goal_free);
-        let is_before = self.lift_free > estimate
+        let is_before = self.elevator_free > estimate
             && self.network.island[node as usize] == self.network.island[self.query.start as usize];
-        if is_before { self.lift_free } else { estimate }
+        if is_before { self.elevator_free } else { estimate }
     }
 
     /// Where the guide has not been yet, lets it search on until the label is known or can wait; a

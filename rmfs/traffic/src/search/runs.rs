@@ -70,7 +70,7 @@ impl Search<'_> {
             }
         };
         self.is_goal(node)
-            || network.is_lift(node)
+            || network.is_elevator(node)
             || (0..network.heading_count() as u8).any(leads_on)
     }
 
@@ -152,11 +152,11 @@ impl Search<'_> {
 
     /// Offers the elevator rides from a label; the shaft stays the robot's, so the interval stays.
     pub(super) fn ride(&mut self, parent: u32, label: &Label) {
-        for lift in self.network.lifts_from(label.node) {
-            let arrival = label.arrival + lift.travel;
+        for ride in self.network.rides_from(label.node) {
+            let arrival = label.arrival + ride.travel;
             if arrival <= label.until {
                 self.offer(Label {
-                    node: lift.to,
+                    node: ride.to,
                     ride: true,
                     arrival,
                     departure: label.arrival,

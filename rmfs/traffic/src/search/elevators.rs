@@ -5,7 +5,7 @@
 //! on the own tier until the elevator is free.
 
 use crate::kinematics::Kind;
-use crate::network::Lift;
+use crate::network::Ride;
 use crate::units::{FOREVER, Us, floor_us};
 
 use super::Search;
@@ -13,25 +13,25 @@ use super::Search;
 impl Search<'_> {
     /// No way from the start's island to the goal's takes less: that of the best ride, over
     /// everything the elevators are reserved for. 0 if the goal is on the same island.
-    pub(super) fn lift_bound(&self) -> Us {
+    pub(super) fn elevator_bound(&self) -> Us {
         let island = self.network.island[self.query.start as usize];
         let goal = self.query.goal as usize;
-        if self.network.island[goal] == island || self.network.is_lift(self.query.start) {
+        if self.network.island[goal] == island || self.network.is_elevator(self.query.start) {
             return 0;
         }
-        self.network.lifts_off(island).map(|lift| self.arrival_over(lift)).min().unwrap_or(0)
+        self.network.rides_off(island).map(|ride| self.arrival_over(ride)).min().unwrap_or(0)
     }
 
     /// A lower bound of the arrival at the goal over a ride (weighted as all estimates).
-    fn arrival_over(&self, lift: &Lift) -> Us {
+    fn arrival_over(&self, ride: &Ride) -> Us {
         let network = self.network;
         let headings = 0..network.heading_count() as u8;
-        let to_go = headings.clone().filter_map(|heading| self.to_go(lift.to, heading)).min();
+        let to_go = headings.clone().filter_map(|heading| self.to_go(ride.to, heading)).min();
         let Some(to_go) = to_go else { return FOREVER };
         let shortest = |metres: Option<f64>| metres.unwrap_or(0.0);
-        let before = headings.clone().flat_map(|h| network.behind(lift.from, h));
+        let before = headings.clone().flat_map(|h| network.behind(ride.from, h));
         let entering = shortest(before.map(|edge| edge.1).min_by(f64::total_cmp));
-        let behind = headings.filter_map(|h| network.ahead(lift.to, h));
+        let behind = headings.filter_map(|h| network.ahead(ride.to, h));
         let leaving = shortest(behind.map(|edge| edge.1).min_by(f64::total_cmp));
         let kind = self.query.kind;
         let (enter, leave) = (
@@ -39,12 +39,12 @@ impl Search<'_> {
             at_least(kind, kind.acceleration, leaving),
         );
         // the shaft is the robot's from leaving the waypoint before to reaching the one behind
-        let reached = self.query.ready + self.straight_to(lift.from);
-        let shaft = network.resource[lift.from as usize];
+        let reached = self.query.ready + self.straight_to(ride.from);
+        let shaft = network.resource[ride.from as usize];
         for (from, until) in self.table.gaps(shaft) {
-            let ride = reached.max(from + enter);
-            if ride + lift.travel + leave <= until {
-                return ride + lift.travel + to_go * self.weight / 4;
+            let departure = reached.max(from + enter);
+            if departure + ride.travel + leave <= until {
+                return departure + ride.travel + to_go * self.weight / 4;
             }
         }
         FOREVER
