@@ -34,5 +34,6 @@ class PlannerSettings(NamedTuple):
 
 
 TIME_WINDOWS = PlannerSettings(
-    "time-windows", {"labels": EXPANSION_BUDGET, "improve_labels": 0, "swift": 0}
+    "time-windows",
+    {"labels": EXPANSION_BUDGET, "improve_labels": 0, "swift": 0, "swift_from": 300},
 )

@@ -16,7 +16,9 @@ class TimeWindowsParameters(Parameters):
     improve_labels: int = pydantic.Field(0, ge=0)
     """Labels for each robot when a late plan and those in front of it are made anew; 0: never."""
     swift: bool = False
-    """For big fleets: ways that may be a little later than the earliest, found much sooner."""
+    """From the start: ways that may be a little later than the earliest, found much sooner."""
+    swift_from: int = pydantic.Field(300, ge=0)
+    """Labels a plan takes on average from which on ways are found sooner, too; 0: never."""
 
 
 class TimeWindows(PathPlanning[TimeWindowsParameters]):

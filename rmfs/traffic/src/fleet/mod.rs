@@ -163,7 +163,7 @@ impl Fleet {
         }
         let (per_leg, rolling): (Box<dyn Planner>, _) = match Rolling::of(planner, robots.len()) {
             Ok(rolling) => {
-                (Box::new(TimeWindows { budget, improvement: 0, swift: None }), Some(rolling))
+                (Box::new(TimeWindows { budget, ..TimeWindows::default() }), Some(rolling))
             }
             Err(per_leg) => (per_leg, None),
         };

@@ -19,6 +19,7 @@ mod pibt;
 mod resumable;
 pub(crate) mod rolling;
 mod settings;
+mod swift;
 mod time_windows;
 mod whca_persistent;
 mod whca_volatile;

@@ -14,7 +14,7 @@ use super::od_id::OdId;
 use super::pas::Pas;
 use super::pbs::Pbs;
 use super::pibt::Pibt;
-use super::time_windows::Swift;
+use super::swift::Swift;
 use super::whca_persistent::WhcaPersistent;
 use super::whca_volatile::WhcaVolatile;
 use super::{Planner, Rhythm, TimeWindows};
@@ -72,6 +72,8 @@ pub fn build(settings: &Settings, network: &Network) -> Result<Box<dyn Planner>,
             budget: settings.count("labels")?,
             improvement: settings.count("improve_labels").unwrap_or(0),
             swift: settings.switch("swift").unwrap_or(false).then_some(Swift::FOR_BIG_FLEETS),
+            swift_from: settings.count("swift_from").unwrap_or(0),
+            ..TimeWindows::default()
         }),
         "whca-v" => Box::new(WhcaVolatile {
             rhythm: settings.rhythm()?,

@@ -2,107 +2,29 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::network::Network;
-use crate::reservations::Table;
-use crate::search::{End, Guide, Move, Outcome, Pathfinder, Query};
-use crate::units::{FOREVER, Us};
+use crate::search::{End, Guide, Move, Outcome, Query};
+use crate::units::FOREVER;
 
+use super::swift::{Load, Swift, Urgency, Waiting};
 use super::{Agent, Answer, Planner, Rhythm, Scene};
 
 /// Plans each leg once around the windows that others have reserved.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct TimeWindows {
     /// Labels a search may look at before the robot waits until all planned motion is over.
     pub budget: u64,
     /// Labels for each robot of a group when plans are to be improved; 0 for never.
     pub improvement: u64,
-    /// How to find ways sooner that may be a little later than the earliest.
+    /// How to find ways sooner that may be a little later than the earliest; from when on.
     pub swift: Option<Swift>,
-}
-
-/// A search: the weight of the time to go (in quarters: 4 finds the earliest arrival), and labels.
-type Effort = (Us, u64);
-
-/// Searches with few labels: at once; then from later and later departures, since waiting at the
-/// start is always free and the traffic ahead passes; without success with more labels.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Swift {
-    pub first: Effort,
-    /// Each search from a later departure.
-    pub later: Effort,
-    /// By how much the first of them is later; each further one by twice as much as the one before.
-    pub wait: Us,
-    /// From the earliest departure again, if none of them found a way.
-    pub last: [Effort; 2],
-    /// Unhindered times are searched for only near the best way.
-    pub guide: Guide,
-    /// Plans that need not be: labels, and how much later than unhindered they may arrive.
-    pub labels_to_try: u64,
-    pub detour_to_try: Us,
-}
-
-impl Swift {
-    /// What has been found to pay for hundreds of robots (`docs/traffic.md`, Scale).
-    pub const FOR_BIG_FLEETS: Self = Self {
-        first: (5, 400),
-        later: (6, 200),
-        wait: 5_000_000,
-        last: [(6, 2_000), (16, u64::MAX)],
-        guide: Guide::Near(3_000_000),
-        labels_to_try: 100,
-        detour_to_try: 20_000_000,
-    };
-
-    /// Looks for a way. `until` is when the robot has to have left its start; `needed` says whether
-    /// it has to have a plan.
-    fn search(
-        &self,
-        pathfinder: &mut Pathfinder,
-        network: &Network,
-        table: &Table,
-        query: &Query,
-        until: Us,
-        needed: bool,
-    ) -> Outcome {
-        let mut query = Query { guide: self.guide, ..query.clone() };
-        let Some(unhindered) = pathfinder.aim(network, &query) else { return Outcome::NoWay };
-        let (weight, labels) = self.first;
-        if !needed {
-            query.detour = self.detour_to_try;
-            let labels = self.labels_to_try.min(query.budget);
-            return pathfinder.seek(network, table, &query, weight, labels);
-        }
-        let earliest = query.ready;
-        // who would have to wait for the goal to be free starts in time for that
-        let row = table.row(network.resource[query.goal as usize]);
-        let goal_free = row.last().map_or(0, |last| last.end);
-        let in_time = earliest.max(goal_free - unhindered - self.wait);
-        query.ready = if in_time < until { in_time } else { earliest };
-        let mut outcome = pathfinder.seek(network, table, &query, weight, labels.min(query.budget));
-        if outcome == Outcome::OutOfBudget {
-            let last = until.min(table.horizon());
-            let mut wait = self.wait;
-            let (weight, labels) = self.later;
-            while outcome == Outcome::OutOfBudget && query.ready + wait < last {
-                query.ready += wait;
-                wait *= 2;
-                outcome = pathfinder.seek(network, table, &query, weight, labels.min(query.budget));
-            }
-        }
-        // that no way leaves later does not say that none leaves now
-        let mut starved = outcome == Outcome::NoWay && query.ready > earliest;
-        query.ready = earliest;
-        for (weight, labels) in self.last {
-            if outcome == Outcome::OutOfBudget || std::mem::take(&mut starved) {
-                outcome = pathfinder.seek(network, table, &query, weight, labels.min(query.budget));
-            }
-        }
-        outcome
-    }
+    /// Labels a plan takes on average from which on ways are found sooner; 0 for never.
+    pub swift_from: u64,
+    pub load: Load,
+    pub waiting: Waiting,
 }
 
 impl TimeWindows {
-    fn plan_one(&self, scene: &mut Scene, agent: &Agent) -> Option<Vec<Move>> {
+    fn plan_one(&mut self, scene: &mut Scene, agent: &Agent) -> Option<Vec<Move>> {
         let mut query = Query {
             start: agent.start,
             heading: agent.heading,
@@ -117,20 +39,36 @@ impl TimeWindows {
             guide: Guide::Exact,
             times: None,
         };
+        let before = scene.pathfinder.expansions;
         let Scene { network, table, pathfinder, .. } = scene;
         let needed = agent.effort == u64::MAX;
+        let patient = needed && self.swift.is_some();
+        let urgency = match (needed, patient) {
+            (false, _) => Urgency::Try,
+            (true, false) => Urgency::Whatever,
+            (true, true) => self.waiting.urgency(agent.robot, agent.goal, scene.now)?,
+        };
         let (_, until) = table.gap_at(network.resource[agent.start as usize], agent.ready)?;
         let mut outcome = match &self.swift {
-            Some(swift) => swift.search(pathfinder, network, table, &query, until, needed),
+            Some(swift) => swift.search(pathfinder, network, table, &query, until, urgency),
             None => pathfinder.search(network, table, &query),
         };
-        if outcome == Outcome::OutOfBudget && needed {
+        if outcome == Outcome::OutOfBudget && urgency == Urgency::Whatever {
             // with every planned motion over, the search is an ordinary shortest path
             query.ready = query.ready.max(table.horizon());
             query.budget = u64::MAX;
             if until > query.ready {
                 outcome = pathfinder.search(network, table, &query);
             }
+        }
+        if needed && self.swift.is_none() && self.swift_from > 0 {
+            let mean = self.load.count(pathfinder.expansions - before);
+            self.swift = (mean >= self.swift_from).then_some(Swift::FOR_BIG_FLEETS);
+        }
+        if patient && outcome == Outcome::OutOfBudget {
+            self.waiting.wait(agent.robot, agent.goal, scene.now);
+        } else if patient {
+            self.waiting.end(agent.robot);
         }
         match outcome {
             Outcome::Found(moves) => Some(moves),
@@ -158,8 +96,10 @@ mod tests {
     use super::*;
     use crate::costs::Cache;
     use crate::kinematics::Kind;
-    use crate::network::Plan;
-    use crate::reservations::Interval;
+    use crate::network::{Network, Plan};
+    use crate::reservations::{Interval, Table};
+    use crate::search::Pathfinder;
+    use crate::units::Us;
 
     const KIND: Kind = Kind {
         acceleration: 0.5,
@@ -193,6 +133,10 @@ mod tests {
     /// Plans from one end of the row to the other, ready at 0, around what others hold of a
     /// waypoint: its number, from and until (in seconds).
     fn plan(swift: Option<Swift>, others: &[(u32, Us, Us)]) -> Option<Vec<Move>> {
+        plan_by(&mut TimeWindows { budget: 50_000, swift, ..TimeWindows::default() }, others)
+    }
+
+    fn plan_by(planner: &mut TimeWindows, others: &[(u32, Us, Us)]) -> Option<Vec<Move>> {
         let network = row();
         let mut table = Table::new(network.resources);
         for &(node, from, until) in others {
@@ -200,7 +144,6 @@ mod tests {
             table.insert(node, Interval { start: from * 1_000_000, end, robot: 1 }, -1);
         }
         let kinds = [KIND];
-        let mut planner = TimeWindows { budget: 50_000, improvement: 0, swift };
         let agent = Agent {
             robot: 0,
             kind: 0,
@@ -264,6 +207,17 @@ mod tests {
     }
 
     #[test]
+    fn plans_that_take_many_labels_make_it_swift() {
+        let others = [(3, 0, 30)];
+        let of = |swift_from| TimeWindows { budget: 50_000, swift_from, ..TimeWindows::default() };
+        for (swift_from, is_swift) in [(0, false), (1, true), (300, false)] {
+            let mut planner = of(swift_from);
+            (0..300).for_each(|_| assert!(plan_by(&mut planner, &others).is_some()));
+            assert_eq!(planner.swift.is_some(), is_swift, "from {swift_from} labels");
+        }
+    }
+
+    #[test]
     fn what_need_not_be_may_not_take_long() {
         let network = row();
         let mut table = Table::new(network.resources);
@@ -287,8 +241,8 @@ mod tests {
         let swift = Swift::FOR_BIG_FLEETS;
         let mut pathfinder = Pathfinder::new(&network);
         let mut tried =
-            |needed| swift.search(&mut pathfinder, &network, &table, &query, FOREVER, needed);
-        assert_eq!(tried(false), Outcome::NoWay);
-        assert!(matches!(tried(true), Outcome::Found(_)));
+            |urgency| swift.search(&mut pathfinder, &network, &table, &query, FOREVER, urgency);
+        assert_eq!(tried(Urgency::Try), Outcome::NoWay);
+        assert!(matches!(tried(Urgency::Soon), Outcome::Found(_)));
     }
 }
