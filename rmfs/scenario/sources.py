@@ -9,6 +9,7 @@ from rmfs.errors import InputError
 from rmfs.scenario import exact
 from rmfs.scenario.parameters import LetterSkus, SkuFile
 from rmfs.scenario.skus import SkuSet, draw_sku_set, read_sku_set
+from rmfs.scenario.skus.csv_file import read_sku_table
 from rmfs.scenario.skus.drawing import draw_bundle_units, draw_space
 from rmfs.scenario.skus.letters import letter_sku_set
 from rmfs.scenario.streams import digest, read_bundles, read_orders
@@ -34,6 +35,8 @@ def sku_set(config: Skus) -> SkuSet:
     match config.file.suffix.lower():
         case ".json":
             return read_sku_set(config.file)
+        case ".csv":
+            return _completed(read_sku_table(config.file), config)
         case ".xitem":
             return _completed(foreign.read(config.file).skus, config)
     return _completed(foreign.read(config.file), config)

@@ -16,8 +16,10 @@ from rmfs.rawsimo.scenario import read_xgenc
 from rmfs.scenario import SkuSet, read_sku_set, sku_set, write_sku_set
 from rmfs.scenario.parameters import GeneratedAffinity, GeneratedSkus, SkuFile
 from rmfs.scenario.skus import Affinity
+from rmfs.scenario.skus.csv_file import read_sku_table
 from rmfs.scenario.skus.drawing import draw_affinity
 from rmfs.scenario.skus.picture import draw_popularity, save_picture
+from rmfs.scenario.streams import read_orders
 
 LETTERS = SkuSet(
     ids=np.array([5, 3]),
@@ -219,3 +221,65 @@ def test_pictures_repeat(tmp_path: Path, skus: SkuSet, suffix: str):
         assert paths[0].read_bytes() == paths[1].read_bytes()
     with pytest.raises(InputError, match="must end in"):
         save_picture(skus, tmp_path / "a.gif")
+
+
+TABLE = """sku,popularity,supplier,space_per_unit
+SHOE-41, 12,a,0.5
+"HAT, RED",3.5,b,0.25
+
+007,1,c,1
+"""
+
+
+def test_a_table_names_skus_and_leaves_the_rest_to_be_drawn(tmp_path: Path):
+    path = tmp_path / "skus.csv"
+    path.write_text(TABLE)
+    found = sku_set(SkuFile(file=path))
+    assert found.names == ("SHOE-41", "HAT, RED", "007") and found.ids.tolist() == [0, 1, 2]
+    assert found.popularity.tolist() == [12.0, 3.5, 1.0]
+    assert found.space_per_unit.tolist() == [0.5, 0.25, 1.0]
+    assert (found.bundle_units >= 1).all()
+    write_sku_set(found, tmp_path / "again.json")
+    assert read_sku_set(tmp_path / "again.json").names == found.names
+    orders = tmp_path / "orders.csv"
+    orders.write_text('time,order,sku,quantity\n1,a,"HAT, RED",2\n1,a,007,1\n2,b,0,1\n')
+    stream = read_orders(orders, found)
+    assert stream.sku.tolist() == [1, 2, 0]
+    orders.write_text("time,order,sku,quantity\n1,a,HAT,2\n")
+    with pytest.raises(InputError, match="sku HAT is unknown"):
+        read_orders(orders, found)
+
+
+def test_numbers_stay_the_ids_of_a_table(tmp_path: Path):
+    path = tmp_path / "skus.csv"
+    path.write_bytes(b"\xef\xbb\xbfbundle_units,sku\r\n6,40\r\n8,7\r\n")
+    found = sku_set(SkuFile(file=path))
+    assert found.ids.tolist() == [40, 7] and found.names == ()
+    assert found.bundle_units.tolist() == [6, 8] and found.popularity.tolist() == [1.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", "line 1: column sku is missing"),
+        ("id,popularity\n1,2\n", "line 1: column sku is missing; columns: sku, popularity"),
+        ("sku,sku\n1,2\n", "line 1: column sku comes twice"),
+        ("sku\n", "holds no SKU"),
+        ("sku\na\na\n", "line 3: sku a comes twice"),
+        ("sku,popularity\na,1\nb\n", "line 3: 1 fields, expected 2"),
+        ("sku,popularity\na,many\n", "line 2: popularity must be a positive number"),
+        ("sku,popularity\na,nan\n", "line 2: popularity must be"),
+        ("sku,popularity\na,0\n", "popularity: one must be positive"),
+        ("sku,space_per_unit\na,0\n", "line 2: space_per_unit must be"),
+        ("sku,bundle_units\na,1.5\n", "line 2: bundle_units must be a whole number"),
+        ('sku\n"a\n', "line 2: "),
+        (f"sku\n{'x' * 201}\n", "line 2: sku must have 1 to 200 characters"),
+        ("sku\n\ud800\n", "not text in UTF-8"),
+    ],
+)
+def test_what_is_wrong_in_a_table_is_told_with_its_line(tmp_path: Path, text: str, told: str):
+    path = tmp_path / "skus.csv"
+    path.write_bytes(text.encode("utf-8", "surrogatepass"))
+    with pytest.raises(InputError) as caught:
+        read_sku_table(path)
+    assert str(caught.value).startswith(f"{path}: ") and told in str(caught.value)

@@ -30,6 +30,8 @@ def existing(*suffixes: str) -> pydantic.AfterValidator:
 StreamFile = Annotated[Path, pydantic.Strict(strict=False), existing(".csv", ".parquet", ".xitem")]
 """Orders or bundles with their times."""
 
-SkuSetFile = Annotated[Path, pydantic.Strict(strict=False), existing(".json", ".xgenc", ".xitem")]
+SkuSetFile = Annotated[
+    Path, pydantic.Strict(strict=False), existing(".json", ".csv", ".xgenc", ".xitem")
+]
 
 WordFile = Annotated[Path, pydantic.Strict(strict=False), existing()]

@@ -74,7 +74,8 @@ class SkuFile(_Sizes):
     """
 
     file: SkuSetFile = Field(
-        description="SKU set: .json (rmfs-skus/1), .xgenc or .xitem, relative to the scenario file"
+        description="SKU set: .json (rmfs-skus/1), .csv (columns sku, popularity, space_per_unit, "
+        "bundle_units), .xgenc or .xitem, relative to the scenario file"
     )
 
 

@@ -1,4 +1,4 @@
-"""What a RAWSim-O file says of its SKUs."""
+"""What a file says of its SKUs that need not say everything: a table, or one of RAWSim-O."""
 
 from __future__ import annotations
 

@@ -68,6 +68,7 @@ class _Fields:
 
     def __init__(self, skus: SkuSet) -> None:
         self._index_of = skus.index_of
+        self._by_name = {name: index for index, name in enumerate(skus.names)}
 
     def time_us(self, column: str, text: str) -> int:
         time_s = _number(column, text)
@@ -76,7 +77,9 @@ class _Fields:
         return nearest_us(time_s)
 
     def sku(self, text: str) -> int:
-        index = self._index_of.get(_whole("sku", text))
+        index = self._by_name.get(text)
+        if index is None and (text.isdecimal() or not self._by_name):
+            index = self._index_of.get(_whole("sku", text))
         if index is None:
             raise _FieldError(f"sku {text:.40} is unknown")
         return index

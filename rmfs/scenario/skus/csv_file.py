@@ -1,0 +1,125 @@
+"""SKU sets as tables: a CSV file with a row per SKU."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.files import read_bounded
+from rmfs.scenario.skus.content import SkuFileContent
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+COLUMNS = ("sku", "popularity", "space_per_unit", "bundle_units")
+"""What is read; other columns of the file are left alone."""
+
+LONGEST_NAME = 200
+MOST_UNITS = 1_000_000
+
+
+def read_sku_table(path: Path) -> SkuFileContent:
+    """Read a SKU table: `sku` and, if they are there, the other `COLUMNS`.
+
+    SKUs that are whole numbers keep them as ids; others are numbered from 0 and keep their text as
+    names. Without `popularity` all are ordered alike.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or a field is wrong; names the line.
+    """
+    rows = _rows(path)
+    head = next(rows, (1, []))[1]
+    known = {column: head.index(column) for column in COLUMNS if column in head}
+    doubles = sorted({column for column in known if head.count(column) > 1})
+    if "sku" not in known or doubles:
+        wrong = f"column {doubles[0]} comes twice" if doubles else "column sku is missing"
+        raise InputError(f"{path}: line 1: {wrong}; columns: {', '.join(COLUMNS)}")
+    found: dict[str, list[str]] = {column: [] for column in known}
+    lines: list[int] = []
+    for line, fields in rows:
+        if len(fields) != len(head):
+            raise InputError(f"{path}: line {line}: {len(fields)} fields, expected {len(head)}")
+        lines.append(line)
+        for column, place in known.items():
+            found[column].append(fields[place])
+    if not lines:
+        raise InputError(f"{path}: holds no SKU")
+    ids, names = _named(found["sku"], lines, path)
+    popularity = _numbers(found, "popularity", lines, path, least=0.0)
+    if popularity is not None and not popularity.any():
+        raise InputError(f"{path}: popularity: one must be positive")
+    space = _numbers(found, "space_per_unit", lines, path, least=np.nextafter(0.0, 1.0))
+    units = _numbers(found, "bundle_units", lines, path, least=1.0, whole=True)
+    return SkuFileContent(
+        ids=ids,
+        popularity=np.ones(len(ids)) if popularity is None else popularity,
+        space_per_unit=space,
+        bundle_units=None if units is None else units.astype(np.int64),
+        names=names,
+    )
+
+
+def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
+    """Yield line number and fields of every row that is not empty."""
+    try:
+        text = read_bounded(path).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: not text in UTF-8") from None
+    reader = csv.reader(io.StringIO(text, newline=""), strict=True)
+    try:
+        for fields in reader:
+            if fields:
+                yield reader.line_num, [field.strip() for field in fields]
+    except csv.Error as error:
+        raise InputError(f"{path}: line {reader.line_num}: {error}") from None
+
+
+def _named(
+    texts: list[str], lines: list[int], path: Path
+) -> tuple[np.ndarray[tuple[int], np.dtype[np.int64]], tuple[str, ...]]:
+    """Return ids, and names if the SKUs are more than numbers."""
+    seen: set[str] = set()
+    for line, text in zip(lines, texts, strict=True):
+        if not text or len(text) > LONGEST_NAME:
+            raise InputError(f"{path}: line {line}: sku must have 1 to {LONGEST_NAME} characters")
+        if text in seen:
+            raise InputError(f"{path}: line {line}: sku {text:.40} comes twice")
+        seen.add(text)
+    if all(text.isascii() and text.isdecimal() and len(text) < 16 for text in texts):
+        numbers = [int(text) for text in texts]
+        if [str(number) for number in numbers] == texts:
+            return np.array(numbers, dtype=np.int64), ()
+    return np.arange(len(texts), dtype=np.int64), tuple(texts)
+
+
+def _numbers(
+    found: dict[str, list[str]],
+    column: str,
+    lines: list[int],
+    path: Path,
+    *,
+    least: float,
+    whole: bool = False,
+) -> np.ndarray[tuple[int], np.dtype[np.float64]] | None:
+    """Return a column of numbers; nothing if the file has none of that name."""
+    if column not in found:
+        return None
+    made = []
+    for line, text in zip(lines, found[column], strict=True):
+        try:
+            number = math.nan if "_" in text else float(text)
+        except ValueError:
+            number = math.nan
+        if not (least <= number < math.inf) or (whole and (number % 1 or number > MOST_UNITS)):
+            kind = f"a whole number from 1 to {MOST_UNITS}" if whole else "a positive number"
+            raise InputError(f"{path}: line {line}: {column} must be {kind} (given: {text!r:.40})")
+        made.append(number)
+    return np.array(made, dtype=np.float64)
