@@ -28,7 +28,7 @@ def folder(tmp_path, monkeypatch):
 
 def test_a_run_is_safe_and_writes_everything(capsys):
     assert main([*SHORT, "--check", "--trace"]) == 0
-    run = load_run(Path("results/basic-basic-default-seed0"))
+    run = load_run(Path("results/basic-basic-default-scenario.duration_s=300-seed0"))
     assert run.footprint["collisions"] == 0
     assert run.footprint["units_picked"] > 0
     assert len(run.trace) > 500
