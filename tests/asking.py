@@ -43,8 +43,8 @@ def solve(question: Question) -> Answer:
     done = time.monotonic()
     return Answer(
         solution,
-        objective=float(len(station)),
-        bound=float(len(question.orders)),
+        objective=-float(len(station)),
+        bound=-float(len(question.orders)),
         status="feasible",
         backend="rule",
         work=float(len(question.orders)),

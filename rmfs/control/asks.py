@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from math import isfinite, isnan, nan
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
-import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from rmfs.control.problems import Problem
 
 Q = TypeVar("Q")
+
+BOUND_TOLERANCE = 1e-6
+"""How far, relative to the objective, a bound may pass it by rounding."""
 
 Plain = NDArray[Any] | int | float | str | bool | Sequence["Plain"]
 """What a solution may consist of: it is sent between processes, recorded and replayed."""
@@ -28,7 +31,7 @@ class Answer:
     solution
         Arrays and numbers by name; None if there is no solution, or none was found in time.
     objective, bound
-        Value of the solution and what is proven about the best one; inf or nan where nothing is.
+        Cost of the solution and what is proven about the least one; inf or nan where nothing is.
     status
         How the solver ended, in its words.
     backend
@@ -37,6 +40,18 @@ class Answer:
         Deterministic work in the unit of the back end.
     wall_s, build_s
         Wall time in all, and the part in which the solver's model was built.
+    built
+        Entries built or gone through besides the work: the nonzeros of the solver's model.
+    scale
+        What a gap is large or small against, in the unit of the objective, such as the cost of the
+        pods called. Default: the objective, which means little where gains and costs cancel out.
+
+    Raises
+    ------
+    TypeError
+        If the solution is no mapping, or a number is none.
+    ValueError
+        If work is negative or not finite, or a bound is beyond the objective.
     """
 
     solution: Mapping[str, Plain] | None
@@ -47,13 +62,51 @@ class Answer:
     work: float = 0.0
     wall_s: float = 0.0
     build_s: float = 0.0
+    built: float = 0.0
+    scale: float = nan
+
+    def __post_init__(self) -> None:
+        if self.solution is not None and not isinstance(self.solution, Mapping):
+            kind = type(self.solution).__name__
+            raise TypeError(f"solution must be values by name, or None; it is a {kind}")
+        for name in ("work", "built", "wall_s", "build_s"):
+            value = getattr(self, name)
+            if not (isfinite(value) and value >= 0.0):
+                raise ValueError(f"{name} must be a finite number, 0 or more; it is {value}")
+        slack = BOUND_TOLERANCE * max(1.0, abs(self.objective))
+        if self.solution is not None and self.bound - self.objective > slack:
+            raise ValueError(
+                f"bound {self.bound} is beyond the objective {self.objective}: of a cost, less is "
+                "better"
+            )
+
+    @property
+    def gap_abs(self) -> float:
+        """Distance of objective and bound in their own unit; nan without one of them."""
+        if self.solution is None or not isfinite(self.objective - self.bound):
+            return nan
+        return abs(self.objective - self.bound)
 
     @property
     def gap(self) -> float:
-        """Relative distance of objective and bound; nan without solution or without bound."""
-        if self.solution is None or not np.isfinite(self.objective - self.bound):
-            return float("nan")
-        return abs(self.objective - self.bound) / max(abs(self.objective), 1e-9)
+        """`gap_abs` relative to `scale`; nan without it, or where only the scale is 0."""
+        scale = abs(self.objective) if isnan(self.scale) else self.scale
+        if self.gap_abs == 0.0:
+            return 0.0
+        return self.gap_abs / scale if scale > 0.0 else nan
+
+
+def checked(answer: Any) -> Answer:
+    """Return what an optimiser returned, if it is an answer.
+
+    Raises
+    ------
+    TypeError
+        If it is not.
+    """
+    if not isinstance(answer, Answer):
+        raise TypeError(f"an optimiser must return an Answer; it returned {type(answer).__name__}")
+    return answer
 
 
 @dataclass(frozen=True, eq=False)

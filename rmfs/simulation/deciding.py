@@ -69,22 +69,38 @@ class Deciding:
         nested_ns, self._nested_ns = self._nested_ns, 0
         former, controller.basis = controller.basis, basis
         count = by_rule = spent_ns = 0
+        decision = None
         start = perf_counter_ns()
-        for decision in given:
-            spent_ns += perf_counter_ns() - start
-            if type(decision) is Ask:
-                self._optimisers.ask(problem, controller, decision)
-            else:
-                apply(decision)
-                count += 1
-                if controller.optimisers and controller.is_modelled(decision):
-                    self.decided(problem, controller)
-                by_rule += controller.basis is None
-            start = perf_counter_ns()
+        try:
+            for decision in given:
+                spent_ns += perf_counter_ns() - start
+                if type(decision) is Ask:
+                    self._optimisers.ask(problem, controller, decision)
+                else:
+                    apply(decision)
+                    count += 1
+                    if controller.optimisers and controller.is_modelled(decision):
+                        self.decided(problem, controller)
+                    by_rule += controller.basis is None
+                start = perf_counter_ns()
+        except Awaits:
+            raise
+        except Exception as error:
+            self._blame(error, problem, decision)
+            raise
         spent_ns += perf_counter_ns() - start - self._nested_ns
         self._nested_ns, controller.basis = nested_ns, former
         self.record(problem, spent_ns, count, by_rule)
         self._alarms.asked(problem)
+
+    def _blame(self, error: Exception, problem: Problem, last: Any) -> None:
+        """Add to an error whose decisions were being taken; the innermost controller is named."""
+        if not getattr(error, "__notes__", ()):
+            controller = self._controllers[problem]
+            error.add_note(
+                f"{problem} {self.statistics[problem].name} ({type(controller).__name__}) at "
+                f"{self._world.now_s:.3f} s; its last decision there: {last!r:.200}"
+            )
 
     def ask_between_answers(
         self,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import nan
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control.asks import Answer
@@ -13,7 +14,9 @@ if TYPE_CHECKING:
     from rmfs.solvers.models.solution import Solution
 
 
-def answer(solution: Solution[Any], values: Mapping[str, Plain] | None) -> Answer:
+def answer(
+    solution: Solution[Any], values: Mapping[str, Plain] | None, scale: float = nan
+) -> Answer:
     """Tell what a model found.
 
     Parameters
@@ -22,6 +25,8 @@ def answer(solution: Solution[Any], values: Mapping[str, Plain] | None) -> Answe
         As the model returned it.
     values
         Its values as plain arrays and numbers; None if it has none.
+    scale
+        What a gap is relative to. Default: the objective.
     """
     return Answer(
         solution=values if solution.found else None,
@@ -32,4 +37,6 @@ def answer(solution: Solution[Any], values: Mapping[str, Plain] | None) -> Answe
         work=solution.work,
         wall_s=solution.wall_s,
         build_s=solution.build_s,
+        built=solution.built,
+        scale=scale,
     )

@@ -126,6 +126,9 @@ class Solution(Generic[V_co]):
         Deterministic work spent, in the back end's unit (`WORK_UNITS`).
     sense
         Whether less or more is better. Default: less.
+    built
+        Nonzeros of the programmes that were handed to a solver, and what else was gone through to
+        state them, in as many nonzeros as take the same time. It repeats, as work does.
 
     Raises
     ------
@@ -142,6 +145,7 @@ class Solution(Generic[V_co]):
     build_s: float = 0.0
     work: float = 0.0
     sense: Sense = Sense.MINIMISE
+    built: float = 0.0
 
     def __post_init__(self) -> None:
         found = self.status in (Status.OPTIMAL, Status.FEASIBLE)
@@ -204,6 +208,7 @@ def solution_of_rule(
     bound: float,
     work: float,
     began: float,
+    built: float = 0.0,
 ) -> Solution[V]:
     """Wrap up what a heuristic found; a minimum.
 
@@ -219,13 +224,17 @@ def solution_of_rule(
         Candidates scored.
     began
         When it began, as `time.perf_counter` tells it.
+    built
+        As of a `Solution`. Default 0.
     """
     wall_s = perf_counter() - began
     if values is None:
         status = Status.LIMIT if bound < math.inf else Status.INFEASIBLE
-        return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, work)
+        return Solution(None, math.inf, bound, status, "rule", wall_s, 0.0, work, built=built)
     value = objective(values)
-    return Solution(values, value, min(bound, value), Status.FEASIBLE, "rule", wall_s, 0.0, work)
+    bound = min(bound, value)
+    status = Status.FEASIBLE
+    return Solution(values, value, bound, status, "rule", wall_s, 0.0, work, built=built)
 
 
 def solution_of_optimum(

@@ -73,8 +73,10 @@ def test_relaxation(benchmark: Any, note: Any, size: str) -> None:
 
 
 @pytest.mark.benchmark(group="pile-on: pruning")
-@pytest.mark.parametrize("pods_per_sku", [2, 4, 8])
-def test_what_pruning_loses(benchmark: Any, pods_per_sku: int) -> None:
+@pytest.mark.parametrize(
+    ("pods_per_sku", "orders_per_slot"), [(2, 64), (4, 16), (4, 64), (8, 64), (4, 200)]
+)
+def test_what_pruning_loses(benchmark: Any, pods_per_sku: int, orders_per_slot: int) -> None:
     """Objective over pruned pairs against that over all, each from the same rule and limit."""
     limits = Limits(deterministic_s=2.0)
 
@@ -84,13 +86,17 @@ def test_what_pruning_loses(benchmark: Any, pods_per_sku: int) -> None:
             data = snapshot(SMALL, seed)
             start = solve(data, "greedy").required
             every = solve(data, "cp_sat", limits, start=start)
-            few = prune(data, Pruning(pods_per_sku=pods_per_sku))
+            few = prune(data, Pruning(pods_per_sku, orders_per_slot))
             kept = solve(data, "cp_sat", limits, start=start, candidates=few)
             losses.append(kept.objective - every.bound)
             assert losses[-1] >= -1e-6
         return losses
 
     losses = benchmark.pedantic(lost, rounds=1)
-    benchmark.extra_info |= {"pods_per_sku": pods_per_sku, "lost": losses}
+    benchmark.extra_info |= {
+        "pods_per_sku": pods_per_sku,
+        "orders_per_slot": orders_per_slot,
+        "lost": losses,
+    }
     # a slot left empty costs 1,000: what is lost are metres of travel
     assert max(losses) < 1000.0

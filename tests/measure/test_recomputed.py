@@ -91,6 +91,7 @@ def decided(run) -> dict[str, float]:
         "decision_wall_s": controllers["wall_s"].sum(),
         "optimiser_calls": len(asked),
         "optimiser_gap_mean": asked["gap"].mean(),
+        "optimiser_gap_abs_mean": asked["gap_abs"].mean(),
         "paced_s": asked["paced_s"].sum(),
         "optimiser_failures": (asked["outcome"] == "failed").sum(),
         "optimiser_wall_s": asked["wall_s"].sum(),

@@ -84,7 +84,7 @@ def test_without_a_solution_the_rule_decides() -> None:
 
 
 def test_an_error_ends_a_run_that_must_repeat() -> None:
-    with pytest.raises(OptimiserError, match=r"poa at 1\.000 s: RuntimeError: no idea"):
+    with pytest.raises(OptimiserError, match=r"poa \(Asking\) at 1\.000 s: RuntimeError: no idea"):
         asked("work", deeds=["raise"])
 
 

@@ -4,10 +4,10 @@
 answers each again three times, and takes the least processor time (which other programs disturb
 little).
 
-Per back end, seconds of a call and seconds per unit of work are fitted to that by least squares,
-neither below zero. It writes `results/published/seconds-per-unit.md` and .csv, and prints the key
-`pacing.seconds_per_unit` for one's own runs. The defaults in `rmfs/simulation/pacing/computed.py`
-are those of the published table.
+Per back end, seconds of a call, per unit of work and per entry built are fitted to that by least
+squares, none below zero. It writes `results/published/seconds-per-unit.md` and .csv, and prints
+the key `pacing.seconds_per_unit` for one's own runs. The defaults in
+`rmfs/simulation/pacing/computed.py` are those of the published table.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Ask, Call
 
 PLACE = Path("results") / "published" / "seconds-per-unit"
+CASES_PLACE = PLACE.with_name("seconds-charged.csv")
 DURATION_S = 600.0
 QUESTIONS = 40
 """Most questions of a run that are answered again, evenly spread over it."""
@@ -48,6 +49,7 @@ CASES: list[tuple[str, str, str, Overrides]] = [
     ("small", "small", "pile-on-split", []),
     ("small", "small", "m1g", [(["controllers", "ta", "work_s"], LONG)]),
     ("large", "large", "pile-on", [(["scenario", "duration_s"], 120.0)]),
+    ("large", "large", "pile-on-split", [(["scenario", "duration_s"], 120.0)]),
     ("small", "small", "psa-placement", []),
     ("small", "small", "psa-prices", []),
     ("small", "small", "psa-stays", []),
@@ -86,8 +88,8 @@ def questions(layout: str, scenario: str, controllers: str, more: Overrides) -> 
     return collector.asks[::step]
 
 
-def answered(asks: Sequence[Ask[Any]], controllers: str) -> pd.DataFrame:
-    """Answer questions again; a row each with `backend`, `work` and `seconds` of the processor."""
+def answered(asks: Sequence[Ask[Any]], case: str) -> pd.DataFrame:
+    """Answer questions again: `backend`, `work`, `built` and `seconds` of the processor."""
     rows = []
     for ask in asks:
         seconds = []
@@ -95,8 +97,8 @@ def answered(asks: Sequence[Ask[Any]], controllers: str) -> pd.DataFrame:
             begin = time.process_time()
             answer = ask.solve(ask.question)
             seconds.append(time.process_time() - begin)
-        rows.append((controllers, answer.backend, answer.work, min(seconds)))
-    return pd.DataFrame(rows, columns=["controllers", "backend", "work", "seconds"])
+        rows.append((case, answer.backend, answer.work, answer.built, min(seconds)))
+    return pd.DataFrame(rows, columns=["case", "backend", "work", "built", "seconds"])
 
 
 def rates(measured: pd.DataFrame) -> pd.DataFrame:
@@ -109,27 +111,72 @@ def rates(measured: pd.DataFrame) -> pd.DataFrame:
 
     Returns
     -------
-    Indexed by back end: `calls`, `seconds_per_call`, `seconds_per_unit`, and `error`, the mean
-    absolute difference between fitted and measured seconds / the mean of the measured.
+    Indexed by back end: `calls`, `seconds_per_call`, `seconds_per_unit`, `seconds_per_entry`, and
+    `error`, the mean absolute difference between fitted and measured seconds / the mean of the
+    measured.
     """
     rows = {}
     for backend, calls in measured.groupby("backend"):
         work, seconds = calls["work"].to_numpy(), calls["seconds"].to_numpy()
+        built = calls["built"].to_numpy()
         # columns of like size: units of work differ by ten orders of magnitude
-        unit = max(float(work.max()), 1e-12)
+        unit, entry = max(float(work.max()), 1e-12), max(float(built.max()), 1.0)
         # questions of equal work cannot tell a call from its units: then all is in the units
         per_call = np.full_like(work, float(np.ptp(work) > 0))
-        found, _ = nnls(np.stack([per_call, work / unit], axis=1), seconds)
-        fitted = found[0] + found[1] * work / unit
+        parts = np.stack([per_call, work / unit, built / entry], axis=1)
+        # a millisecond of a short call counts as much as its like of a long one
+        weight = 1.0 / np.sqrt(seconds)
+        found, _ = nnls(parts * weight[:, np.newaxis], seconds * weight)
+        fitted = parts @ found
         rows[backend] = {
             "calls": len(calls),
             "seconds_per_call": found[0],
             "seconds_per_unit": found[1] / unit,
+            "seconds_per_entry": found[2] / entry,
             "error": float(np.abs(fitted - seconds).mean() / seconds.mean()),
         }
     made = pd.DataFrame.from_dict(rows, orient="index")
     made.index.name = "backend"
     return made.astype({"calls": int})
+
+
+def named(case: tuple[str, str, str, Overrides]) -> str:
+    """Return layout, controllers and overrides of a case in a few words."""
+    layout, _, controllers, more = case
+    return ", ".join([f"{layout} {controllers}", *(f"{path[-1]}={value}" for path, value in more)])
+
+
+def charged(measured: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
+    """Compare what `work` charges with what was measured, case by case.
+
+    Parameters
+    ----------
+    measured
+        As `answered` returns it.
+    found
+        As `rates` returns it.
+
+    Returns
+    -------
+    Indexed by case: `calls`, the mean `seconds` of a call, and `charged`, by what `work` charges in
+    all / what was measured in all.
+    """
+    rate = found.loc[measured["backend"]].reset_index(drop=True)
+    made = measured.reset_index(drop=True)
+    made["charged"] = (
+        rate["seconds_per_call"]
+        + rate["seconds_per_unit"] * made["work"]
+        + rate["seconds_per_entry"] * made["built"]
+    )
+    cases = made.groupby("case", sort=False)
+    total = cases["seconds"].sum()
+    return pd.DataFrame(
+        {
+            "calls": cases.size(),
+            "seconds": cases["seconds"].mean(),
+            "charged": cases["charged"].sum() / total,
+        }
+    )
 
 
 def processor() -> str:
@@ -149,21 +196,25 @@ def main(arguments: list[str] | None = None) -> None:
     )
     given = options.parse_args(arguments)
     cases = [case for case in CASES if given.controllers is None or case[2] in given.controllers]
-    measured = pd.concat([answered(questions(*case), case[2]) for case in cases])
+    measured = pd.concat([answered(questions(*case), named(case)) for case in cases])
     found = rates(measured)
+    ratios = charged(measured, found)
     if given.controllers is not None:
         before = pd.read_csv(given.out.with_suffix(".csv"), index_col="backend")
         found = pd.concat([before.drop(index=found.index, errors="ignore"), found]).sort_index()
     told = (
         f"Measured by `python -m tests.tools.calibrate` on {datetime.date.today()}: "
         f"{processor()}, Python {platform.python_version()}. "
-        "seconds_per_call: of building and all else that does not grow with the work."
+        "seconds_per_entry: of the solver's model that is built; seconds_per_call: of all else "
+        "that grows with neither."
     )
     given.out.parent.mkdir(parents=True, exist_ok=True)
     write_text(given.out.with_suffix(".csv"), found.to_csv(float_format="%.4g"))
+    write_text(given.out.with_name(CASES_PLACE.name), ratios.to_csv(float_format="%.4g"))
     text = found.reset_index().to_markdown(index=False, floatfmt=".3g")
-    write_text(given.out.with_suffix(".md"), f"{text}\n\n{told}\n")
-    print(f"{text}\n\n{told}")
+    cases_text = ratios.to_markdown(floatfmt=".3g")
+    write_text(given.out.with_suffix(".md"), f"{text}\n\n{told}\n\n{cases_text}\n")
+    print(f"{text}\n\n{told}\n\n{cases_text}")
     values = ", ".join(f"{name} = {rate:.3g}" for name, rate in found["seconds_per_unit"].items())
     print(f"pacing.seconds_per_unit = {{ {values} }}")
 

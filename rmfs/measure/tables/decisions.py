@@ -28,6 +28,8 @@ _OF_ANSWERS: dict[str, Callable[[Answer], Any]] = {
     "work": lambda answer: answer.work,
     "wall_s": lambda answer: answer.wall_s,
     "build_s": lambda answer: answer.build_s,
+    "built": lambda answer: answer.built,
+    "scale": lambda answer: answer.scale,
 }
 """What both tables of questions tell of an answer."""
 
@@ -61,8 +63,16 @@ DECISIONS = (
     Column("status", TEXT, "", "How the solver ended: optimal, feasible, infeasible, limit"),
     Column("objective", REAL, "", "Value of the solution, in the model's own unit"),
     Column("bound", REAL, "", "What is proven about the best value"),
-    Column("gap", REAL, "share", "abs(objective - bound) / abs(objective)"),
+    Column("gap_abs", REAL, "", "abs(objective - bound), in the unit of the objective"),
+    Column(
+        "gap",
+        REAL,
+        "share",
+        "gap_abs relative to the cost of the pods called (pile-on models; empty where none is) or "
+        "to abs(objective)",
+    ),
     Column("work", REAL, "", "Deterministic work, in the unit of the back end"),
+    Column("built", REAL, "", "Entries of the solver's model that were built besides"),
     Column("build_s", REAL, "s", "Wall time in which the solver's model was built", measured=True),
     Column("solve_s", REAL, "s", "Wall time of the solver without that", measured=True),
     Column("applied", COUNT_OR_EMPTY, "decisions", "Decisions of the solution that were applied"),
@@ -88,6 +98,8 @@ ANSWERS = (
     Column("objective", REAL, "", "Value of the solution"),
     Column("bound", REAL, "", "What is proven about the best value"),
     Column("work", REAL, "", "Deterministic work, in the unit of the back end"),
+    Column("built", REAL, "", "Entries built or gone through besides"),
+    Column("scale", REAL, "", "What the gap is relative to; empty: the objective"),
     Column("wall_s", REAL, "s", "Wall time of solver and building", measured=True),
     Column("build_s", REAL, "s", "Wall time of building", measured=True),
     Column("solution", TEXT, "", "The solution as JSON; empty without one"),
@@ -131,8 +143,8 @@ def decisions(logs: Logs) -> pd.DataFrame:
         "source": "rule",
         "call": pd.NA,
         **dict.fromkeys(("sizes", "outcome", "failure", "backend", "status"), ""),
-        **dict.fromkeys(("completed_s", "paced_s", "objective", "bound", "gap"), nan),
-        **dict.fromkeys(("work", "build_s", "solve_s"), nan),
+        **dict.fromkeys(("completed_s", "paced_s", "objective", "bound", "gap_abs", "gap"), nan),
+        **dict.fromkeys(("work", "built", "build_s", "solve_s"), nan),
         **dict.fromkeys(("applied", "stale", "fallback"), pd.NA),
     }
     by_rule = tidy("decisions", DECISIONS, rules)
@@ -215,6 +227,7 @@ def _measured(logs: Logs) -> list[Call]:
 def _questions(asked: list[Call]) -> dict[str, Any]:
     """Columns of the rows of questions."""
     told = _told(asked)
+    del told["scale"]
     return {
         **told,
         "time_s": [call.requested_us / 1e6 for call in asked],
@@ -229,6 +242,7 @@ def _questions(asked: list[Call]) -> dict[str, Any]:
             nan if call.completed_us < 0 else call.completed_us / 1e6 for call in asked
         ],
         "paced_s": [call.paced_s for call in asked],
+        "gap_abs": [nan if call.answer is None else call.answer.gap_abs for call in asked],
         "gap": [nan if call.answer is None else call.answer.gap for call in asked],
         "solve_s": np.array(told["wall_s"]) - np.array(told["build_s"]),
         "applied": [call.applied for call in asked],

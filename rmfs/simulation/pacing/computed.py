@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from math import ceil
 from typing import TYPE_CHECKING
 
-from rmfs.control.asks import Outcome
+from rmfs.control.asks import Outcome, checked
 from rmfs.errors import InputError
 from rmfs.random import Stream, generator
 from rmfs.simulation.agenda import NEVER_US
@@ -19,30 +19,41 @@ if TYPE_CHECKING:
     from rmfs.simulation.pacing.settings import FixedPacing, WorkPacing
 
 SECONDS_PER_UNIT = {
-    "cp_sat": 1.18,
-    "highs": 2.10e-4,
-    "clarabel": 2.79e-4,
-    "rule": 1.98e-7,
-    "scipy": 5.28e-8,
-    "min_cost_flow": 1.74e-6,
-    "rounding": 2.89e-5,
-    "visits": 8.10e-7,
+    "clarabel": 0.0002812,
+    "cp_sat": 1.084,
+    "highs": 0.0001898,
+    "min_cost_flow": 7.73e-07,
+    "rounding": 2.476e-05,
+    "rule": 2.989e-07,
+    "scipy": 1.2e-08,
+    "visits": 8.1e-07,
 }
 """Seconds of a unit of work of each back end, as measured by `python -m
-tests.tools.calibrate` on an AMD EPYC on 2026-11-21 (results/published/seconds-per-unit.md)."""
+tests.tools.calibrate` on an AMD EPYC on 2026-11-22 (results/published/seconds-per-unit.md)."""
 
 SECONDS_PER_CALL = {
-    "cp_sat": 0.0115,
-    "highs": 0.00358,
     "clarabel": 0.0,
-    "rule": 4.18e-4,
-    "scipy": 4.24e-6,
-    "min_cost_flow": 2.52e-4,
-    "rounding": 1.92e-3,
-    "visits": 5.31e-4,
+    "cp_sat": 0.003471,
+    "highs": 0.0,
+    "min_cost_flow": 0.0002342,
+    "rounding": 0.001733,
+    "rule": 0.0001915,
+    "scipy": 6.29e-05,
+    "visits": 0.000531,
 }
-"""Seconds of a call besides, such as for building the model, by the same measurement; of other
-back ends none."""
+"""Seconds of a call besides, by the same measurement; of other back ends none."""
+
+SECONDS_PER_ENTRY = {
+    "clarabel": 0.0,
+    "cp_sat": 4.381e-06,
+    "highs": 2.424e-05,
+    "min_cost_flow": 0.0,
+    "rounding": 0.0,
+    "rule": 6.158e-06,
+    "scipy": 0.0,
+    "visits": 0.0,
+}
+"""Seconds of an entry built (`Answer.built`), by the same measurement; of other back ends none."""
 
 
 class Computed(ABC):
@@ -64,11 +75,11 @@ class Computed(ABC):
         """
         ask = call.ask
         try:
-            answer = ask.solve(ask.question)
+            answer = checked(ask.solve(ask.question))
         except Exception as error:
             raise OptimiserError(
-                f"{call.problem} at {call.requested_us / 1e6:.3f} s: "
-                f"{type(error).__name__}: {error}"
+                f"{call.problem} ({type(call.controller).__name__}) at "
+                f"{call.requested_us / 1e6:.3f} s: {type(error).__name__}: {error}"
             ) from error
         call.answer = answer
         call.outcome = Outcome.NOTHING if answer.solution is None else Outcome.SOLUTION
@@ -100,9 +111,10 @@ class Work(Computed):
     def __init__(self, settings: WorkPacing) -> None:
         self._per_call = settings.seconds_per_call
         self._per_unit = settings.seconds_per_unit
+        self._per_entry = settings.seconds_per_entry
 
     def seconds(self, answer: Answer) -> float:
-        """Seconds per call and work times the seconds per unit of the back end.
+        """Seconds per call, per unit of work and per entry built, all of the back end.
 
         Raises
         ------
@@ -120,7 +132,10 @@ class Work(Computed):
             unit = rates[answer.backend]
         if call is None:
             call = SECONDS_PER_CALL.get(answer.backend, 0.0)
-        return call + answer.work * unit
+        entry = self._per_entry
+        if entry is None:
+            entry = SECONDS_PER_ENTRY.get(answer.backend, 0.0)
+        return call + answer.work * unit + answer.built * entry
 
 
 class Fixed(Computed):

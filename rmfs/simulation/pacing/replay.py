@@ -60,6 +60,8 @@ class Replay:
                 work=row["work"],
                 wall_s=row["wall_s"],
                 build_s=row["build_s"],
+                built=row["built"],
+                scale=row["scale"],
             )
         self._give(call, completed_us)
 

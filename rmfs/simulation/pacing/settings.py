@@ -50,7 +50,10 @@ class WorkPacing(_Mode):
     those not named take what they take on the machine of the published figures."""
     seconds_per_call: NotNegative | None = None
     """Simulated seconds that every call takes besides: one number for all back ends; by default
-    what building and the like take on the machine of the published figures."""
+    what it takes on the machine of the published figures."""
+    seconds_per_entry: NotNegative | None = None
+    """Simulated seconds per entry of the solver's model that is built: one number for all back
+    ends; by default as above."""
 
 
 class FixedPacing(_Mode):

@@ -17,6 +17,8 @@ import time
 from multiprocessing.connection import Connection
 from typing import Any
 
+from rmfs.control.asks import checked
+
 STAMP = struct.Struct("d")
 """In front of each reply: when it was ready, on the clock that all processes share (s)."""
 
@@ -56,7 +58,7 @@ def _solved(message: bytes) -> tuple[int, Any, str]:
     number, load = pickle.loads(message)
     try:
         solve, question = pickle.loads(load)
-        return number, solve(question), ""
+        return number, checked(solve(question)), ""
     except Exception as error:
         return number, None, _told(error)
 

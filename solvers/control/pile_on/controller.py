@@ -51,7 +51,7 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     def __init__(self, parameters: PileOnParameters, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)
         self._heuristic = Lexicographic(Lexicographic.parameters_model(), view, rng)
-        self._plan = Plan(view, parameters.kept_slots)
+        self._plan = Plan(view, parameters.kept_slots, later=parameters.later)
         self._buffer = Buffer(view, parameters.buffer_s)
         self._arrived = True
 

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 import pydantic
 
 from rmfs.solvers.control.parameters import SearchParameters
-from rmfs.solvers.models.pile_on import Pruning, Weights
+from rmfs.solvers.models.pile_on import Pruning, Variant, Weights
 
 NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 Count = Annotated[int, pydantic.Field(ge=1)]
-Method = Literal["joint", "greedy", "hadgs"]
+Method = Literal["joint", "cp_sat", "greedy", "hadgs"]
 AsksPileOn = Literal["pod-at-station", "free-slot", "short-of-work"]
 
 
@@ -19,10 +19,14 @@ class JointParameters(SearchParameters):
     """What both controllers that ask the joint model have in common."""
 
     method: Method = "joint"
-    """Who decides: `joint` (pod match, improved by CP-SAT), or a heuristic alone: `greedy` (pod
-    match) or `hadgs` (Jiao et al. 2025)."""
+    """Who decides: `joint` (pod match, improved by CP-SAT); `greedy`, pod match alone; `cp_sat`,
+    every question to proven optimality over all pairs, for small sites; `hadgs` (Jiao et al.)."""
     split: bool = False
     """Whether the lines of an order may go to different stations at different times."""
+    later: bool = False
+    """Whether a whole order may take a slot while some of its lines wait for pods to come."""
+    open_line_s: NotNegative = 100.0
+    """Seconds of a robot that each such line costs."""
     when_needed: bool = True
     """Whether pods are called only for stations that run out of work within the horizon; otherwise
     whenever a slot can be filled, as in M1G and HADGS."""
@@ -34,6 +38,8 @@ class JointParameters(SearchParameters):
     """Limit of the search in deterministic seconds of CP-SAT: about the same in wall time."""
     reward_s: NotNegative = 15.0
     """Seconds of a robot that one more order (if orders are split: line) of a visit is worth."""
+    unit_s: NotNegative = 0.0
+    """What each unit of such an order is worth besides."""
     visit_s: NotNegative = 60.0
     """Seconds that a visit costs a robot besides the way to the station."""
     age_reward: NotNegative = 0.005
@@ -45,7 +51,7 @@ class JointParameters(SearchParameters):
     are not counted as work."""
     pods_per_sku: Count = 4
     """Candidate pods per wanted SKU and station that CP-SAT is given."""
-    orders_per_slot: Count = 16
+    orders_per_slot: Count = 64
     """Candidate orders per free slot that CP-SAT is given."""
 
     @property
@@ -56,7 +62,23 @@ class JointParameters(SearchParameters):
     @property
     def weights(self) -> Weights:
         """The objective, in seconds of a robot."""
-        return Weights(visit=self.visit_s, complete=self.reward_s)
+        return Weights(
+            visit=self.visit_s,
+            complete=self.reward_s,
+            unit=self.unit_s,
+            open_line=self.open_line_s,
+        )
+
+    @property
+    def variant(self) -> Variant:
+        """How orders, or lines that are orders of their own, may be covered."""
+        return Variant.LATER if self.later else Variant.WHOLE
+
+    @pydantic.model_validator(mode="after")
+    def _whole_if_later(self) -> Self:
+        if self.later and self.split:
+            raise ValueError("later: not with split, where every line takes a slot by itself")
+        return self
 
 
 class PileOnParameters(JointParameters):

@@ -79,10 +79,20 @@ class Plan:
         Per station, in the order of the decisions.
     pods
         Per station, the pods called.
+
+    Parameters
+    ----------
+    view
+        The world.
+    kept_slots
+        Slots of each station kept for what the pod at its head can serve.
+    later
+        Whether items may be put on a station while stock for some of their lines is yet to come.
     """
 
-    def __init__(self, view: View, kept_slots: int) -> None:
+    def __init__(self, view: View, kept_slots: int, *, later: bool = False) -> None:
         self._view = view
+        self._later = later
         self._kept = [min(kept_slots, station.slots - 1) for station in view.pick_stations]
         self.items: list[list[Planned]] = [[] for _ in view.pick_stations]
         self.pods: list[dict[int, Called]] = [{} for _ in view.pick_stations]
@@ -134,7 +144,8 @@ class Plan:
             waiting.sort(key=lambda planned: not self._serves(head, planned.item))
         for planned in list(waiting):
             item = planned.item
-            if not item.waits(self._view) or not self._covered(item, station):
+            covered = self._later or self._covered(item, station)
+            if not item.waits(self._view) or not covered:
                 waiting.remove(planned)
                 self._stale(planned.call)
             elif self._has_slot(item, station, head):

@@ -10,6 +10,7 @@ import numpy as np
 from rmfs.solvers.control.answers import answer
 from rmfs.solvers.models import pile_on
 from rmfs.solvers.models.pile_on import PileOn, Pruning
+from rmfs.solvers.models.pile_on.values import cost_of_calls
 from rmfs.solvers.models.solution import Limits
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ class Question:
     data
         The snapshot.
     method
-        `joint`, `greedy` or `hadgs`.
+        `joint`, `cp_sat`, `greedy` or `hadgs`.
     limits, pruning
         Of CP-SAT.
     bound_steps
@@ -62,6 +63,10 @@ def solve(question: Question) -> Answer:
             "bound_steps": question.bound_steps,
         }
         found = pile_on.solve(data, "joint", question.limits, **options)
+    elif question.method == "cp_sat":
+        start = pile_on.solve(data, "greedy").required
+        limits = Limits(gap=question.limits.gap)
+        found = pile_on.solve(data, "cp_sat", limits, start=start)
     else:
         rule = pile_on.solve(data, question.method)
         found = pile_on.bounded(data, rule, question.bound_steps)
@@ -72,7 +77,7 @@ def solve(question: Question) -> Answer:
         "pod_station": values.pod_station,
         "pod_robot": values.pod_robot,
     }
-    return answer(found, solution)
+    return answer(found, solution, cost_of_calls(data, values))
 
 
 def by_rule(question: Question) -> Mapping[str, Any]:

@@ -153,6 +153,7 @@ def _arrays(
         inbound=inbound,
         open_units=open_units[:, wanted],
         worth=given.age_reward * np.maximum(waited, 0.0),
+        variant=given.variant,
         weights=given.weights,
     )
 

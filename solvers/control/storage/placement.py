@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 import pydantic
@@ -34,12 +34,13 @@ class Question:
     """
 
     data: Placement
+    method: str
     waypoint: NDArray[np.int64]
 
 
 def solve(question: Question) -> Answer:
     """Find the place of each pod: `place`, its waypoint, shape (P,)."""
-    found = placement.solve(question.data)
+    found = placement.solve(question.data, question.method)
     values = None if found.values is None else {"place": question.waypoint[found.values]}
     return answer(found, values)
 
@@ -63,6 +64,8 @@ def worth_looking_at(cost_s: NDArray[np.float64]) -> NDArray[np.intp]:
 class PlacementParameters(StorageParameters):
     """Parameters of PSA placement."""
 
+    method: Literal["assignment", "greedy"] = "assignment"
+    """Who decides: the best assignment, or the rule in which the pods most visited choose first."""
     later_weight: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 1.0
     """What a second of a robot's time for a later visit counts against one now."""
 
@@ -87,7 +90,7 @@ class PlacementControl(Ahead[PlacementParameters]):
         data = Placement(travel_s[:, kept], access_s[kept], visits)
         waypoint = self.view.storage.places[empty[kept]].astype(np.int64)
         sizes = {"pods": len(pods), "places": len(kept)}
-        return Ask(solve, Question(data, waypoint), sizes, pods)
+        return Ask(solve, Question(data, self.parameters.method, waypoint), sizes, pods)
 
     def places(self, call: Call) -> Sequence[int]:
         """Read the places."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 import pydantic
@@ -37,11 +37,12 @@ class Question:
     """The steady state whose prices are wanted."""
 
     data: Zones
+    method: str
 
 
 def solve(question: Question) -> Answer:
     """Find the prices of zones (`place_per_h`, `delay_s`) and the worth of classes."""
-    found = zones.solve(question.data)
+    found = zones.solve(question.data, question.method)
     if found.values is None:
         return answer(found, None)
     prices = Prices.of(question.data, found.values)
@@ -51,6 +52,8 @@ def solve(question: Question) -> Answer:
 class PricesParameters(StorageParameters):
     """Parameters of PSA prices."""
 
+    method: Literal["clarabel", "greedy"] = "clarabel"
+    """Who finds the steady state: the convex programme, or storage by turnover."""
     classes: Count = 8
     """Classes of pods, by the visits expected of them."""
     zones: Count = 8
@@ -97,10 +100,11 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
         pod_class = bands(-rate, self.parameters.classes)
         data = self._steady_state(rate, pod_class)
         sizes = {"classes": len(data.pods), "zones": len(data.places)}
-        yield Ask(solve, Question(data), sizes, pod_class)
+        yield Ask(solve, Question(data, self.parameters.method), sizes, pod_class)
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Keep the prices."""
+        """Keep the prices; without new ones the old ones are forgotten."""
+        self._prices = None
         if call.solution is not None:
             prices = Prices(**{name: np.asarray(value) for name, value in call.solution.items()})
             self._prices = prices, call.ask.memo, call

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 import pydantic
@@ -42,13 +42,15 @@ class Question:
 
     data: Stays
     returning: int
+    method: str
     limits: Limits
 
 
 def solve(question: Question) -> Answer:
     """Find the zone of each pod that returns: `zone`, shape (returning,)."""
-    rule = stays.solve(question.data, "greedy")
-    found = stays.solve(question.data, "cp_sat", question.limits, start=rule.values)
+    found = stays.solve(question.data, "greedy")
+    if question.method != "greedy":
+        found = stays.solve(question.data, question.method, question.limits, start=found.values)
     values = None if found.values is None else {"zone": found.values[: question.returning]}
     return answer(found, values)
 
@@ -56,6 +58,9 @@ def solve(question: Question) -> Answer:
 class StaysParameters(StorageParameters, SearchParameters):
     """Parameters of PSA stays."""
 
+    method: Literal["cp_sat", "highs", "greedy"] = "cp_sat"
+    """Who decides: CP-SAT, or HiGHS to optimality, each from the rule in which the stays with most
+    at stake choose first; or that rule alone."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.02
     """Limit of the search in deterministic seconds of CP-SAT: about the same in wall time."""
     gap: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.001
@@ -86,7 +91,7 @@ class StaysControl(Ahead[StaysParameters]):
     def question(self, robots: Sequence[Robot]) -> Ask[Question]:
         """State the stays."""
         data = self._stays(robots)
-        question = Question(data, len(robots), self.parameters.limits)
+        question = Question(data, len(robots), self.parameters.method, self.parameters.limits)
         sizes = {"pods": len(robots), "stays": len(data.begin_s), "zones": len(data.capacity)}
         return Ask(solve, question, sizes, [robot.pod for robot in robots])
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rmfs.control.ta import Consult
     from rmfs.world.robots import Robot
 
-Method = Literal["balance", "matching"]
+Method = Literal["balance", "matching", "greedy"]
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,10 @@ class Question:
 def solve(question: Question) -> Answer:
     """Find the robot of each task: `robot`, -1 for none, shape (T,)."""
     data = question.data
-    found = matching.solve(data.pairs) if question.method == "matching" else balance.solve(data)
+    if question.method == "matching":
+        found = matching.solve(data.pairs)
+    else:
+        found = balance.solve(data, "greedy" if question.method == "greedy" else "flow")
     return answer(found, None if found.values is None else {"robot": found.values})
 
 
@@ -64,7 +67,8 @@ class DispatchParameters(TaskParameters):
     """Parameters of TA dispatch."""
 
     method: Method = "balance"
-    """`matching` looks at travel times only, `balance` at queues and due times too."""
+    """`matching` looks at travel times only, `balance` at queues and due times too; `greedy` gives
+    the tasks of `balance` one after another to the robot that is there first."""
     pick_value_s: NotNegative = 300.0
     """Seconds of a robot that a pod at a pick station is worth: so long may the way and the queue
     be."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 import pydantic
@@ -43,12 +43,14 @@ class Question:
 
     Attributes
     ----------
+    method
+        `cp_sat` or `greedy`.
     tasks, places
-        How many tasks after each pod, and places between them, CP-SAT looks at; 0 tasks for
-        insertion alone.
+        How many tasks after each pod, and places between them, CP-SAT looks at.
     """
 
     data: TaskSequence
+    method: str
     limits: Limits
     tasks: int
     places: int
@@ -61,7 +63,7 @@ def solve(question: Question) -> Answer:
     """
     data = question.data
     found = sequence.solve(data, "greedy")
-    if found.values is not None and question.tasks and data.tasks:
+    if found.values is not None and question.method == "cp_sat" and data.tasks:
         ways = sequence.short_ways(data, found.values, tasks=question.tasks, places=question.places)
         found = sequence.solve(data, "cp_sat", question.limits, start=found.values, ways=ways)
     if found.values is None:
@@ -96,6 +98,8 @@ class Memo:
 class RoutesParameters(TaskParameters, SearchParameters):
     """Parameters of TA routes."""
 
+    method: Literal["cp_sat", "greedy"] = "cp_sat"
+    """Who decides: CP-SAT, beginning with cheapest insertion, or insertion alone."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.01
     """Limit of the search in deterministic seconds of CP-SAT: about the same in wall time."""
     gap: NotNegative = 0.01
@@ -114,8 +118,8 @@ class RoutesParameters(TaskParameters, SearchParameters):
     """Empty places that are looked at for each pod to be stored, the nearest to its station."""
     places_per_task: Count = 3
     """Empty places that are looked at for each pod to be fetched, the nearest to it."""
-    ways_per_pod: Annotated[int, pydantic.Field(ge=0)] = 2
-    """Tasks after each pod that CP-SAT looks at; 0 for insertion alone."""
+    ways_per_pod: Count = 2
+    """Tasks after each pod that CP-SAT looks at."""
 
 
 class RoutesControl(Asking[RoutesParameters]):
@@ -161,7 +165,7 @@ class RoutesControl(Asking[RoutesParameters]):
         found = self._jobs()
         places = self._places(planned, found)
         data = self._routing(planned, found, places)
-        question = Question(data, given.limits, given.ways_per_pod, 2)
+        question = Question(data, given.method, given.limits, given.ways_per_pod, 2)
         sizes = {"robots": len(planned), "tasks": len(found), "places": len(places)}
         return Ask(solve, question, sizes, Memo(planned, again, found, places))
 

@@ -77,6 +77,7 @@ def solve(
     solver.parameters.cp_model_presolve = presolve
     built = time.perf_counter()
     status = solver.solve(model)
+    require(status != cp_model.MODEL_INVALID, "program", f"CP-SAT refuses it: {model.validate()}")
     check_guard(solver, status, limits)
     return _outcome(program, solver, status, scale, began, built)
 
@@ -153,6 +154,8 @@ def _model(
         linear.domain.extend((row_lower[row], row_upper[row]))
         begin = end
     cost = np.floor(program.cost * scale)
+    total = float(np.abs(cost) @ np.maximum(program.upper, 1.0))
+    require(total <= _FAR, "cost", f"adds up to {total:.1e}; CP-SAT counts to {_FAR:.1e} at most")
     paid = np.flatnonzero(cost)
     proto.objective.vars.extend(paid.tolist())
     proto.objective.coeffs.extend(_whole("cost", cost[paid]))
@@ -165,6 +168,7 @@ def _model(
 def _whole(field: str, values: NDArray[np.float64]) -> list[int]:
     """Whole numbers of a float array; infinite ones become the solver's."""
     finite = np.where(np.isfinite(values), values, np.sign(values) * _FAR)
+    require(bool(np.all(np.abs(finite) <= _FAR)), field, f"CP-SAT counts to {_FAR:.1e} at most")
     require(bool(np.all(finite == np.rint(finite))), field, "CP-SAT needs whole numbers")
     whole: list[int] = finite.astype(np.int64).tolist()
     return whole
@@ -203,4 +207,5 @@ def _outcome(
         work=float(solver.deterministic_time),
         build_s=built - began,
         wall_s=time.perf_counter() - began,
+        built=float(program.nonzeros),
     )

@@ -187,6 +187,7 @@ def _outcome(program: LinearProgram, solver: highspy.Highs, began: float, built:
         work=float(max(info.simplex_iteration_count, 0)),
         build_s=built - began,
         wall_s=time.perf_counter() - began,
+        built=float(program.nonzeros),
     )
 
 

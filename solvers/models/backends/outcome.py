@@ -37,6 +37,8 @@ class Outcome:
         Deterministic work in the back end's unit.
     build_s, wall_s
         Wall-clock seconds for handing over, and for the whole call.
+    built
+        Nonzeros handed over.
     """
 
     x: NDArray[np.float64] | None
@@ -46,6 +48,7 @@ class Outcome:
     work: float
     build_s: float
     wall_s: float
+    built: float = 0.0
 
     def solution(
         self,
@@ -79,6 +82,7 @@ class Outcome:
             wall_s=self.wall_s + build_s,
             build_s=self.build_s + build_s,
             work=self.work,
+            built=self.built,
         )
 
 

@@ -74,7 +74,8 @@ class Pruning:
     pods_per_sku
         Pods per wanted SKU and station. Default 4.
     orders_per_slot
-        Orders per free slot of a station. Default 16.
+        Orders (or lines, where each is one) per free slot of a station. Default 64: with 16 every
+        second of 150 captured questions lost, 21 s of robots on average; with 64 every twentieth.
     stations_per_order
         Stations per order, so that none is left out; if more than so many have slots. Default 4.
     robots_per_pod
@@ -87,7 +88,7 @@ class Pruning:
     """
 
     pods_per_sku: int = 4
-    orders_per_slot: int = 16
+    orders_per_slot: int = 64
     stations_per_order: int = 4
     robots_per_pod: int = 4
 

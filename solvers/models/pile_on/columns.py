@@ -84,7 +84,7 @@ def add_columns(builder: ProgramBuilder, data: PileOn, candidates: Candidates) -
     slot = builder.columns(order.size, cost=_slot_cost(data)[order])
     prospect = NONE
     if weights.prospects:
-        prospect = builder.columns(order.size, cost=-weights.complete, upper=fillable[order, at])
+        prospect = builder.columns(order.size, cost=-data.reward[order], upper=fillable[order, at])
     line, place = _lines_of(data, order)
     kept = coverable[line, at[place]]
     line, place = line[kept], place[kept]
@@ -110,7 +110,7 @@ def add_columns(builder: ProgramBuilder, data: PileOn, candidates: Candidates) -
         line=line,
         place=place,
         cover=cover,
-        complete=builder.columns(data.orders, cost=-weights.complete) if partial else NONE,
+        complete=builder.columns(data.orders, cost=-data.reward) if partial else NONE,
         started=(
             builder.columns(data.orders, cost=_start_cost(data)) if variant.many_stations else NONE
         ),
@@ -223,7 +223,7 @@ def _slot_cost(data: PileOn) -> Floats:
         return cost + weights.part
     cost -= data.order_worth
     if variant is Variant.WHOLE:
-        cost -= weights.complete + weights.line * lines
+        cost -= data.reward + weights.line * lines
     if variant is Variant.LATER:
         cost += weights.open_line * lines
     return cost
@@ -233,7 +233,7 @@ def _start_cost(data: PileOn) -> Floats:
     """Cost of a column w: the first part is free of the part's weight, and the worth counts."""
     cost = -data.order_worth - data.weights.part
     if data.variant is Variant.SPLIT_STATIONS:
-        cost = cost - data.weights.complete
+        cost = cost - data.reward
     return cost
 
 

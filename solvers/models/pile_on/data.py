@@ -222,6 +222,18 @@ class PileOn:
         return needs
 
     @cached_property
+    def order_units(self) -> Integers:
+        """Units of each order, shape (O,)."""
+        units = np.bincount(self.line_order, self.line_units, minlength=self.orders)
+        return units.astype(np.int64)
+
+    @cached_property
+    def reward(self) -> Floats:
+        """Reward for covering each order in full, shape (O,)."""
+        reward: Floats = self.weights.complete + self.weights.unit * self.order_units.astype(float)
+        return reward
+
+    @cached_property
     def callable_to(self) -> Flags:
         """`may_call`, true where none is given, shape (S,)."""
         return np.ones(self.stations, np.bool_) if self.may_call is None else self.may_call

@@ -59,6 +59,7 @@ def solve(
         bound=float("-inf"),
         work=float(partial.scored),
         began=began,
+        built=partial.built,
     )
 
 

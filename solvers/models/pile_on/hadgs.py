@@ -82,6 +82,7 @@ def solve(
         bound=float("-inf"),
         work=float(partial.scored),
         began=began,
+        built=partial.built,
     )
 
 
@@ -101,8 +102,11 @@ def _next_call(partial: PartialAssignment, station: int, rng: np.random.Generato
     if not pods.size:
         return None
     eased = partial.easing(pods, station)
-    done = partial.completions(pods, station) if partial.slots[station] else np.zeros(pods.size)
-    k = partial.call_costs(pods, station) - weights.complete * done - weights.open_unit * eased
+    done = units = np.zeros(pods.size)
+    if partial.slots[station]:
+        done, units = partial.completions(pods, station)
+    gain = weights.complete * done + weights.unit * units + weights.open_unit * eased
+    k = partial.call_costs(pods, station) - gain
     k[(done == 0) & (eased == 0)] = np.inf
     best = int(k.argmin())
     if np.isfinite(k[best]):
@@ -152,7 +156,7 @@ def _k(
     left = partial.stock_left[station] + data.stock[pods[members]].sum(axis=0)
     done = every(left[data.line_sku] >= data.line_units, data) & partial.open_orders
     partial.scored += data.orders
-    return float(cost[members].sum() - data.weights.complete * done.sum())
+    return float(cost[members].sum() - data.reward[done].sum())
 
 
 def _better(

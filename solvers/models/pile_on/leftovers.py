@@ -59,7 +59,7 @@ def _best_part(
     lines = np.diff(data.first_line)
     count = np.add.reduceat(covered.astype(np.int64), data.first_line[:-1])
     gain = weights.empty_slot + data.order_worth + weights.line * count
-    gain = gain + weights.complete * (count == lines)
+    gain = gain + data.reward * (count == lines)
     if data.variant is Variant.LATER:
         gain = gain - weights.open_line * (lines - count)
     else:

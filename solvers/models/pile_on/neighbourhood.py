@@ -62,7 +62,7 @@ def solve(
     began = time.perf_counter()
     small = compact(data, pairs.including(values))
     current = small.shrink(values)
-    build_s, work, idle, turn = 0.0, 0.0, 0, 0
+    build_s, built, work, idle, turn = 0.0, 0.0, 0.0, 0, 0
     most = limits.iterations if limits.iterations is not None else len(groups) * 1000
     # Once every part has been tried since the last change, nothing more is to be found.
     while turn < most and left - work > 0 and idle < len(groups):
@@ -81,6 +81,7 @@ def solve(
         )
         work += found.work
         build_s += found.build_s
+        built += found.built
         if found.objective < objective(stage.data, before):
             merged = stage.merge(found.required)
             if not data.variant.many_stations or not violations(small.data, merged):
@@ -96,6 +97,7 @@ def solve(
         wall_s=time.perf_counter() - began,
         build_s=build_s,
         work=work,
+        built=built,
     )
 
 

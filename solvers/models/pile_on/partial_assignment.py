@@ -17,6 +17,10 @@ from rmfs.solvers.models.pile_on.columns import every
 from rmfs.solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
 from rmfs.solvers.models.pile_on.values import Assignment
 
+TABLE_ENTRY = 1 / 32
+"""What an entry of a table of pods and lines that is gone through counts among `Solution.built`:
+as many take the time of one nonzero of a programme."""
+
 
 @dataclass(frozen=True)
 class Call:
@@ -72,12 +76,15 @@ class PartialAssignment:
     ----------
     scored
         Candidates scored so far: the deterministic work of a rule.
+    built
+        What it took to begin with, as of a `Solution`.
     """
 
     def __init__(self, data: PileOn, candidates: Candidates) -> None:
         self.data = data
         self.candidates = candidates
         self.scored = 0
+        self.built = TABLE_ENTRY * data.pods * data.lines
         self.slots = data.slots.copy()
         self.stock_left = data.surplus.copy()
         self.shortage = data.shortage.copy()
@@ -85,8 +92,7 @@ class PartialAssignment:
         self.prospect = np.full(data.orders, -1)
         self.pod_station = np.full(data.pods, -1)
         self.robots = data.free_robots
-        units = np.bincount(data.line_order, data.line_units, minlength=data.orders)
-        self._rank = np.lexsort((units, -data.order_worth))
+        self._rank = np.lexsort((data.order_units, -data.order_worth))
         self._offers = Offers.of(data)
         self._pods_of = [np.flatnonzero(calls) for calls in candidates.calls.T]
         self._fetch = self._fetch_costs()
@@ -155,8 +161,8 @@ class PartialAssignment:
         cost: Floats = self.data.call_cost[pods, station] + self._fetch[pods]
         return cost
 
-    def completions(self, pods: Integers, station: int) -> Floats:
-        """How many open orders each pod would complete, alone with the stock left, shape (N,)."""
+    def completions(self, pods: Integers, station: int) -> tuple[Floats, Floats]:
+        """Open orders each pod would complete, alone with the stock left, and their units, (N,)."""
         offers, need = self._offers, self._needs(station)
         lacking = need > 0
         # An order is complete if the pod has enough of as many lines as it lacks.
@@ -166,8 +172,9 @@ class PartialAssignment:
         lines = np.bincount(self.data.line_order, lacking, minlength=self.data.orders)
         done = (served > 0) & (served == lines[offers.match_order])
         count = np.bincount(offers.match_pod, done, minlength=self.data.pods)
-        completed: Floats = count[pods].astype(np.float64)
-        return completed
+        units = done * self.data.order_units[offers.match_order]
+        of_them = np.bincount(offers.match_pod, units, minlength=self.data.pods)
+        return count[pods].astype(np.float64), of_them[pods].astype(np.float64)
 
     def easing(self, pods: Integers, station: int) -> Integers:
         """Units of a station's shortage that each pod could ease, shape (N,)."""
@@ -187,11 +194,15 @@ class PartialAssignment:
         if not pods.size or (not self.slots[station] and not self.shortage[station].any()):
             return None
         weights, cost = self.data.weights, self.call_costs(pods, station)
-        done = self.completions(pods, station) if self.slots[station] else np.zeros(pods.size)
+        done = units = np.zeros(pods.size)
+        if self.slots[station]:
+            done, units = self.completions(pods, station)
         filled = np.minimum(done, self.slots[station])
         eased = self.easing(pods, station)
         rewarded = done if weights.prospects else filled
-        gain = weights.empty_slot * filled + weights.complete * rewarded
+        # without prospects: as many units as the mean of the orders that could be filled
+        units = units * (rewarded / np.maximum(done, 1.0))
+        gain = weights.empty_slot * filled + weights.complete * rewarded + weights.unit * units
         gain = gain + weights.open_unit * eased - cost
         gain[(filled == 0) & (eased == 0)] = -np.inf
         best = int(gain.argmax())
@@ -213,7 +224,8 @@ class PartialAssignment:
             pods = pods[self._useful(station)[pods]]
         if not pods.size or not self.data.weights.prospects:
             return None
-        gain = self.data.weights.complete * self.completions(pods, station)
+        done, units = self.completions(pods, station)
+        gain = self.data.weights.complete * done + self.data.weights.unit * units
         gain = gain - self.call_costs(pods, station)
         best = int(gain.argmax())
         return Call(float(gain[best]), station, (int(pods[best]),)) if gain[best] > 0 else None
@@ -294,8 +306,8 @@ class PartialAssignment:
         together = np.unique(chosen)
         if data.fetch is not None and data.needs_robot[together].sum() > self.robots.size:
             return None
-        weights = data.weights
-        gain = weights.empty_slot + weights.complete + data.order_worth[order] - total[order]
+        gain = data.weights.empty_slot + data.reward[order] + data.order_worth[order]
+        gain = gain - total[order]
         return Call(float(gain), station, tuple(together.tolist()))
 
     def _needs(self, station: int) -> Integers:
@@ -317,8 +329,10 @@ class PartialAssignment:
         """Cost of the nearest free robot per pod: 0 if none is needed, inf if none is left."""
         if self.data.fetch is None:
             return np.zeros(self.data.pods)
-        nearest = self.data.fetch[self.robots].min(axis=0, initial=np.inf)
-        return np.where(self.data.needs_robot, self.data.weights.travel * nearest, 0.0)
+        if not self.robots.size:
+            return np.where(self.data.needs_robot, np.inf, 0.0)
+        nearest = self.data.weights.travel * self.data.fetch[self.robots].min(axis=0)
+        return np.where(self.data.needs_robot, nearest, 0.0)
 
 
 def decision(partial: PartialAssignment) -> Assignment:

@@ -117,7 +117,8 @@ class _Dual:
         self.data = data
         self._pods = np.flatnonzero(data.available)
         stock = data.stock[self._pods]
-        self._cost = data.call_cost[self._pods] + fetch_estimate(data)[self._pods, None]
+        cost = data.call_cost[self._pods] + fetch_estimate(data)[self._pods, None]
+        self._cost = np.where(data.callable_to, cost, np.inf)
         held = stock[:, data.line_sku]
         self._brings = csr_array(np.minimum(held, data.line_units) / data.line_units)
         self._taken = self._brings.T.tocsr()
@@ -132,7 +133,11 @@ class _Dual:
     def start(self) -> tuple[Floats, Floats]:
         """Prices that no pod earns more from than it costs: equal shares of what it brings."""
         data, weights = self.data, self.data.weights
-        most = weights.empty_slot + weights.complete + weights.line * max(data.lines, 1)
+        most = (
+            weights.empty_slot
+            + float(data.reward.max(initial=0.0))
+            + weights.line * max(data.lines, 1)
+        )
         most += float(data.order_worth.max(initial=0.0))
         price = np.full((data.lines, data.stations), most)
         brought = np.maximum(np.asarray(self._brings.sum(axis=1)), 1.0)
@@ -181,7 +186,7 @@ class _Dual:
         if not data.orders or not open_at.size:
             return _Orders(0.0, 0.0, covered)
         paid = price[:, open_at]
-        waiting = self._sums(paid) - weights.complete
+        waiting = self._sums(paid) - data.reward[:, None]
         away = waiting.argmin(axis=1)
         rest = waiting[np.arange(data.orders), away]
         rest = np.minimum(rest, 0.0) if weights.prospects else np.zeros(data.orders)
@@ -208,7 +213,7 @@ class _Dual:
         if data.variant.many_stations:
             best = paid.argmin(axis=1)
             paid = paid[np.arange(data.lines), best][:, None]
-        part, full = self._part(paid), self._sums(paid) - weights.complete
+        part, full = self._part(paid), self._sums(paid) - data.reward[:, None]
         value = np.minimum(part, full)
         where = value.argmin(axis=1)
         orders = np.arange(data.orders)

@@ -6,7 +6,8 @@ open units left. In `Variant.WHOLE` an order is covered as a whole: z_ls = y_os 
 y_os, so that only x, y, g, b, v remain. That is M1G with h = y + g substituted (y <= h holds by
 itself), with the empty slots u_s = C_s - sum_o y_os, and without its link columns d: "2 d_ops <=
 y_os + x_ps, x_ps <= sum_o d_ops" says just that a called pod shares a SKU with an order placed
-there, which is (5).
+there, which is (5). One thing differs: M1G also rewards prospects of stations without free slots,
+which only what inbound pods have left can serve; here columns g exist where C_s > 0.
 
 .. math::
 

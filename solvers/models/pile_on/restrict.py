@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rmfs.solvers.models.pile_on.candidates import Candidates
-from rmfs.solvers.models.pile_on.data import Integers, PileOn
+from rmfs.solvers.models.pile_on.data import Flags, Integers, PileOn
 from rmfs.solvers.models.pile_on.values import Assignment
 
 
@@ -96,6 +96,8 @@ class Part:
         The input of the part, and its pairs.
     stations, orders, robots
         What belongs to the part, in the numbering of the full input.
+    kept
+        Whether a pod called to these stations stays called, shape (P,): what is fixed needs it.
     """
 
     full: PileOn
@@ -105,6 +107,7 @@ class Part:
     stations: Integers
     orders: Integers
     robots: Integers
+    kept: Flags
 
     @property
     def lines(self) -> Integers:
@@ -116,11 +119,12 @@ class Part:
         values = self.values
         robot_of = self._numbering(self.robots, self.full.robots)
         station_of = self._numbering(self.stations, self.full.stations)
-        inside = station_of[values.pod_station] >= 0
+        pod_station = np.where(self.kept, -1, station_of[values.pod_station])
+        inside = pod_station >= 0
         return Assignment(
             slot=values.slot[np.ix_(self.orders, self.stations)],
             line_station=station_of[values.line_station[self.lines]],
-            pod_station=station_of[values.pod_station],
+            pod_station=pod_station,
             pod_robot=np.where(inside, robot_of[values.pod_robot], -1),
             prospect=station_of[values.prospect[self.orders]],
         )
@@ -133,7 +137,7 @@ class Part:
         line_station[self.lines] = self._station(values.line_station)
         prospect[self.orders] = self._station(values.prospect)
         pod_station = self.values.pod_station.copy()
-        own = np.isin(pod_station, self.stations) | (values.pod_station >= 0)
+        own = np.isin(pod_station, self.stations) & ~self.kept | (values.pod_station >= 0)
         pod_station[own] = self._station(values.pod_station[own])
         robots = np.append(self.robots, -1)
         pod_robot[own] = robots[values.pod_robot[own]]
@@ -157,9 +161,10 @@ def part(
 ) -> Part | None:
     """Free the decisions of a few stations.
 
-    An order that also has a slot elsewhere stays as it is: its slots here are taken, and its lines
-    here become open demand. `merge` may then leave such a line without stock (at the price of open
-    demand), which `violations` finds.
+    An order that also has a slot elsewhere stays as it is: its slots here are taken, its lines here
+    become open demand, and pods called here that hold their SKUs stay called. The same holds for
+    prospects of a station whose slots are all taken so. `merge` may then leave such a line without
+    stock (at the price of open demand), which `violations` finds.
 
     Parameters
     ----------
@@ -181,30 +186,32 @@ def part(
     elsewhere[stations] = False
     outside = np.append(elsewhere, False)
     taken = values.slot[:, elsewhere].any(axis=1) | outside[values.prospect]
+    slots, open_units = data.slots[stations], data.open_units[stations]
+    called, kept = outside[values.pod_station], np.zeros(data.pods, dtype=np.bool_)
+    if data.variant.many_stations:
+        slots = slots - values.slot[np.ix_(taken, stations)].sum(axis=0)
+        full = np.append(np.zeros(data.stations, dtype=np.bool_), False)
+        full[stations] = slots == 0
+        taken |= full[values.prospect]
+        fixed = _fixed_units(data, values, taken)
+        open_units = open_units + fixed[stations]
+        serves = (data.stock > 0) & (fixed > 0)[values.pod_station]
+        kept = serves.any(axis=1) & (values.pod_station >= 0) & ~called
     orders = np.flatnonzero(~taken & candidates.places[:, stations].any(axis=1))
     if not orders.size:
         return None
-    called = outside[values.pod_station]
     busy = np.zeros(data.robots, dtype=np.bool_)
-    away = values.pod_robot[called]
+    away = values.pod_robot[called | kept]
     busy[away[away >= 0]] = True
     robots = np.flatnonzero(~busy)
     lines = np.flatnonzero(np.isin(data.line_order, orders))
     own = Candidates(
-        candidates.calls[:, stations] & ~called[:, None],
+        candidates.calls[:, stations] & ~(called | kept)[:, None],
         candidates.places[np.ix_(orders, stations)],
         candidates.fetches[robots],
     )
     station_of = np.full(data.stations + 1, -1)
     station_of[stations] = np.arange(stations.size)
-    slots, open_units = data.slots[stations], data.open_units[stations]
-    if data.variant.many_stations:
-        slots = slots - values.slot[np.ix_(taken, stations)].sum(axis=0)
-        fixed = np.flatnonzero(taken[data.line_order] & (values.line_station >= 0))
-        fixed = fixed[~elsewhere[values.line_station[fixed]]]
-        open_units = open_units.copy()
-        at = station_of[values.line_station[fixed]]
-        np.add.at(open_units, (at, data.line_sku[fixed]), data.line_units[fixed])
     small = replace(
         data,
         slots=slots,
@@ -212,12 +219,21 @@ def part(
         line_sku=data.line_sku[lines],
         line_units=data.line_units[lines],
         travel=data.travel[:, stations],
-        available=data.available & ~called,
-        inbound=station_of[data.inbound],
+        available=data.available & ~called & ~kept,
+        inbound=station_of[np.where(kept, values.pod_station, data.inbound)],
         open_units=open_units,
         fetch=None if data.fetch is None else data.fetch[robots],
         robot_pod=None if data.robot_pod is None else data.robot_pod[robots],
         worth=None if data.worth is None else data.worth[orders],
         may_call=data.callable_to[stations],
     )
-    return Part(data, values, small, own, stations, orders, robots)
+    return Part(data, values, small, own, stations, orders, robots, kept)
+
+
+def _fixed_units(data: PileOn, values: Assignment, fixed: Flags) -> Integers:
+    """Units that the lines of fixed orders, and fixed prospects, take at each station, (S, K)."""
+    units = np.zeros((data.stations, data.skus), dtype=np.int64)
+    for station in (values.line_station, values.prospect[data.line_order]):
+        line = np.flatnonzero((station >= 0) & fixed[data.line_order])
+        np.add.at(units, (station[line], data.line_sku[line]), data.line_units[line])
+    return units

@@ -1,18 +1,19 @@
 r"""A decision, what it costs, and whether it is allowed.
 
 The objective, with x: pod called to station, b: robot fetches pod, n_s: slots taken, v: open units
-left uncovered, c_o: order covered in full (or, a prospect, coverable), z_l: line covered, and
-m_o: slots the order takes:
+left uncovered, c_o: order covered in full (or, a prospect, coverable), q_o: its units,
+z_l: line covered, and m_o: slots the order takes:
 
 .. math::
 
     \min\ & \sum_{p,s} (visit + travel \cdot t_{ps})\, x_{ps} + travel \sum_{r,p} f_{rp}\, b_{rp}
         + empty \sum_s (C_s - n_s) + open\_unit \sum_{s,k} v_{sk} \\
-    & - complete \sum_o c_o - line \sum_l z_l - \sum_o worth_o [m_o > 0]
+    & - \sum_o (complete + unit\, q_o)\, c_o - line \sum_l z_l - \sum_o worth_o [m_o > 0]
         + open\_line \sum_{l: m_{o(l)} > 0} (1 - z_l) + part \sum_o (m_o - 1)^+
 
 where the `open_line` term belongs to `Variant.LATER` alone. With the default weights, `WHOLE` and
-robots this is M1G (Jiao et al. 2025, eq. 14): its "order could be filled" h_o is c_o here.
+robots this is M1G (Jiao et al. 2025, eq. 14), prospects of stations without free slots apart: its
+"order could be filled" h_o is c_o here.
 """
 
 from __future__ import annotations
@@ -131,6 +132,24 @@ def complete(data: PileOn, values: Assignment) -> Flags:
     return np.logical_and.reduceat(covered, data.first_line[:-1])
 
 
+def cost_of_calls(data: PileOn, values: Assignment) -> float:
+    """Cost of the pods called and of the robots that fetch them: what a gap may be held against.
+
+    Parameters
+    ----------
+    data
+        The input.
+    values
+        The decision.
+    """
+    called = np.flatnonzero(values.pod_station >= 0)
+    cost = float(data.call_cost[called, values.pod_station[called]].sum())
+    if data.fetch is not None:
+        fetched = np.flatnonzero(values.pod_robot >= 0)
+        cost += data.weights.travel * float(data.fetch[values.pod_robot[fetched], fetched].sum())
+    return cost
+
+
 def objective(data: PileOn, values: Assignment) -> float:
     """Cost of a decision (see the module): smaller is better.
 
@@ -142,16 +161,14 @@ def objective(data: PileOn, values: Assignment) -> float:
         The decision.
     """
     weights = data.weights
-    called = np.flatnonzero(values.pod_station >= 0)
-    cost = float(data.call_cost[called, values.pod_station[called]].sum())
-    if data.fetch is not None:
-        fetched = np.flatnonzero(values.pod_robot >= 0)
-        cost += weights.travel * float(data.fetch[values.pod_robot[fetched], fetched].sum())
+    cost = cost_of_calls(data, values)
     cost += weights.empty_slot * int(data.slots.sum() - values.slot.sum())
     cost += weights.open_unit * int(uncovered(data, values).sum())
     parts = values.slot.sum(axis=1)
     covered = values.line_station >= 0
-    cost -= weights.complete * int(complete(data, values).sum() + (values.prospect >= 0).sum())
+    full = complete(data, values) | (values.prospect >= 0)
+    cost -= weights.complete * int(full.sum())
+    cost -= weights.unit * int(data.order_units[full].sum())
     cost -= weights.line * int(covered.sum())
     cost -= float(data.order_worth[parts > 0].sum())
     if data.variant is Variant.LATER:

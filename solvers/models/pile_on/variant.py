@@ -54,9 +54,11 @@ class Weights:
         Per slot that stays empty. Default 1000.
     complete
         Reward per order that the pods assigned to its station cover in full. Default 40.
+    unit
+        Reward per unit of such an order, so that large ones count for more. Default 0.
     prospects
-        Whether `complete` also rewards orders that get no slot but could be filled from what the
-        pods bring (M1G does): good pods for the next decision. Default yes.
+        Whether `complete` and `unit` also reward orders that get no slot but could be filled from
+        what the pods bring (M1G does): good pods for the next decision. Default yes.
     open_unit
         Per unit of the demand of orders already at a station that no pod covers. Default 1000.
     open_line
@@ -77,6 +79,7 @@ class Weights:
     visit: float = 0.0
     empty_slot: float = 1000.0
     complete: float = 40.0
+    unit: float = 0.0
     prospects: bool = True
     open_unit: float = 1000.0
     open_line: float = 100.0

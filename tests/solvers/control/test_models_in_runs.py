@@ -72,6 +72,18 @@ def test_works_and_decides_by_its_model(controllers: str) -> None:
 
 
 @pytest.mark.parametrize("controllers", ALONE)
+def test_the_rule_that_the_solver_starts_from_can_decide_alone(controllers: str) -> None:
+    """The arm that tells what solving is worth: the same controller, asking as often."""
+    (problem,) = DECIDES[controllers]
+    settings = [*overrides(200.0), (["controllers", problem, "method"], "greedy")]
+    made = rmfs.simulate("default", "default", controllers, seed=2, overrides=settings)
+    asked = made.decisions[made.decisions["source"] == "optimiser"]
+    # planning counts visits in a unit of its own, whoever decides
+    assert set(asked["backend"]) <= {"rule", "visits"}
+    assert asked["applied"].sum() > 0
+
+
+@pytest.mark.parametrize("controllers", ALONE)
 def test_repeats_when_thinking_takes_time(controllers: str) -> None:
     """Under `work` pacing two runs agree, and what has become stale meanwhile is dropped."""
     one, other = (run(controllers, 200.0, pacing="work") for _ in range(2))

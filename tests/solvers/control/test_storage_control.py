@@ -69,6 +69,21 @@ def test_without_an_answer_the_nearest_place(control: type) -> None:
     assert made.basis is None
 
 
+def test_after_a_failure_old_prices_decide_nothing() -> None:
+    """Else a run would count decisions by the optimiser while its calls fail."""
+    situation = carried()
+    made = situation.make(PricesControl)
+    (call,) = ask(made)
+    tell(made, call)
+    made.place(situation.world.robots[0])
+    assert made.basis is call
+    failed = Call(1, Problem.PSA, made, call.ask, 0, "")
+    made.basis = None
+    tell(made, failed)
+    assert made.place(situation.world.robots[0]) == 3
+    assert made.basis is None
+
+
 @pytest.mark.parametrize("control", ASKS_AHEAD)
 def test_a_place_taken_meanwhile_is_stale(control: type) -> None:
     """Somebody else comes to keep place 3: the call counts it, and the next place is taken."""

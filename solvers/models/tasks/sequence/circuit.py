@@ -67,6 +67,11 @@ class Circuit:
         self._add_lateness()
         self.model.minimize(sum(weight * variable for variable, weight in self._cost))
 
+    @property
+    def arcs(self) -> int:
+        """Number of arcs."""
+        return len(self._arcs)
+
     # --- variables and constraints --------------------------------------------------------------
 
     def _make_arrivals(self) -> list[cp_model.IntVar]:

@@ -55,6 +55,7 @@ def tiny(seed: int, variant: Variant, *, fractions: bool = False) -> PileOn:
             open_line=float(rng.choice([5, 100])),
             line=float(rng.choice([0, 10])),
             part=float(rng.choice([0, 20, 100])),
+            unit=float(rng.choice([0, 0, 7])),
         ),
     )
 
@@ -65,6 +66,7 @@ def order_options(
     """All ways to treat an order: (units taken (S, K), SKUs served (S, K), slots (S,), cost)."""
     weights, variant = data.weights, data.variant
     lines = np.flatnonzero(data.line_order == order)
+    reward = weights.complete + weights.unit * float(data.line_units[lines].sum())
     shape = (data.stations, data.skus)
     zero = np.zeros(shape, dtype=np.int64)
     options = [(zero, zero > 0, np.zeros(data.stations, dtype=np.int64), 0.0)]
@@ -72,7 +74,7 @@ def order_options(
         for station in np.flatnonzero(data.slots > 0):
             taken = zero.copy()
             np.add.at(taken[station], data.line_sku[lines], data.line_units[lines])
-            options.append((taken, zero > 0, options[0][2], -weights.complete))
+            options.append((taken, zero > 0, options[0][2], -reward))
     seen = set()
     for where in product(range(-1, data.stations), repeat=lines.size):
         for own in range(data.stations):
@@ -96,7 +98,7 @@ def order_options(
             slots[sorted(used)] = 1
             covered = sum(station >= 0 for station in where)
             cost = -weights.empty_slot * len(used) - weights.line * covered
-            cost -= weights.complete * everything
+            cost -= reward * everything
             cost -= 0.0 if data.worth is None else data.worth[order]
             cost += weights.part * (len(used) - 1)
             if variant is Variant.LATER:

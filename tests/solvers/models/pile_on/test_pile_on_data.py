@@ -16,8 +16,10 @@ from rmfs.solvers.models.pile_on import (
     hadgs,
     highs,
     joint,
+    methods,
     neighbourhood,
     objective,
+    solve,
     violations,
 )
 from rmfs.solvers.models.pile_on.values import nothing
@@ -178,3 +180,44 @@ def test_violations_name_each_broken_rule() -> None:
     assert violations(data, good) == []
     for text, values in broken.items():
         assert any(text in line for line in violations(data, values)), text
+
+
+def test_a_worth_per_unit_prefers_large_orders() -> None:
+    """One slot, a pod for each of two orders; the far pod serves four units, the near one one."""
+    data = PileOn(
+        slots=[1],
+        line_order=[0, 1],
+        line_sku=[0, 1],
+        line_units=[1, 4],
+        stock=[[1, 0], [0, 4]],
+        travel=[[10.0], [30.0]],
+        available=[1, 1],
+        inbound=[-1, -1],
+        open_units=np.zeros((1, 2)),
+    )
+    for unit, chosen in ((0.0, 0), (5.0, 0), (10.0, 1)):
+        priced = replace(data, weights=Weights(unit=unit, prospects=False))
+        for method in ("cp_sat", "highs", "joint", "greedy", "hadgs"):
+            found = solve(priced, method).required
+            assert found.slot[:, 0].tolist() == [chosen == 0, chosen == 1], (unit, method)
+
+
+def test_pods_come_only_where_they_may_be_called() -> None:
+    data = PileOn(
+        slots=[1, 1],
+        line_order=[0, 1],
+        line_sku=[0, 0],
+        line_units=[1, 1],
+        stock=[[5], [5]],
+        travel=[[1.0, 2.0], [1.0, 2.0]],
+        available=[1, 1],
+        inbound=[-1, -1],
+        open_units=np.zeros((2, 1)),
+        may_call=[0, 1],
+    )
+    for method in methods():
+        found = solve(data, method)
+        assert found.required.pod_station[found.required.pod_station >= 0].tolist() == [1]
+        assert violations(data, found.required) == []
+    elsewhere = replace(found.required, pod_station=np.array([0, 1]))
+    assert "pod is called to a station that may call none: 0" in violations(data, elsewhere)

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from pile_on_oracle import optimum, small_site, tiny
-from pile_on_sample import Size, snapshot
+from pile_on_sample import MEDIUM, SMALL, Size, snapshot
 
-from rmfs.solvers.models import Limits
+from rmfs.solvers.models import Limits, ModelError
 from rmfs.solvers.models.pile_on import (
     PileOn,
     Pruning,
@@ -184,3 +184,82 @@ def test_neighbourhood_search_is_between_its_start_and_the_optimum() -> None:
         assert violations(data, solution.required) == []
         assert solution.objective <= start.objective
         assert highs.solve(data).objective <= solution.objective + 1e-6
+
+
+def test_parts_of_split_orders_start_where_the_whole_stands() -> None:
+    """Orders with slots elsewhere take the slots and the pods that prospects and calls count on."""
+    prospects = 0
+    for variant in (Variant.SPLIT_STATIONS, Variant.SPLIT_BOTH):
+        for seed in range(25):
+            size = Size(
+                stations=3 + seed % 3, slots=1 + seed % 2, pods=15, skus=8, orders=8, robots=9
+            )
+            weights = Weights(part=100.0 * (seed % 2))
+            data = snapshot(size, seed, variant=variant, weights=weights)
+            found = neighbourhood.solve(data, Limits(deterministic_s=0.05))
+            assert violations(data, found.required) == []
+            values = greedy.solve(data).required
+            prospects += np.count_nonzero(found.required.prospect >= 0)
+            for stations in ([0, 1], [1, 2]):
+                for whole in (values, found.required):
+                    stage = part(data, everything(data), whole, np.array(stations))
+                    assert stage is None or violations(stage.data, stage.start()) == []
+    assert prospects > 20
+
+
+def test_the_default_keeps_the_lines_that_one_pod_serves() -> None:
+    """Twenty lines that only one pod serves, behind thirty that cheaper pods serve one by one."""
+    skus = 50
+    stock = np.zeros((31, skus), np.int64)
+    stock[np.arange(30), np.arange(30)] = 1
+    stock[30, 30:] = 1
+    data = PileOn(
+        slots=[1],
+        line_order=np.arange(skus),
+        line_sku=np.arange(skus),
+        line_units=np.ones(skus),
+        stock=stock,
+        travel=np.append(np.full(30, 1.0), 100.0)[:, None],
+        available=np.ones(31),
+        inbound=np.full(31, -1),
+        open_units=np.zeros((1, skus)),
+    )
+    best = cp_sat.solve(data)
+    kept = cp_sat.solve(data, candidates=prune(data))
+    few = cp_sat.solve(data, candidates=prune(data, Pruning(orders_per_slot=16)))
+    assert kept.objective == best.objective < few.objective
+
+
+def test_a_way_that_weighs_nothing_is_none_without_a_robot() -> None:
+    """Zero times infinity: no pod is called, and no number is none."""
+    data = replace(small_site(1), weights=Weights(travel=0.0))
+    assert data.fetch is not None
+    nobody = replace(data, fetch=data.fetch[:0], robot_pod=np.zeros(0))
+    for rule in (greedy, hadgs):
+        with np.errstate(invalid="raise"):
+            found = rule.solve(nobody)
+        assert violations(nobody, found.required) == []
+        assert not (nobody.needs_robot & (found.required.pod_station >= 0)).any()
+
+
+def test_numbers_that_the_solver_cannot_count_are_refused() -> None:
+    data = small_site(1)
+    far = replace(data, travel=np.full(data.travel.shape, 1e300))
+    with pytest.raises(ModelError, match=r"cost: adds up to .*; CP-SAT counts to 4.6e"):
+        cp_sat.solve(far)
+
+
+@pytest.mark.parametrize("limit", [0.005, 0.02])
+def test_work_keeps_to_the_limit_whatever_the_size(limit: float) -> None:
+    """Only the step in which CP-SAT ends may lie beyond; the rule counts as built, not as work."""
+    for size in (SMALL, MEDIUM):
+        data = snapshot(size, 3)
+        found = joint.solve(data, Limits(deterministic_s=limit), bound_steps=0)
+        assert found.work <= 1.25 * limit
+        assert found.built >= data.pods * data.lines / 32
+
+
+def test_what_is_built_grows_with_the_input() -> None:
+    limits = Limits(deterministic_s=0.001)
+    small, medium = (joint.solve(snapshot(size, 1), limits) for size in (SMALL, MEDIUM))
+    assert medium.built > 1.5 * small.built
