@@ -7,9 +7,15 @@ from dataclasses import fields, is_dataclass
 
 import numpy as np
 
+OMITTED = "omitted"
+"""Set in the metadata of a field that is left out if empty: a new one, for which hashes stay."""
+
 
 def digest(value: object) -> str:
-    """Return a hash of a dataclass of arrays, numbers, texts and their collections."""
+    """Return a hash of a dataclass of arrays, numbers, texts and their collections.
+
+    An object with a method `digested` is told by what this returns.
+    """
     state = hashlib.sha256()
     _feed(state, value)
     return state.hexdigest()
@@ -19,8 +25,12 @@ def _feed(state: hashlib._Hash, value: object) -> None:
     if isinstance(value, np.ndarray):
         state.update(f"{value.dtype.kind}{value.shape}".encode())
         state.update(np.ascontiguousarray(value).astype(value.dtype.newbyteorder("<")).tobytes())
+    elif hasattr(value, "digested"):
+        _feed(state, value.digested())
     elif is_dataclass(value) and not isinstance(value, type):
         for one in fields(value):
+            if one.metadata.get(OMITTED) and not getattr(value, one.name):
+                continue
             state.update(one.name.encode())
             _feed(state, getattr(value, one.name))
     elif isinstance(value, dict):

@@ -27,6 +27,7 @@ class Stream(IntEnum):
     PACING = 10
     TRIPS = 11
     DISTURBANCES = 12
+    VISITS = 13
 
 
 def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:

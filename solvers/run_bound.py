@@ -96,8 +96,12 @@ def run_bound(
 
 
 def _legs(layout: Layout, times: TravelTimes) -> Legs:
-    """Return the least robot time of the ways of a visit, per station."""
-    waypoints = [station.waypoint for station in layout.stations]
+    """Return the least robot time of the ways of a visit, per pick or replenishment station.
+
+    Stations of other kinds are left out: a way by one of them is never shorter.
+    """
+    waypoints = [station.waypoint for station in layout.pick_stations]
+    waypoints += [station.waypoint for station in layout.replenishment_stations]
     to = np.array([_fastest(layout, times.travel_times_to, one) for one in waypoints])
     away = np.array([_fastest(layout, times.travel_times_from, one) for one in waypoints])
     shape = (len(waypoints), layout.waypoints)

@@ -49,12 +49,13 @@ class Counter(Observer):
         if data is None:
             return
         picking = len(simulation.layout.pick_stations)
+        ours = picking + len(simulation.layout.replenishment_stations)
         counts = Throughput(
             units=self.units[:picking],
             visits=self.visits[:picking],
             lone_units=self.units[:picking],
-            bundles=self.bundles[picking:],
-            refill_visits=self.visits[picking:],
+            bundles=self.bundles[picking:ours],
+            refill_visits=self.visits[picking:ours],
         )
         assert not violations(data, counts), counts
         assert self.units.sum() <= solve(data).bound * data.hours

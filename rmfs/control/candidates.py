@@ -20,6 +20,7 @@ from rmfs.control.decisions import (
 from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
 from rmfs.control.problems import Problem
 from rmfs.control.repositioning import Move
+from rmfs.world.stations import PickStation, ReplenishmentStation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
     from rmfs.world.orders import Order
     from rmfs.world.robots import Robot
-    from rmfs.world.stations import PickStation
 
     Columns = dict[str, NDArray[Any]]
 
@@ -251,17 +251,16 @@ def _tasks(view: View, refused: Sequence[Any]) -> Candidates:
 
 
 def _can_serve(view: View, pod: int, station: int) -> bool:
-    if station < len(view.pick_stations):
-        skus = list(view.pick_stations[station].requests.lines)
-        return view.inventory.serves(pod, skus)
-    return bool(view.bundles_waiting[station - len(view.pick_stations), pod])
+    target = view.stations[station]
+    if isinstance(target, PickStation):
+        return view.inventory.serves(pod, list(target.requests.lines))
+    return bool(view.bundles_waiting[target.number, pod])
 
 
 def _open_work(view: View, station: int) -> int:
     """Units, or pods with bundles, for which nothing is under way yet."""
-    if station < len(view.pick_stations):
-        return view.pick_stations[station].requests.units
-    return len(view.replenishment_stations[station - len(view.pick_stations)].waiting)
+    target = view.stations[station]
+    return target.requests.units if isinstance(target, PickStation) else len(target.waiting)
 
 
 # --- what TA asks -------------------------------------------------------------------------------
@@ -285,13 +284,13 @@ def _pick_pods(view: View, robot: Robot, stations: tuple[int, ...]) -> Candidate
 
 def _replenishment_pods(view: View, robot: Robot, stations: tuple[int, ...]) -> Candidates:
     """Pods at hand for which bundles wait at the station."""
-    number = stations[0] - len(view.pick_stations)
-    station = view.replenishment_stations[number]
+    station = view.stations[stations[0]]
+    assert isinstance(station, ReplenishmentStation)
     found = replenishment_candidates(view, robot, station)
     at = found.waypoints()
     columns: Columns = {
         "pod": found.pods,
-        "bundles": view.bundles_waiting[number][found.pods],
+        "bundles": view.bundles_waiting[station.number][found.pods],
         "reach_s": view.travel.estimate_s(robot.waypoint, at),
         "bring_s": view.travel.to(station.waypoint, loaded=True)[at],
     }

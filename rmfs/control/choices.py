@@ -20,18 +20,7 @@ if TYPE_CHECKING:
     from rmfs.config import Table
     from rmfs.control.base import Controller, Parameters
 
-DEFAULTS = {
-    Problem.POA: "pod-match",
-    Problem.ROA: "same-pod",
-    Problem.RPS: "emptiest",
-    Problem.PPS: "lexicographic",
-    Problem.PSA: "nearest",
-    Problem.TA: "balanced",
-    Problem.SA: "all",
-    Problem.MM: "none",
-    Problem.PP: "time-windows",
-    Problem.REPOSITIONING: "none",
-}
+DEFAULTS = {problem: problem.default for problem in Problem}
 """The rule of a problem that a file does not mention."""
 
 _SHARED: dict[type[Parameters], str] = {TurnoverParameters: "classes", ZoneParameters: "zones"}

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from rmfs.world.tasks import ParkTask, PickTask, ReplenishTask, RepositionTask, RestTask
+
 if TYPE_CHECKING:
     from rmfs.control.choices import Choice
     from rmfs.world.orders import Bundle, Order
     from rmfs.world.robots import Robot
+    from rmfs.world.tasks import Task, VisitTask
 
 
 class AssignOrder(NamedTuple):
@@ -67,6 +70,10 @@ class BringForPicks(NamedTuple):
     pod: int
     station: int
 
+    def task(self) -> Task:
+        """Make of it a task that has not begun."""
+        return PickTask(self.robot.index, self.pod, self.station)
+
 
 class BringForBundles(NamedTuple):
     """TA: bring a pod (or go on with the one carried) to a replenishment station."""
@@ -74,6 +81,26 @@ class BringForBundles(NamedTuple):
     robot: Robot
     pod: int
     station: int
+
+    def task(self) -> Task:
+        """Make of it a task that has not begun."""
+        return ReplenishTask(self.robot.index, self.pod, self.station)
+
+
+class Visit(NamedTuple):
+    """Bring a pod (or go on with the one carried) to a station of another kind.
+
+    `what` is the kind of task that the kind of station has.
+    """
+
+    robot: Robot
+    pod: int
+    station: int
+    what: type[VisitTask]
+
+    def task(self) -> Task:
+        """Make of it a task that has not begun."""
+        return self.what(self.robot.index, self.pod, self.station)
 
 
 class Park(NamedTuple):
@@ -85,6 +112,10 @@ class Park(NamedTuple):
     robot: Robot
     place: int
 
+    def task(self) -> Task:
+        """Make of it a task that has not begun."""
+        return ParkTask(self.robot.index, place=self.place)
+
 
 class Reposition(NamedTuple):
     """TA: fetch a pod that is at hand and store it at another place, which is empty."""
@@ -93,6 +124,10 @@ class Reposition(NamedTuple):
     pod: int
     place: int
 
+    def task(self) -> Task:
+        """Make of it a task that has not begun."""
+        return RepositionTask(self.robot.index, self.pod, place=self.place)
+
 
 class Rest(NamedTuple):
     """TA: wait at a place."""
@@ -100,8 +135,12 @@ class Rest(NamedTuple):
     robot: Robot
     place: int
 
+    def task(self) -> Task:
+        """Make of it a task that has not begun."""
+        return RestTask(self.robot.index, place=self.place)
 
-TaskDecision = BringForPicks | BringForBundles | Park | Reposition | Rest
+
+TaskDecision = BringForPicks | BringForBundles | Visit | Park | Reposition | Rest
 
 
 class WorkFor(NamedTuple):

@@ -15,22 +15,7 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
 
 KINDS: dict[Problem, tuple[type, ...]] = {
-    Problem.POA: (say.AssignOrder, say.AssignLines, say.QueueOrder),
-    Problem.ROA: (say.SendBundle,),
-    Problem.RPS: (say.PromiseBundle, say.ReleasePod),
-    Problem.SA: (say.SwitchStation,),
-    Problem.MM: (say.Exchange,),
-    Problem.TA: (
-        say.BringForPicks,
-        say.BringForBundles,
-        say.Park,
-        say.Reposition,
-        say.Rest,
-        say.Prepare,
-        say.WorkFor,
-        say.Store,
-        say.MovePod,
-    ),
+    problem: tuple(getattr(say, name) for name in problem.decisions) for problem in Problem
 }
 """What may be decided in a turn of each problem."""
 
@@ -186,8 +171,18 @@ def _bundles(decision: say.BringForBundles, view: View) -> str:
     wrong = _station(station, count, "replenishment station", first) or _fetches(robot, pod, view)
     if wrong:
         return wrong
-    waits = view.bundles_waiting[station - first, pod]
+    waits = view.bundles_waiting[view.all_stations[station].number, pod]
     return "" if waits else f"no bundle waits for pod {pod} at station {station}"
+
+
+def _visit(decision: say.Visit, view: View) -> str:
+    robot, pod, station, _ = decision
+    first = len(view.stations)
+    others = len(view.all_stations) - first
+    wrong = _station(station, others, "station of another kind", first)
+    if wrong or robot.pod == pod:
+        return wrong or _may_begin(robot, view)
+    return _fetches(robot, pod, view)
 
 
 def _empty_place(place: Any, view: View) -> str:
@@ -263,6 +258,7 @@ _DECISIONS: dict[type, Callable[[Any, View], str]] = {
     say.Exchange: _nothing_wrong,
     say.BringForPicks: _pick,
     say.BringForBundles: _bundles,
+    say.Visit: _visit,
     say.Park: _park,
     say.Reposition: _reposition,
     say.Rest: _rest,
@@ -288,7 +284,7 @@ def _replenishment_pod(given: Any, question: Question, view: View) -> str:
     if wrong:
         return wrong
     station = question.stations[0]
-    waits = view.bundles_waiting[station - len(view.pick_stations), given]
+    waits = view.bundles_waiting[view.all_stations[station].number, given]
     return "" if waits else f"no bundle waits for pod {given} at station {station}"
 
 

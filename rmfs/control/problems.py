@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum, StrEnum
+from typing import NamedTuple
 
 
 class Problem(StrEnum):
@@ -22,21 +23,92 @@ class Problem(StrEnum):
     @property
     def meaning(self) -> str:
         """What the abbreviation stands for."""
-        return _MEANINGS[self]
+        return _DECLARED[self].meaning
+
+    @property
+    def protocol(self) -> str:
+        """The class that every controller of the problem is derived from, as `module:Class`.
+
+        It says by what methods the controller is asked, and after which triggers.
+        """
+        return _DECLARED[self].protocol
+
+    @property
+    def default(self) -> str:
+        """The rule where a file does not mention the problem."""
+        return _DECLARED[self].default
+
+    @property
+    def decisions(self) -> tuple[str, ...]:
+        """Classes of `rmfs.control.decisions` that it is decided by; none if it answers TA."""
+        return _DECLARED[self].decisions
 
 
-_MEANINGS = {
-    Problem.POA: "pick order assignment: order -> pick station",
-    Problem.ROA: "replenishment order assignment: bundle -> replenishment station",
-    Problem.RPS: "replenishment pod selection: bundle -> pod",
-    Problem.PPS: "pick pod selection: pod -> task at a station",
-    Problem.PSA: "pod storage assignment: pod -> storage place",
-    Problem.TA: "task allocation: task -> robot",
-    Problem.SA: "station activation: which stations take new work",
-    Problem.MM: "method management: exchange of controllers in a running system",
-    Problem.PP: "path planning",
-    Problem.REPOSITIONING: "repositioning: idle pod -> another storage place",
+class _Declared(NamedTuple):
+    meaning: str
+    protocol: str
+    default: str
+    decisions: tuple[str, ...] = ()
+
+
+_DECLARED = {
+    Problem.POA: _Declared(
+        "pick order assignment: order -> pick station",
+        "rmfs.control.poa:PickOrderAssignment",
+        "pod-match",
+        ("AssignOrder", "AssignLines", "QueueOrder"),
+    ),
+    Problem.ROA: _Declared(
+        "replenishment order assignment: bundle -> replenishment station",
+        "rmfs.control.roa:ReplenishmentOrderAssignment",
+        "same-pod",
+        ("SendBundle",),
+    ),
+    Problem.RPS: _Declared(
+        "replenishment pod selection: bundle -> pod",
+        "rmfs.control.rps:ReplenishmentPodSelection",
+        "emptiest",
+        ("PromiseBundle", "ReleasePod"),
+    ),
+    Problem.PPS: _Declared(
+        "pick pod selection: pod -> task at a station",
+        "rmfs.control.pps:PodSelection",
+        "lexicographic",
+    ),
+    Problem.PSA: _Declared(
+        "pod storage assignment: pod -> storage place",
+        "rmfs.control.psa:PodStorageAssignment",
+        "nearest",
+    ),
+    Problem.TA: _Declared(
+        "task allocation: task -> robot",
+        "rmfs.control.ta:TaskAllocation",
+        "balanced",
+        (
+            *("BringForPicks", "BringForBundles", "Visit", "Park", "Reposition", "Rest"),
+            *("Prepare", "WorkFor", "Store", "MovePod"),
+        ),
+    ),
+    Problem.SA: _Declared(
+        "station activation: which stations take new work",
+        "rmfs.control.sa:StationActivation",
+        "all",
+        ("SwitchStation",),
+    ),
+    Problem.MM: _Declared(
+        "method management: exchange of controllers in a running system",
+        "rmfs.control.mm:MethodManagement",
+        "none",
+        ("Exchange",),
+    ),
+    Problem.PP: _Declared("path planning", "rmfs.control.pp:PathPlanning", "time-windows"),
+    Problem.REPOSITIONING: _Declared(
+        "repositioning: idle pod -> another storage place",
+        "rmfs.control.repositioning:Repositioning",
+        "none",
+    ),
 }
+"""Every problem, declared once: what else is known of one is in its package."""
 
 
 class Trigger(IntEnum):

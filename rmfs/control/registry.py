@@ -169,7 +169,7 @@ def _load(problem: Problem, reference: str) -> type[Controller[Any]]:
     found = resolve(reference, Controller, "controller")
     if found.problem is not problem:
         raise InputError(f"{reference}: solves {found.problem}, not {problem}")
-    return found
+    return resolve(found, resolve(problem.protocol, Controller, "controller"), "controller")
 
 
 @cache

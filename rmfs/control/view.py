@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from rmfs.scenario import OrderDraft
     from rmfs.world import World
     from rmfs.world.robots import Robot
-    from rmfs.world.stations import ReplenishmentStation
 
 
 class View:
@@ -36,6 +35,8 @@ class View:
         The two backlogs (`rmfs.world.backlog`).
     pick_stations, replenishment_stations, stations
         `stations` holds both, pick stations first (`rmfs.world.stations`).
+    all_stations
+        Those, and after them the stations of all other kinds.
     need
         Open units per pick station and SKU, shape (S, K).
     lines
@@ -74,7 +75,8 @@ class View:
         self.bundles = world.bundles
         self.pick_stations = world.pick_stations
         self.replenishment_stations = world.replenishment_stations
-        self.stations = world.stations
+        self.stations = world.work_stations
+        self.all_stations = world.stations
         self.need = world.need
         self.lines = world.lines
         self.bundles_waiting = world.bundles_waiting
@@ -112,21 +114,11 @@ class View:
 
         If no pod was found for a station, none will be found before this changes.
         """
-        if station < len(self.pick_stations):
-            target = self.pick_stations[station]
-            if not target.queued:
-                return target.requests.version, self.storage.version
-            # a queued order matters as soon as there is a slot for it
-            pool = target.queued_requests.version, target.free_slots > 0
-            return target.requests.version, self.storage.version, *pool
-        return self._replenishment_station(station).version, self.storage.version
+        return self.storage.version, *self.all_stations[station].work_version
 
     def has_open_work(self, station: int) -> bool:
         """Whether there are requests, or bundles, at a station for which no pod is under way."""
-        if station < len(self.pick_stations):
-            target = self.pick_stations[station]
-            return target.requests.units > 0 or target.queued_requests.units > 0
-        return bool(self._replenishment_station(station).waiting)
+        return self.all_stations[station].has_open_work
 
     def robot_target(self, robot: Robot) -> int:
         """Where a robot's present task takes it first, or where it is."""
@@ -134,6 +126,3 @@ class View:
         if task is None or task.pod < 0 or robot.pod >= 0:
             return robot.waypoint
         return self.storage.place_of[task.pod]
-
-    def _replenishment_station(self, station: int) -> ReplenishmentStation:
-        return self.replenishment_stations[station - len(self.pick_stations)]

@@ -16,15 +16,6 @@ ROAD = "#D0D0D0"
 ARROW = "#777777"
 OUTLINE = "#222222"
 
-TASKS = {
-    "pick": PICK_STATION,
-    "replenish": REPLENISHMENT_STATION,
-    "park": "#56B4E9",
-    "reposition": "#CC79A7",
-    "rest": "#999999",
-}
-"""Of robots by what they have to do."""
-
 STATES = {
     "driving": ROBOT,
     "turning": "#56B4E9",

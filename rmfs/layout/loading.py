@@ -61,10 +61,10 @@ def load_with_notes(
     source = str(path)
     match path.suffix.lower():
         case ".toml":
-            return _generated(read_toml(path), overrides, source), []
+            return _generated(read_toml(path), overrides, path), []
         case ".xlayo":
             table, notes = foreign.read(path)
-            return _generated(table, overrides, source), notes
+            return _generated(table, overrides, path), notes
         case ".json":
             return override(read_json(path), overrides, source), []
         case ".xinst":
@@ -77,10 +77,14 @@ def load_with_notes(
     )
 
 
-def _generated(table: Table, overrides: Sequence[Override], source: str) -> Layout:
-    parameters, factors = split_factors(overrides)
-    layout = generate(validate(LayoutParameters, apply_overrides(table, parameters), source))
-    return override(layout, factors, source)
+def _generated(table: Table, overrides: Sequence[Override], path: Path) -> Layout:
+    own, factors = split_factors(overrides)
+    parameters = validate(LayoutParameters, apply_overrides(table, own), str(path))
+    try:
+        layout = generate(parameters, path.parent)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    return override(layout, factors, str(path))
 
 
 def split_factors(overrides: Sequence[Override]) -> tuple[list[Override], list[Override]]:

@@ -1,13 +1,16 @@
 """The layout: waypoints, stations, elevators, pods and robots as arrays.
 
 Every waypoint, pod, robot and station is named by its index. Stations share one numbering: pick
-stations come first, replenishment stations follow.
+stations come first, replenishment stations follow, then those of all other kinds.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, ClassVar
+
+from rmfs.digest import OMITTED
+from rmfs.layout.kinds import PICK, REPLENISHMENT, StationKind
 
 if TYPE_CHECKING:
     import numpy as np
@@ -51,6 +54,8 @@ class PickStation:
         Rank in which stations are switched on, from 1.
     """
 
+    kind: ClassVar[StationKind] = PICK
+
     waypoint: int
     queue: tuple[int, ...]
     radius_m: float
@@ -72,12 +77,24 @@ class ReplenishmentStation:
         How long one bundle keeps both station and robot.
     """
 
+    kind: ClassVar[StationKind] = REPLENISHMENT
+
     waypoint: int
     queue: tuple[int, ...]
     radius_m: float
     capacity: float
     bundle_transfer_s: float
     activation: int
+
+
+@dataclass(frozen=True, slots=True)
+class OtherStation:
+    """A station of another kind, which says what happens there."""
+
+    kind: StationKind
+    waypoint: int
+    queue: tuple[int, ...]
+    radius_m: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,11 +189,17 @@ class Layout:
     robot_heading_rad: NDArray[np.float64]
     robot_kind: NDArray[np.int16]
     robot_kinds: tuple[RobotKind, ...]
+    other_stations: tuple[OtherStation, ...] = field(default=(), metadata={OMITTED: True})
 
     @property
-    def stations(self) -> tuple[PickStation | ReplenishmentStation, ...]:
+    def stations(self) -> tuple[PickStation | ReplenishmentStation | OtherStation, ...]:
         """All stations in their common numbering: pick stations first."""
-        return (*self.pick_stations, *self.replenishment_stations)
+        return (*self.pick_stations, *self.replenishment_stations, *self.other_stations)
+
+    @property
+    def other_kinds(self) -> tuple[StationKind, ...]:
+        """The kinds of the other stations, in the order of these."""
+        return tuple({station.kind.name: station.kind for station in self.other_stations}.values())
 
     @property
     def waypoints(self) -> int:

@@ -127,12 +127,12 @@ def _fewer_stations(layout: Layout, overrides: ExplicitOverrides) -> Layout:
     """Drop stations; the places of their queues become roads."""
     picks = _first(layout.pick_stations, overrides.pick_station_share)
     others = _first(layout.replenishment_stations, overrides.replenishment_station_share)
-    stations: tuple[PickStation | ReplenishmentStation, ...] = (*picks, *others)
-    kept = {place for station in stations for place in station.queue}
+    fewer = replace(layout, pick_stations=picks, replenishment_stations=others)
+    kept = {place for station in fewer.stations for place in station.queue}
     dropped = {place for station in layout.stations for place in station.queue} - kept
     is_queue = layout.is_queue.copy()
     is_queue[sorted(dropped)] = False
-    return replace(layout, pick_stations=picks, replenishment_stations=others, is_queue=is_queue)
+    return replace(fewer, is_queue=is_queue)
 
 
 S = TypeVar("S", PickStation, ReplenishmentStation)

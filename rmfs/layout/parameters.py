@@ -33,6 +33,13 @@ class PerSide(Strict):
         return self.west + self.east + self.south + self.north
 
 
+class OtherStations(PerSide):
+    """Stations of another kind: how many stand on each side of a tier, and what is set of them."""
+
+    kind: str
+    parameters: dict[str, Any] = Field(default_factory=dict)
+
+
 class LayoutParameters(Strict):
     """Parameters of a generated layout.
 
@@ -101,6 +108,9 @@ class LayoutParameters(Strict):
         PerSide(west=4), description="replenishment stations per tier"
     )
     elevators: PerSide = Field(PerSide(), description="elevators")
+    other_stations: dict[str, OtherStations] = Field(
+        default_factory=dict, description="stations of other kinds, per tier, by name of the kind"
+    )
 
     @pydantic.model_validator(mode="wrap")
     @classmethod

@@ -56,8 +56,9 @@ def draw(
 ) -> None:
     """Draw a layout.
 
-    Pick stations are red, replenishment stations yellow, elevators purple, robots green; storage
-    places are blue squares, dark where a pod stands. Queue zones are dotted, the hallway between
+    Pick stations are red, replenishment stations yellow, stations of other kinds have colours of
+    their own, elevators are purple, robots green; storage places are blue squares, dark where a pod
+    stands. Queue zones are dotted, the hallway between
     storage area and stations is dashed. Several tiers stand side by side.
 
     Parameters
@@ -195,12 +196,10 @@ def _storage(layout: Layout, ax: Axes, points: Points, pitch_m: float, *, pods: 
 
 
 def _stations(layout: Layout, ax: Axes, points: Points, pitch_m: float) -> None:
-    for stations, colour in (
-        (layout.pick_stations, colours.PICK_STATION),
-        (layout.replenishment_stations, colours.REPLENISHMENT_STATION),
-    ):
-        discs = [Circle(_xy(points[s.waypoint]), s.radius_m) for s in stations]
-        _add(ax, discs, colour, zorder=5)
+    for kind in {station.kind.name: station.kind for station in layout.stations}.values():
+        own = [station for station in layout.stations if station.kind.name == kind.name]
+        discs = [Circle(_xy(points[s.waypoint]), s.radius_m) for s in own]
+        _add(ax, discs, kind.colour, zorder=5)
     boarding = [waypoint for elevator in layout.elevators for waypoint in elevator.waypoints]
     squares = [_square(points[waypoint], ELEVATOR_SIDE * pitch_m) for waypoint in boarding]
     _add(ax, squares, colours.ELEVATOR, zorder=5)

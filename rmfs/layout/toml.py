@@ -17,14 +17,21 @@ def to_toml(parameters: LayoutParameters) -> str:
     for key, field in type(parameters).model_fields.items():
         value = getattr(parameters, key)
         comment = f"  # {field.description}" if field.description else ""
-        if isinstance(value, pydantic.BaseModel):
-            entries = [f"{name} = {_value(entry)}" for name, entry in value]
-            tables.append("\n".join([f"[{key}]{comment}", *entries]))
+        if isinstance(value, dict):
+            tables += [f"[{key}.{name}]\n{_entries(entry)}" for name, entry in value.items()]
+        elif isinstance(value, pydantic.BaseModel):
+            tables.append(f"[{key}]{comment}\n{_entries(value)}")
         else:
             plain.append(f"{key} = {_value(value)}{comment}")
     return "\n\n".join(["\n".join(plain), *tables]) + "\n"
 
 
+def _entries(value: pydantic.BaseModel) -> str:
+    return "\n".join(f"{name} = {_value(entry)}" for name, entry in value)
+
+
 def _value(value: Any) -> str:
     """Return a TOML value; the notation of JSON is valid for strings, numbers and truth values."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key} = {_value(entry)}" for key, entry in value.items()) + "}"
     return json.dumps(value, ensure_ascii=False)

@@ -24,7 +24,7 @@ from rmfs.scenario import named_files
 from rmfs.sources import sources
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from rmfs.layout.model import Layout
     from rmfs.measure.base import Measure
@@ -78,6 +78,7 @@ def describe(
             **source("layout", given["layout"]),
             "digest": digest(run.layout),
             "size": _size(run.layout),
+            "sources": _sources(type(kind) for kind in run.layout.other_kinds),
             "parameters": layout_parameters(given["layout"], run.overrides),
         },
         "scenario": {
@@ -88,10 +89,7 @@ def describe(
         "controllers": {
             **source("controllers", given["controllers"]),
             "parameters": run.controllers.to_table(),
-            "sources": {
-                module: {"file": str(path), "sha256": _hash(path)}
-                for module, path in sources(run.controllers.rules()).items()
-            },
+            "sources": _sources(run.controllers.rules()),
         },
         "interventions": [
             {"time_s": time_s, "problem": str(choice.problem), "rule": choice.to_table()}
@@ -113,6 +111,12 @@ def describe(
         "machine": machine(),
         "written": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
     }
+
+
+def _sources(classes: Iterable[type]) -> dict[str, Any]:
+    """Return the files of users that classes are made of, and their hashes."""
+    found = sources(classes).items()
+    return {module: {"file": str(path), "sha256": _hash(path)} for module, path in found}
 
 
 def own_measures(run: Measured) -> list[type[Measure]]:

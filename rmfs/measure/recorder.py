@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 from rmfs.control.solutions import to_text
 from rmfs.measure.log import Log
 from rmfs.observer import Observer
+from rmfs.world import tasks
+from rmfs.world.tasks import VisitTask
 
 if TYPE_CHECKING:
     from typing import Any
@@ -26,10 +28,8 @@ if TYPE_CHECKING:
     from rmfs.world.world import World
 
 
-TASKS = ("pick", "replenish", "park", "reposition", "rest")
-"""Kinds of tasks, by the number under which they are written down."""
-
-_TASK_NUMBER = {kind: number for number, kind in enumerate(TASKS)}
+TASKS = tuple(task.kind for task in tasks.TASKS)
+"""Kinds of tasks of every warehouse, by the number under which they are written down."""
 
 
 class Recorder(Observer):
@@ -56,7 +56,8 @@ class Recorder(Observer):
     busy
         Stations at work.
     tasks
-        Tasks started; `kind` is a place in `TASKS`.
+        Tasks started; `kind` is a place in `TASKS`, or beyond: a visit of a station of another
+        kind.
     lifts
         Pods lifted.
     calls
@@ -129,6 +130,8 @@ class Recorder(Observer):
         """Keep hold of the world and the traffic."""
         self.layout, self.world, self.traffic = run.layout, run.world, run.traffic
         self._disturbances = run.disturbances
+        visits = [kind.part("task", VisitTask).kind for kind in run.layout.other_kinds]
+        self._task_number = {kind: number for number, kind in enumerate([*TASKS, *visits])}
         self.stored_space_start = run.world.inventory.stored_space
 
     def warmup_ended(self, time_s: float) -> None:
@@ -215,7 +218,7 @@ class Recorder(Observer):
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
         """Write the task down."""
-        self.tasks.add(time_s, robot, _TASK_NUMBER[kind])
+        self.tasks.add(time_s, robot, self._task_number[kind])
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
         """Write the lift down."""

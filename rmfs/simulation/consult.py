@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
+from rmfs.world.stations import PickStation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -38,13 +39,12 @@ class PhaseConsult:
     def pod_for(self, robot: Robot, station: int) -> int:
         """Ask PPS for a pod."""
         pps: PodSelection[Any] = self._controllers.consulted(Problem.PPS)
-        if self._world.is_pick_station(station):
-            target = self._world.pick_stations[station]
+        target = self._world.work_stations[station]
+        if isinstance(target, PickStation):
             return self._number(Problem.PPS, pps, lambda: pps.pick_pod(robot, target))
-        other = self._world.replenishment_station(station)
         # RPS chose the pods of the bundles; which of them comes first is not left to a model
         return self._number(
-            Problem.PPS, pps, lambda: pps.replenishment_pod(robot, other), modelled=False
+            Problem.PPS, pps, lambda: pps.replenishment_pod(robot, target), modelled=False
         )
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
@@ -96,7 +96,8 @@ class OutsideConsult(PhaseConsult):
 
     def pod_for(self, robot: Robot, station: int) -> int:
         """Ask for a pod."""
-        kind = "pick pod" if self._world.is_pick_station(station) else "replenishment pod"
+        picks = isinstance(self._world.stations[station], PickStation)
+        kind = "pick pod" if picks else "replenishment pod"
         question = Question(Problem.PPS, kind, robot.index, (station,))
         return self._asked(question, lambda: super(OutsideConsult, self).pod_for(robot, station))
 

@@ -4,24 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.control.decisions import (
-    BringForBundles,
-    BringForPicks,
-    Park,
-    Prepare,
-    Reposition,
-    Rest,
-    TaskDecision,
-)
 from rmfs.control.problems import Problem
 from rmfs.simulation.tasks import end_task
 from rmfs.traffic import Step
-from rmfs.world.tasks import Task, TaskKind
+from rmfs.world.tasks import RestTask
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rmfs.control.asks import Call
+    from rmfs.control.decisions import Prepare, TaskDecision
     from rmfs.control.ta import Consult
     from rmfs.layout.model import Layout
     from rmfs.simulation.controller_set import ControllerSet
@@ -30,6 +22,7 @@ if TYPE_CHECKING:
     from rmfs.simulation.service import Service
     from rmfs.world import World
     from rmfs.world.robots import Robot
+    from rmfs.world.tasks import Task
 
 # plain numbers for the hot path
 _DRIVE, _LIFT, _SET_DOWN, _STATION = (
@@ -66,49 +59,24 @@ class Dispatch:
 
     # --- decisions of TA ------------------------------------------------------------------------
 
-    def bring_for_picks(self, decision: BringForPicks) -> None:
-        """Bring a pod, or go on with the one carried, to a pick station."""
-        robot = decision.robot
-        task = self._world.start_pick(robot, decision.pod, decision.station)
-        self._bring(robot, task)
+    def start(self, decision: TaskDecision) -> None:
+        """Let a robot begin what TA has decided."""
+        self._begin(decision.task())
 
-    def bring_for_bundles(self, decision: BringForBundles) -> None:
-        """Bring a pod, or go on with the one carried, to a replenishment station."""
-        robot = decision.robot
-        task = self._world.start_replenish(robot, decision.pod, decision.station)
-        self._bring(robot, task)
-
-    def park(self, decision: Park) -> None:
-        """Store the pod a robot carries."""
-        robot, place = decision
-        task = self._world.start_park(robot, place)
-        self._tell(task)
-        self._command(robot, place, [(_DRIVE, place), (_SET_DOWN, robot.pod)])
-
-    def reposition(self, decision: Reposition) -> None:
-        """Move a stored pod to another place."""
-        robot, pod, place = decision
-        task = self._world.start_reposition(robot, pod, place)
-        self._tell(task)
-        self._fetch(robot)
-
-    def rest(self, decision: Rest) -> None:
-        """Let a robot wait at a place."""
-        robot, place = decision
-        task = self._world.start_rest(robot, place)
-        self._tell(task)
-        if robot.waypoint != place:
-            self._command(robot, place, [(_DRIVE, place)])
-
-    def _bring(self, robot: Robot, task: Task) -> None:
-        self._tell(task)
-        if robot.pod < 0:
+    def _begin(self, planned: Task) -> None:
+        task = planned.started(self._world)
+        self._events.task_started(self._world.now_s, task.robot, task.kind, task.station)
+        robot = self._world.robots[task.robot]
+        if task.pod >= 0 and robot.pod < 0:
             self._fetch(robot)
+        elif task.station < 0:
+            if task.stores or robot.waypoint != task.place:
+                self._command(robot, task.place, _way(task))
         elif robot.station == task.station:
             self._services[task.station].go_on()
         else:
             waypoint = self._world.stations[task.station].waypoint
-            self._command(robot, waypoint, [(_STATION, task.station)])
+            self._command(robot, waypoint, _way(task))
 
     def _fetch(self, robot: Robot) -> None:
         """Send a robot to its pod as soon as nobody else keeps the place."""
@@ -121,18 +89,13 @@ class Dispatch:
             self._send_away(self._world.robots[keeper])
             return
         self._storage.keep(robot, place)
-        program = [(_DRIVE, place), (_LIFT, task.pod)]
-        if task.kind is TaskKind.REPOSITION:
-            program += [(_DRIVE, task.place), (_SET_DOWN, task.pod)]
-        else:
-            program.append((_STATION, task.station))
-        self._command(robot, place, program)
+        self._command(robot, place, [(_DRIVE, place), (_LIFT, task.pod), *_way(task)])
 
     def _send_away(self, keeper: Robot) -> None:
         """Let a robot without work make room; with nowhere to go it stays until there is."""
         place = self._controllers[Problem.TA].rest_place(keeper)
         if place >= 0:
-            self.rest(Rest(keeper, place))
+            self._begin(RestTask(keeper.index, place=place))
 
     def _command(self, robot: Robot, goal: int, program: list[tuple[int, int]]) -> None:
         if robot.station >= 0:
@@ -148,16 +111,13 @@ class Dispatch:
         station.robot = -1
         robot.station = -1
 
-    def _tell(self, task: Task) -> None:
-        self._events.task_started(self._world.now_s, task.robot, task.kind.value, task.station)
-
     # --- tasks prepared ahead -------------------------------------------------------------------
 
     def prepare(self, decision: Prepare, basis: Call | None = None) -> None:
         """Remember what a robot is to do after its present task, and by whose solution."""
         robot, tasks = decision
         self.forget_prepared(robot)
-        robot.prepared.extend(_planned(task) for task in tasks)
+        robot.prepared.extend(task.task() for task in tasks)
         if basis is not None:
             self._basis.update(dict.fromkeys(robot.prepared, basis))
 
@@ -171,47 +131,19 @@ class Dispatch:
         """Start the first prepared task of a robot that is possible; pass over those before it."""
         while robot.prepared:
             task = robot.prepared[0]
-            if task.kind is TaskKind.PARK and task.place < 0 and robot.pod >= 0:
+            if task.lacks_place and robot.pod >= 0:
                 # may be asked of somebody outside: until it is answered, nothing has changed
                 task.place = consult.place_for(robot)
             robot.prepared.popleft()
             basis = self._basis.pop(task, None)
-            if self._is_possible(robot, task, consult):
-                self._start(robot, task)
+            if task.is_possible(self._world, consult.serves):
+                self._begin(task)
                 if basis is not None:
                     basis.count()
                 return
             self._world.tasks_dropped += 1
             if basis is not None:
                 basis.stale += 1
-
-    def _is_possible(self, robot: Robot, task: Task, consult: Consult) -> bool:
-        storage, place, pod = self._storage, task.place, task.pod
-        if task.kind is TaskKind.PARK:
-            return robot.pod >= 0 and place >= 0 and self._is_empty(place)
-        if task.kind is TaskKind.REST:
-            free = storage.kept_by[place] in (-1, robot.index)
-            return robot.pod < 0 and free
-        if pod != robot.pod and (robot.pod >= 0 or not storage.is_at_hand[pod]):
-            return False
-        if task.kind is TaskKind.REPOSITION:
-            return robot.pod < 0 and self._is_empty(place)
-        return consult.serves(pod, task.station)
-
-    def _is_empty(self, place: int) -> bool:
-        return bool(self._storage.is_empty[self._storage.place_index[place]])
-
-    def _start(self, robot: Robot, task: Task) -> None:
-        if task.kind is TaskKind.PICK:
-            self.bring_for_picks(BringForPicks(robot, task.pod, task.station))
-        elif task.kind is TaskKind.REPLENISH:
-            self.bring_for_bundles(BringForBundles(robot, task.pod, task.station))
-        elif task.kind is TaskKind.PARK:
-            self.park(Park(robot, task.place))
-        elif task.kind is TaskKind.REPOSITION:
-            self.reposition(Reposition(robot, task.pod, task.place))
-        else:
-            self.rest(Rest(robot, task.place))
 
     # --- reports of traffic ---------------------------------------------------------------------
 
@@ -267,21 +199,14 @@ class Dispatch:
     def idle(self, index: int, _waypoint: int) -> None:
         """A robot has done all it was commanded; one that stored a pod needs a task."""
         task = self._world.robots[index].task
-        if task is not None and task.kind in (TaskKind.PARK, TaskKind.REPOSITION):
+        if task is not None and task.stores:
             end_task(self._world, self._events, index)
 
 
-def _planned(decision: TaskDecision) -> Task:
-    """Make of a decision a task that has not begun."""
-    robot = decision.robot.index
-    match decision:
-        case BringForPicks(_, pod, station):
-            return Task(TaskKind.PICK, robot, pod, station)
-        case BringForBundles(_, pod, station):
-            return Task(TaskKind.REPLENISH, robot, pod, station)
-        case Park(_, place):
-            return Task(TaskKind.PARK, robot, place=place)
-        case Reposition(_, pod, place):
-            return Task(TaskKind.REPOSITION, robot, pod, place=place)
-        case Rest(_, place):
-            return Task(TaskKind.REST, robot, place=place)
+def _way(task: Task) -> list[tuple[int, int]]:
+    """What a robot is commanded once it carries the pod of a task, or if there is none."""
+    if task.station >= 0:
+        return [(_STATION, task.station)]
+    if task.stores:
+        return [(_DRIVE, task.place), (_SET_DOWN, task.pod)]
+    return [(_DRIVE, task.place)]

@@ -31,6 +31,7 @@ from rmfs.simulation.phase import DecisionPhase
 from rmfs.simulation.service import services_of
 from rmfs.simulation.steps import Due
 from rmfs.simulation.triggers import Triggers
+from rmfs.simulation.visits import Visits
 from rmfs.traffic import EventKind, Traffic
 from rmfs.world import World
 
@@ -132,6 +133,7 @@ class Kernel:
         self.controller_set = installed = ControllerSet(controllers, self.view, seed)
         services = services_of(layout, agenda=agenda, world=world, events=events)
         self.dispatch = Dispatch(layout, world, fleet, events, installed, services)
+        visits = Visits(world, self.view, self.dispatch, seed)
         late_binding = LateBinding(world, travel, installed)
         due = Due(world, installed)
         decided_outside = problems_outside(outside, controllers.choices)
@@ -150,6 +152,7 @@ class Kernel:
             deciding=self.deciding,
             dispatch=self.dispatch,
             late_binding=late_binding,
+            visits=visits,
         )
         self.applying = Applying(
             world,
@@ -180,7 +183,7 @@ class Kernel:
         self.disturbances = DisturbanceSource(
             layout, scenario.disturbances, seed, agenda=agenda, fleet=fleet
         )
-        events.tell([late_binding, *observers, Triggers(due)])
+        events.tell([late_binding, *visits.controllers, *observers, Triggers(due)])
         self._due = due
         self._end_us = us_at(self.end_s)
         self._moved_us = 0

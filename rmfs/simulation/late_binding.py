@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rmfs.control.problems import Problem
 from rmfs.observer import Observer
-from rmfs.world.tasks import TaskKind
+from rmfs.world.tasks import PickTask, ReplenishTask
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -58,7 +58,7 @@ class LateBinding(Observer):
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
         """Give a task that has just begun the requests of queued orders, after all others."""
         task = self._world.robots[robot].task
-        if task is not None and task.kind is TaskKind.PICK:
+        if isinstance(task, PickTask):
             queued = self._world.pick_stations[station].queued
             if queued:
                 self._bind_queued(task, queued.values(), late_bound=False)
@@ -102,10 +102,10 @@ class LateBinding(Observer):
         task = self._world.robots[self._world.storage.claimed_by[pod]].task
         if task is None or task.pod != pod:
             return
-        if task.kind is TaskKind.REPLENISH:
+        if isinstance(task, ReplenishTask):
             if bundles:
                 self._extend_replenish(task.station, pod)
-        elif picks and task.kind is TaskKind.PICK and task.picks:
+        elif picks and isinstance(task, PickTask) and task.picks:
             requests = self._world.pick_stations[task.station].requests
             available = self._world.inventory.available.item
             for sku in [sku for sku in requests.lines if available(sku, pod)]:
@@ -124,7 +124,9 @@ class LateBinding(Observer):
         for task in tasks:
             self._bind_queued(task, [order])
 
-    def _bind_queued(self, task: Task, orders: Iterable[Order], late_bound: bool = True) -> None:
+    def _bind_queued(
+        self, task: PickTask, orders: Iterable[Order], late_bound: bool = True
+    ) -> None:
         mode = self._controllers[Problem.PPS].parameters.reserve
         if mode == "assigned":
             return
@@ -134,13 +136,13 @@ class LateBinding(Observer):
 
     def _extend_replenish(self, station: int, pod: int) -> None:
         task = self._world.stations[station].tasks.get(pod)
-        if task is not None and task.bundles and self._is_carried(task):
+        if isinstance(task, ReplenishTask) and task.bundles and self._is_carried(task):
             self._world.extend_replenish(task)
 
     def _is_carried(self, task: Task) -> bool:
         return self._world.robots[task.robot].pod == task.pod
 
-    def _sort_by_arrival(self, tasks: list[Task], station: PickStation) -> None:
+    def _sort_by_arrival(self, tasks: list[PickTask], station: PickStation) -> None:
         """Sort tasks by the time their robots still need to the station, then by age."""
         times = self._travel.to(station.waypoint, loaded=True)
         tasks.sort(key=lambda task: times.item(self._travel.robot_waypoint(task.robot)))

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from rmfs.simulation.events import Events
     from rmfs.simulation.late_binding import LateBinding
     from rmfs.simulation.steps import Due
+    from rmfs.simulation.visits import Visits
     from rmfs.world import World
 
 
@@ -63,11 +64,13 @@ class DecisionPhase:
         deciding: Deciding,
         dispatch: Dispatch,
         late_binding: LateBinding,
+        visits: Visits,
     ) -> None:
         self._agenda, self._world, self._events = agenda, world, events
         self._controllers, self._due, self._alarms = controllers, due, alarms
         self._view = view
         self._deciding, self._dispatch, self._late_binding = deciding, dispatch, late_binding
+        self._visits = visits
         self._answers: list[Call] = []
         self._interrupted = -1
         self._applying: Applying
@@ -158,6 +161,7 @@ class DecisionPhase:
         if outside.doing is not None:
             self.do_outside()
             raise Awaits(Question(Problem.TA, "turn"))
+        self._visits.give()
         self._start_prepared()
         outside.drop_taken()
         rule = self._controllers[Problem.TA]
@@ -271,7 +275,7 @@ class DecisionPhase:
             case "pick pod":
                 return rule.pick_pod(robot, self._world.pick_stations[question.stations[0]])
             case "replenishment pod":
-                station = self._world.replenishment_station(question.stations[0])
+                station = self._world.stations[question.stations[0]]
                 return rule.replenishment_pod(robot, station)
             case "next station":
                 return rule.next_station(robot, question.stations)

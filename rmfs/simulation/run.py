@@ -270,7 +270,8 @@ streams, remark, allow_not_well_formed, traffic_maker
                 for note in notes:
                     remark(part, note)
         self.recorder = measure.Recorder()
-        self.measures = [kind() for kind in (*SHIPPED, *find_all(measures))]
+        wanted = find_all([*_of_stations(plan), *measures])
+        self.measures = [kind() for kind in (*SHIPPED, *wanted)]
         self.log = measure.EventLog() if events is None and trace else events
         planner = planner_settings(rules.choices[Problem.PP], seed)
         slow = work.disturbances.slow
@@ -369,6 +370,11 @@ streams, remark, allow_not_well_formed, traffic_maker
             events=self.log,
             interventions=list(self.interventions),
         )
+
+
+def _of_stations(layout: Layout) -> list[str | type[Measure]]:
+    """Measures that kinds of station bring along."""
+    return [measure for kind in layout.other_kinds for measure in kind.measures]
 
 
 def _with_answers(pacing: PacingSettings) -> Paced:

@@ -9,21 +9,20 @@ is shorter than the rest of the transfer. At a replenishment station a bundle ke
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from rmfs.simulation.tasks import end_task
-from rmfs.world.tasks import TaskKind
+from rmfs.world.tasks import PickTask, ReplenishTask, VisitTask
 
 if TYPE_CHECKING:
-    from rmfs.layout.model import Layout
+    from rmfs.layout.model import Layout, OtherStation
     from rmfs.layout.model import PickStation as PickStationLayout
     from rmfs.layout.model import ReplenishmentStation as ReplenishmentStationLayout
     from rmfs.simulation.agenda import Agenda
     from rmfs.simulation.events import Events
     from rmfs.world import World
     from rmfs.world.orders import Order
-    from rmfs.world.stations import PickStation, ReplenishmentStation
-    from rmfs.world.tasks import Task
+    from rmfs.world.stations import PickStation, ReplenishmentStation, Station
 
 
 class Service(Protocol):
@@ -66,7 +65,7 @@ class PickService:
         if station.robot < 0 or now_us < self._robot_until_us:
             return
         task = self._world.robots[station.robot].task
-        if task is None or task.kind is not TaskKind.PICK:
+        if not isinstance(task, PickTask):
             return
         if not task.picks:
             end_task(self._world, self._events, station.robot)
@@ -79,7 +78,7 @@ class PickService:
         elif not self._finished and not task.can_pick:
             self._agenda.when_settled(partial(self._pick_or_leave, task))
 
-    def _pick_or_leave(self, task: Task) -> None:
+    def _pick_or_leave(self, task: PickTask) -> None:
         """Let a pod go that is here for queued orders only; their requests are open again."""
         robots, here = self._world.robots, self._station.robot
         if here < 0 or robots[here].task is not task:
@@ -88,7 +87,7 @@ class PickService:
             self._world.give_back(task)
         self.go_on()
 
-    def _pick(self, task: Task) -> None:
+    def _pick(self, task: PickTask) -> None:
         """Start the next pick of a task."""
         agenda, world, events = self._agenda, self._world, self._events
         index = self._station.index
@@ -150,14 +149,14 @@ class ReplenishmentService:
         if station.robot < 0 or self._agenda.now_us < self._busy_until_us:
             return
         task = self._world.robots[station.robot].task
-        if task is None or task.kind is not TaskKind.REPLENISH:
+        if not isinstance(task, ReplenishTask):
             return
         if task.bundles:
             self._store(task)
         else:
             end_task(self._world, self._events, station.robot)
 
-    def _store(self, task: Task) -> None:
+    def _store(self, task: ReplenishTask) -> None:
         """Start to put the next bundle of a task into its pod."""
         agenda, events = self._agenda, self._events
         bundle = self._world.store_bundle(task)
@@ -168,14 +167,67 @@ class ReplenishmentService:
         events.bundle_stored(bundle, task.robot)
 
 
+class VisitService:
+    """Whoever works at a station of another kind: a pod is kept for a while, then let go.
+
+    A kind derives its own from it, and says how long and what happens then.
+
+    Attributes
+    ----------
+    station
+        What the station is and knows.
+    parameters
+        Of the kind.
+    world
+        To be read; what a visit changes belongs into the station.
+    """
+
+    def __init__(
+        self,
+        station: Station[Any],
+        layout: OtherStation,
+        *,
+        agenda: Agenda,
+        world: World,
+        events: Events,
+    ) -> None:
+        self._agenda, self._events = agenda, events
+        self._served: VisitTask | None = None
+        self.station = station
+        self.parameters = layout.kind.parameters
+        self.world = world
+
+    def seconds(self, task: VisitTask) -> float:
+        """How long the pod of a task that has come to the head is kept."""
+        raise NotImplementedError
+
+    def done(self, task: VisitTask) -> None:
+        """Take note that this time is over; the robot needs a task then."""
+
+    def go_on(self) -> None:
+        """Begin with the pod at the head, if there is one."""
+        station, agenda = self.station, self._agenda
+        task = self.world.robots[station.robot].task if station.robot >= 0 else None
+        if self._served is not None or not isinstance(task, VisitTask):
+            return
+        self._served = task
+        until_us = agenda.now_us + round(self.seconds(task) * 1e6)
+        agenda.at(until_us, self._end)
+        self._events.station_busy(station.index, self.world.now_s, until_us / 1e6)
+
+    def _end(self) -> None:
+        task, self._served = self._served, None
+        assert task is not None
+        self.done(task)
+        end_task(self.world, self._events, task.robot)
+
+
 def services_of(layout: Layout, *, agenda: Agenda, world: World, events: Events) -> list[Service]:
     """Make the service of every station, in the common numbering."""
-    picks = zip(world.pick_stations, layout.pick_stations, strict=True)
-    stores = zip(world.replenishment_stations, layout.replenishment_stations, strict=True)
+    parts: dict[str, Any] = {
+        plan.kind.name: plan.kind.part("service", object) for plan in layout.stations
+    }
     return [
-        *(PickService(s, given, agenda=agenda, world=world, events=events) for s, given in picks),
-        *(
-            ReplenishmentService(s, given, agenda=agenda, world=world, events=events)
-            for s, given in stores
-        ),
+        parts[plan.kind.name](station, plan, agenda=agenda, world=world, events=events)
+        for station, plan in zip(world.stations, layout.stations, strict=True)
     ]

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rmfs.layout import colours
-from rmfs.layout.model import PickStation
+from rmfs.layout.kinds import TASK_COLOURS
 from rmfs.measure.events import KINDS
 from rmfs.measure.trace import TRACE_COLUMNS
 from rmfs.view.container import pack
+from rmfs.world.tasks import VisitTask
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -90,14 +91,15 @@ def head(
         "tiers": [asdict(tier) for tier in layout.tiers],
         "stations": [
             {
-                "kind": "pick" if isinstance(station, PickStation) else "replenishment",
+                "kind": station.kind.name,
+                "letter": station.kind.letter,
+                "colour": station.kind.colour,
+                "handles": station.kind.handles,
                 "waypoint": int(station.waypoint),
                 "queue": [int(place) for place in station.queue],
                 "radius_m": station.radius_m,
                 "order_slots": getattr(station, "order_slots", 0),
-                "transfer_s": station.unit_transfer_s
-                if isinstance(station, PickStation)
-                else station.bundle_transfer_s,
+                "transfer_s": station.kind.busy_s(station),
             }
             for station in layout.stations
         ],
@@ -111,11 +113,16 @@ def head(
             if isinstance(value, str) and value.startswith("#")
         },
         "robot_colours": {
-            "task": colours.TASKS,
+            "task": TASK_COLOURS | _of_visits(layout),
             "state": colours.STATES,
             "load": colours.LOADS,
         },
     }
+
+
+def _of_visits(layout: Layout) -> dict[str, str]:
+    """Colours of robots on their way to stations of other kinds."""
+    return {kind.part("task", VisitTask).kind: kind.colour for kind in layout.other_kinds}
 
 
 def describe(layout: Layout, sku_space: NDArray[np.float64]) -> Arrays:

@@ -12,6 +12,5 @@ from rmfs.world.stations import PickStation as PickStation
 from rmfs.world.stations import ReplenishmentStation as ReplenishmentStation
 from rmfs.world.storage import Storage as Storage
 from rmfs.world.tasks import Task as Task
-from rmfs.world.tasks import TaskKind as TaskKind
 from rmfs.world.verify import verify as verify
 from rmfs.world.world import World as World

@@ -6,8 +6,6 @@ from collections import deque
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rmfs.world.tasks import TaskKind
-
 if TYPE_CHECKING:
     from rmfs.world.tasks import Task
 
@@ -49,4 +47,4 @@ class Robot:
     def is_free(self) -> bool:
         """Whether it carries nothing and has nothing to do but rest."""
         task = self.task
-        return self.pod < 0 and (task is None or task.kind is TaskKind.REST)
+        return self.pod < 0 and (task is None or task.rests)

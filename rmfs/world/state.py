@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rmfs.world.backlog import BundleBacklog, OrderBacklog
 from rmfs.world.inventory import Inventory, read_only
 from rmfs.world.robots import Robot
-from rmfs.world.stations import PickStation, ReplenishmentStation
+from rmfs.world.stations import PickStation, ReplenishmentStation, Station
 from rmfs.world.storage import Storage
 
 if TYPE_CHECKING:
@@ -38,7 +38,11 @@ class WorldState:
     orders, bundles
         The two backlogs.
     pick_stations, replenishment_stations
-        In the order of the layout; `stations` has both, in the common numbering.
+        In the order of the layout.
+    work_stations
+        Both of these, in the common numbering: the stations to which rules assign work.
+    stations
+        Those, and after them the `other_stations`, of all other kinds.
     need
         Open units per pick station and SKU, shape (S, K).
     queued_need
@@ -98,14 +102,24 @@ class WorldState:
         ]
         self.replenishment_stations = [
             ReplenishmentStation(
-                len(self.pick_stations) + i, station, tier[station.waypoint], waiting[i]
+                len(self.pick_stations) + i, i, station, tier[station.waypoint], waiting[i]
             )
             for i, station in enumerate(layout.replenishment_stations)
         ]
-        self.stations: list[PickStation | ReplenishmentStation] = [
+        self.work_stations: list[PickStation | ReplenishmentStation] = [
             *self.pick_stations,
             *self.replenishment_stations,
         ]
+        self.other_stations = [
+            plan.kind.part("state", Station)(
+                len(self.work_stations) + i,
+                sum(other.kind.name == plan.kind.name for other in layout.other_stations[:i]),
+                plan.waypoint,
+                tier[plan.waypoint],
+            )
+            for i, plan in enumerate(layout.other_stations)
+        ]
+        self.stations: list[Station[Any]] = [*self.work_stations, *self.other_stations]
         self.tasks_dropped = 0
         self.orders_created = 0
         self.order_redraws = 0
@@ -120,7 +134,7 @@ class WorldState:
         self.incoming: NDArray[np.int64] = read_only(self._incoming)
         self.units_initial = 0
 
-    def replenishment_station(self, station: int) -> ReplenishmentStation:
+    def _replenishment_station(self, station: int) -> ReplenishmentStation:
         """Look up a replenishment station by its number among all stations."""
         return self.replenishment_stations[station - len(self.pick_stations)]
 
@@ -128,7 +142,3 @@ class WorldState:
     def load(self) -> float:
         """Space units stored, on their way into pods, and waiting; each bundle counts once."""
         return self.inventory.stored_space + self.unstored_space
-
-    def is_pick_station(self, station: int) -> bool:
-        """Whether a station in the common numbering is a pick station."""
-        return station < len(self.pick_stations)

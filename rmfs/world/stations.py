@@ -2,27 +2,36 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from rmfs.world.requests import OpenRequests
+from rmfs.world.tasks import PickTask, ReplenishTask
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import numpy as np
     from numpy.typing import NDArray
 
     from rmfs.layout.model import PickStation as PickStationLayout
     from rmfs.layout.model import ReplenishmentStation as ReplenishmentStationLayout
     from rmfs.world.orders import Bundle, Order
+    from rmfs.world.robots import Robot
     from rmfs.world.tasks import Task
 
 
-class _Station:
-    """What both kinds of station have.
+T = TypeVar("T", bound="Task")
+
+
+class Station(Generic[T]):
+    """What stations of every kind have; a kind adds its own.
 
     Attributes
     ----------
     index
         In the common numbering of stations: pick stations come first.
+    number
+        Among the stations of its kind.
     waypoint, tier
         Where the robot stands that is being served.
     active
@@ -35,17 +44,46 @@ class _Station:
         The task of each pod that is to be, or is being, served here; in order of creation.
     """
 
-    def __init__(self, index: int, waypoint: int, tier: int) -> None:
+    def __init__(self, index: int, number: int, waypoint: int, tier: int) -> None:
         self.index = index
+        self.number = number
         self.waypoint = waypoint
         self.tier = tier
         self.active = False
         self.robot = -1
         self.visits = 0
-        self.tasks: dict[int, Task] = {}
+        self.tasks: dict[int, T] = {}
+
+    def verify(self, robots: Sequence[Robot]) -> None:
+        """Check what is known of it by recounting; a kind adds its own.
+
+        Raises
+        ------
+        AssertionError
+            Naming what is wrong.
+        """
+        for pod, task in self.tasks.items():
+            told = (task.pod, task.station, robots[task.robot].task)
+            if told != (pod, self.index, task):
+                raise AssertionError(f"inconsistent world: tasks of station {self.index}")
+
+    @property
+    def has_work(self) -> bool:
+        """Whether something is assigned to it that is not done yet."""
+        return bool(self.tasks)
+
+    @property
+    def has_open_work(self) -> bool:
+        """Whether something is assigned to it for which no pod is under way."""
+        return False
+
+    @property
+    def work_version(self) -> tuple[int, ...]:
+        """Changes with new work."""
+        return ()
 
 
-class PickStation(_Station):
+class PickStation(Station[PickTask]):
     """A station where units go from pods into orders.
 
     Attributes
@@ -70,7 +108,7 @@ class PickStation(_Station):
         need: NDArray[np.int32],
         queued_need: NDArray[np.int32],
     ) -> None:
-        super().__init__(index, layout.waypoint, tier)
+        super().__init__(index, index, layout.waypoint, tier)
         self.slots = layout.order_slots
         self.orders: dict[int, Order] = {}
         self.requests = OpenRequests(need)
@@ -87,8 +125,20 @@ class PickStation(_Station):
         """Whether an order is open here."""
         return bool(self.orders)
 
+    @property
+    def has_open_work(self) -> bool:
+        """Whether there are requests for which no pod is under way."""
+        return self.requests.units > 0 or self.queued_requests.units > 0
 
-class ReplenishmentStation(_Station):
+    @property
+    def work_version(self) -> tuple[int, ...]:
+        """Changes with new requests, and when a slot is free for a queued order."""
+        if not self.queued:
+            return (self.requests.version,)
+        return self.requests.version, self.queued_requests.version, self.free_slots > 0
+
+
+class ReplenishmentStation(Station[ReplenishTask]):
     """A station where bundles go into pods.
 
     Attributes
@@ -108,11 +158,12 @@ class ReplenishmentStation(_Station):
     def __init__(
         self,
         index: int,
+        number: int,
         layout: ReplenishmentStationLayout,
         tier: int,
         waiting_count: NDArray[np.int32],
     ) -> None:
-        super().__init__(index, layout.waypoint, tier)
+        super().__init__(index, number, layout.waypoint, tier)
         self.capacity = layout.capacity
         self.used = 0.0
         self.bundles = 0
@@ -129,6 +180,16 @@ class ReplenishmentStation(_Station):
     def has_work(self) -> bool:
         """Whether bundles are assigned here whose transfer has not begun."""
         return self.used > 0
+
+    @property
+    def has_open_work(self) -> bool:
+        """Whether there are bundles for which no pod is under way."""
+        return bool(self.waiting)
+
+    @property
+    def work_version(self) -> tuple[int, ...]:
+        """Changes with new bundles."""
+        return (self.version,)
 
     def add(self, bundle: Bundle) -> None:
         """Let a bundle wait for its pod."""

@@ -88,6 +88,10 @@ class Storage:
         for place in self.places.tolist():
             self._refresh(place)
 
+    def is_free(self, place: int) -> bool:
+        """Whether a place holds no pod and is kept by nobody."""
+        return bool(self._is_empty[self.place_index[place]])
+
     def claim(self, pod: int, robot: int) -> None:
         """Reserve a pod for a robot's task.
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rmfs.world.tasks import TaskKind
+from rmfs.world.tasks import PickTask
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -36,6 +36,8 @@ def verify(world: World, orders: Iterable[Order] = ()) -> None:
     _demand(world)
     _bundles(world)
     _places(world)
+    for station in world.stations:
+        station.verify(world.robots)
     for order in orders:
         _check(order.unpicked_units == 0 and order.open_units == 0, f"order {order.index} complete")
 
@@ -78,7 +80,7 @@ def _requests(world: World) -> None:
         _check(len(station.orders) <= station.slots, "slots")
         bound: dict[int, int] = {}
         for task in station.tasks.values():
-            _check(task.kind is TaskKind.PICK, "kind of task at a pick station")
+            _check(type(task) is PickTask, "kind of task at a pick station")
             for pick in task.picks:
                 bound[id(pick.line)] = bound.get(id(pick.line), 0) + 1
         _open(station.orders.values(), bound, world.need[station.index], station.requests)
@@ -172,7 +174,7 @@ def _bundles(world: World) -> None:
         _check(station.used == used[station.index], f"space used at station {station.index}")
         _check(station.bundles == reserved[station.index], "bundles reserved at a station")
         _check(station.used <= station.capacity, f"capacity of station {station.index}")
-        row = world.bundles_waiting[station.index - len(world.pick_stations)]
+        row = world.bundles_waiting[station.number]
         counts = {pod: len(bundles) for pod, bundles in station.waiting.items()}
         _check(int(row.sum()) == sum(counts.values()), "bundles waiting per pod")
         _check(all(row[pod] == count for pod, count in counts.items()), "bundles waiting per pod")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rmfs.world.orders import Order
 from rmfs.world.state import WorldState
-from rmfs.world.tasks import Pick, Task, TaskKind
+from rmfs.world.tasks import ParkTask, Pick, PickTask, ReplenishTask, RepositionTask, RestTask
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from rmfs.world.orders import Bundle, OrderLine
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation
+    from rmfs.world.tasks import Task, VisitTask
 
 
 class World(WorldState):
@@ -217,7 +218,7 @@ class World(WorldState):
 
     def choose_station(self, bundle: Bundle, station: int) -> bool:
         """Reserve a station's space (the choice of ROA); returns whether the bundle is assigned."""
-        target = self.replenishment_station(station)
+        target = self._replenishment_station(station)
         if bundle.station >= 0:
             raise ValueError(f"bundle {bundle.index} has station {bundle.station} already")
         if not target.active or bundle.space > target.free_space:
@@ -233,13 +234,13 @@ class World(WorldState):
     def _assign_bundle(self, bundle: Bundle) -> None:
         self.bundles.remove(bundle)
         bundle.assigned_s = self.now_s
-        self.replenishment_station(bundle.station).add(bundle)
+        self._replenishment_station(bundle.station).add(bundle)
 
     # --- tasks ----------------------------------------------------------------------------------
 
-    def start_pick(self, robot: Robot, pod: int, station: int) -> Task:
+    def start_pick(self, robot: Robot, pod: int, station: int) -> PickTask:
         """Make the task to bring a pod to a pick station; binds all requests it can serve."""
-        task = Task(TaskKind.PICK, robot.index, pod, station)
+        task = PickTask(robot.index, pod, station)
         self._begin_pod_task(robot, task)
         self.pick_stations[station].tasks[pod] = task
         self.inventory.begin_inbound(pod, station)
@@ -248,7 +249,7 @@ class World(WorldState):
             self.extend_pick(task, sku, late_bound=False)
         return task
 
-    def extend_pick(self, task: Task, sku: int, late_bound: bool = True) -> int:
+    def extend_pick(self, task: PickTask, sku: int, late_bound: bool = True) -> int:
         """Bind open requests for a SKU to the pod of a task; returns how many."""
         at_most = self.inventory.available.item(sku, task.pod)
         lines = self.pick_stations[task.station].requests.take(sku, at_most)
@@ -258,7 +259,7 @@ class World(WorldState):
         return len(lines)
 
     def extend_queued(
-        self, task: Task, order: Order, *, whole: bool, late_bound: bool = True
+        self, task: PickTask, order: Order, *, whole: bool, late_bound: bool = True
     ) -> int:
         """Bind open requests of a queued order to the pod of a task; returns how many.
 
@@ -287,13 +288,13 @@ class World(WorldState):
                 bound += count
         return bound
 
-    def give_back(self, task: Task) -> int:
+    def give_back(self, task: PickTask) -> int:
         """Open the requests of a task again whose orders are still queued; returns how many."""
         picks = [pick for pick in task.picks if pick.line.order.station < 0]
         self._give_back(task, picks)
         return len(picks)
 
-    def _give_back(self, task: Task, picks: list[Pick]) -> None:
+    def _give_back(self, task: PickTask, picks: list[Pick]) -> None:
         pool = self.pick_stations[task.station].queued_requests
         for pick in reversed(picks):
             line = pick.line
@@ -303,24 +304,31 @@ class World(WorldState):
             self.inventory.commit(line.sku, -1)
             self.orders.changed(line)
 
-    def start_replenish(self, robot: Robot, pod: int, station: int) -> Task:
+    def start_replenish(self, robot: Robot, pod: int, station: int) -> ReplenishTask:
         """Make the task to bring a pod to a replenishment station for all its bundles there."""
-        task = Task(TaskKind.REPLENISH, robot.index, pod, station)
+        task = ReplenishTask(robot.index, pod, station)
         self._begin_pod_task(robot, task)
-        target = self.replenishment_station(station)
+        target = self._replenishment_station(station)
         target.tasks[pod] = task
         task.bundles.extend(target.take(pod))
         return task
 
-    def extend_replenish(self, task: Task) -> int:
+    def extend_replenish(self, task: ReplenishTask) -> int:
         """Add the bundles that wait at the station for the pod of a task; returns how many."""
-        bundles = self.replenishment_station(task.station).take(task.pod)
+        bundles = self._replenishment_station(task.station).take(task.pod)
         task.bundles.extend(bundles)
         return len(bundles)
 
+    def start_visit(self, task: VisitTask) -> VisitTask:
+        """Begin the task to bring a pod to a station of another kind."""
+        robot = self.robots[task.robot]
+        self._begin_pod_task(robot, task)
+        self.stations[task.station].tasks[task.pod] = task
+        return task
+
     def start_park(self, robot: Robot, place: int) -> Task:
         """Make the task to store the pod a robot carries at an empty place."""
-        task = Task(TaskKind.PARK, robot.index, robot.pod, place=place)
+        task = ParkTask(robot.index, robot.pod, place=place)
         if self.storage.pod_at[place] >= 0:
             raise ValueError(f"place {place} holds pod {self.storage.pod_at[place]}")
         self.storage.keep(robot, place)
@@ -333,25 +341,22 @@ class World(WorldState):
             raise ValueError(f"robot {robot.index} carries pod {robot.pod} already")
         if self.storage.pod_at[place] >= 0:
             raise ValueError(f"place {place} holds pod {self.storage.pod_at[place]}")
-        task = Task(TaskKind.REPOSITION, robot.index, pod, place=place)
+        task = RepositionTask(robot.index, pod, place=place)
         self.storage.keep(robot, place)
         self._begin_pod_task(robot, task)
         return task
 
     def start_rest(self, robot: Robot, place: int) -> Task:
         """Make the task to rest at a place, beneath a stored pod or not."""
-        task = Task(TaskKind.REST, robot.index, place=place)
+        task = RestTask(robot.index, place=place)
         self.storage.keep(robot, place)
         self._set_task(robot, task)
         return task
 
     def end_task(self, robot: Robot) -> None:
         """End the task of a robot; a pod it carries stays claimed by it."""
-        task = robot.task
-        if task is not None and task.station >= 0:
-            del self.stations[task.station].tasks[task.pod]
-            if task.kind is TaskKind.PICK:
-                self.inventory.end_inbound(task.pod)
+        if robot.task is not None:
+            robot.task.ended(self)
         self._set_task(robot, None)
 
     def _begin_pod_task(self, robot: Robot, task: Task) -> None:
@@ -366,7 +371,7 @@ class World(WorldState):
         self.resting.pop(robot.index, None)
         if task is None:
             self.asking[robot.index] = robot
-        elif task.kind is TaskKind.REST:
+        elif task.rests:
             self.resting[robot.index] = robot
         self.storage.robot_changed(robot)
 
@@ -383,7 +388,7 @@ class World(WorldState):
         robot.pod = -1
         self.storage.set_down(pod, place)
 
-    def pick_unit(self, task: Task) -> Pick:
+    def pick_unit(self, task: PickTask) -> Pick:
         """Let the next unit of a task leave its pod whose order is on the station."""
         picks = task.picks
         pick = picks[0]
@@ -399,11 +404,11 @@ class World(WorldState):
         self.units_picked += 1
         return pick
 
-    def store_bundle(self, task: Task) -> Bundle:
+    def store_bundle(self, task: ReplenishTask) -> Bundle:
         """Let the next bundle of a task go into its pod."""
         bundle = task.bundles.popleft()
         self.inventory.store(task.pod, bundle.sku, bundle.units)
-        station = self.replenishment_station(task.station)
+        station = self._replenishment_station(task.station)
         station.used -= bundle.space
         station.bundles -= 1
         bundle.stored_s = self.now_s

@@ -14,7 +14,6 @@ from rmfs.control.ta.brute_force import BruteForce
 from rmfs.control.ta.constant_ratio import ConstantRatio
 from rmfs.control.ta.random import RandomTasks
 from rmfs.control.ta.swarm import Swarm
-from rmfs.world import TaskKind
 
 
 @pytest.fixture
@@ -336,5 +335,5 @@ class TestSwarm:
         situation.stock(1, s0=5)
         situation.assigned(s0=1)
         situation.world.start_pick(situation.world.robots[2], 1, 0)
-        assert situation.world.robots[2].task.kind is TaskKind.PICK
+        assert situation.world.robots[2].task.kind == "pick"
         assert situation.make(Swarm)._matched == [-1, -1, 0, -1]

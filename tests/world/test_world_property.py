@@ -10,7 +10,8 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
-from rmfs.world import TaskKind, verify
+from rmfs.world import verify
+from rmfs.world.tasks import ParkTask, PickTask, ReplenishTask, RepositionTask, Task
 
 SKUS, PODS, ROBOTS = 4, 5, 3
 small = st.integers(1, 3)
@@ -64,11 +65,11 @@ class WorldMachine(RuleBasedStateMachine):
         things = list(things)
         return things[int(self.rng.integers(len(things)))] if things else None
 
-    def robots(self, kind: TaskKind, carrying: bool):
+    def robots(self, kind: type[Task], carrying: bool):
         return [
             robot
             for robot in self.world.robots
-            if robot.task is not None and robot.task.kind is kind and (robot.pod >= 0) == carrying
+            if type(robot.task) is kind and (robot.pod >= 0) == carrying
         ]
 
     # --- orders ---------------------------------------------------------------------------------
@@ -188,7 +189,7 @@ class WorldMachine(RuleBasedStateMachine):
         pod = robot.pod if robot.pod >= 0 else self.any_of(pods)
         if pod is None:
             return
-        if self.world.is_pick_station(station):
+        if station < 2:
             for sku in range(SKUS):
                 self.naive_bind(sku, pod, station)
             self.world.start_pick(robot, pod, station)
@@ -207,18 +208,18 @@ class WorldMachine(RuleBasedStateMachine):
 
     @rule(sku=st.integers(0, SKUS - 1))
     def extend(self, sku) -> None:
-        robot = self.any_of(self.robots(TaskKind.PICK, carrying=True))
+        robot = self.any_of(self.robots(PickTask, carrying=True))
         if robot is not None:
             self.naive_bind(sku, robot.pod, robot.task.station)
             self.world.extend_pick(robot.task, sku)
-        robot = self.any_of(self.robots(TaskKind.REPLENISH, carrying=True))
+        robot = self.any_of(self.robots(ReplenishTask, carrying=True))
         if robot is not None:
             self.world.extend_replenish(robot.task)
 
     @rule(whole=st.booleans())
     def extend_queued(self, whole) -> None:
         """Every unit that the pod has available, of every open request of the order."""
-        robot = self.any_of(self.robots(TaskKind.PICK, carrying=True))
+        robot = self.any_of(self.robots(PickTask, carrying=True))
         if robot is None:
             return
         order = self.any_of(self.world.pick_stations[robot.task.station].queued.values())
@@ -238,7 +239,7 @@ class WorldMachine(RuleBasedStateMachine):
 
     @rule()
     def give_back(self) -> None:
-        robot = self.any_of(self.robots(TaskKind.PICK, carrying=True))
+        robot = self.any_of(self.robots(PickTask, carrying=True))
         if robot is not None:
             for pick in robot.task.picks:
                 if pick.line.order.station < 0:
@@ -249,7 +250,7 @@ class WorldMachine(RuleBasedStateMachine):
     @rule()
     def lift(self) -> None:
         storage = self.world.storage
-        robots = self.robots(TaskKind.PICK, False) + self.robots(TaskKind.REPLENISH, False)
+        robots = self.robots(PickTask, False) + self.robots(ReplenishTask, False)
         ready = [r for r in robots if storage.place_of[r.task.pod] in r.places]
         robot = self.any_of(ready)
         if robot is not None:
@@ -259,7 +260,7 @@ class WorldMachine(RuleBasedStateMachine):
 
     @rule()
     def pick(self) -> None:
-        robot = self.any_of(r for r in self.robots(TaskKind.PICK, True) if r.task.can_pick)
+        robot = self.any_of(r for r in self.robots(PickTask, True) if r.task.can_pick)
         if robot is not None:
             line = self.world.pick_unit(robot.task).line
             self.naive.on_pod[line.sku, robot.pod] -= 1
@@ -269,7 +270,7 @@ class WorldMachine(RuleBasedStateMachine):
 
     @rule()
     def store(self) -> None:
-        robot = self.any_of(r for r in self.robots(TaskKind.REPLENISH, True) if r.task.bundles)
+        robot = self.any_of(r for r in self.robots(ReplenishTask, True) if r.task.bundles)
         if robot is not None:
             bundle = self.world.store_bundle(robot.task)
             self.naive.on_pod[bundle.sku, robot.pod] += bundle.units
@@ -277,8 +278,9 @@ class WorldMachine(RuleBasedStateMachine):
 
     @rule()
     def end_task(self) -> None:
-        robots = self.robots(TaskKind.PICK, True) + self.robots(TaskKind.REPLENISH, True)
-        robot = self.any_of(r for r in robots if not r.task.picks and not r.task.bundles)
+        done = [r for r in self.robots(PickTask, True) if not r.task.picks]
+        done += [r for r in self.robots(ReplenishTask, True) if not r.task.bundles]
+        robot = self.any_of(done)
         if robot is not None:
             self.world.end_task(robot)
 
@@ -294,7 +296,7 @@ class WorldMachine(RuleBasedStateMachine):
 
     @rule()
     def set_down(self) -> None:
-        robot = self.any_of(self.robots(TaskKind.PARK, True))
+        robot = self.any_of(self.robots(ParkTask, True))
         if robot is not None:
             self.world.set_down(robot, robot.waypoint)
             self.world.end_task(robot)
@@ -319,7 +321,7 @@ class WorldMachine(RuleBasedStateMachine):
     @rule()
     def move_pod(self) -> None:
         """Lift the pod, drive to the place, which was kept all the time, and set it down."""
-        robot = self.any_of(self.robots(TaskKind.REPOSITION, carrying=False))
+        robot = self.any_of(self.robots(RepositionTask, carrying=False))
         if robot is not None:
             task = robot.task
             assert self.world.storage.kept_by[task.place] == robot.index

@@ -9,6 +9,7 @@ import pydantic
 
 from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem
+from rmfs.world.stations import PickStation, ReplenishmentStation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Ask
     from rmfs.world.orders import Order
     from rmfs.world.robots import Robot
-    from rmfs.world.stations import PickStation, ReplenishmentStation
 
 Requests = Literal["assigned", "assigned-and-completable", "assigned-and-queued"]
 """Those of assigned orders; of queued ones too that the pod completes; of all queued ones too."""
@@ -80,11 +80,13 @@ class PodSelection(Controller[P]):
         """Choose one of several stations that the pod of a robot can serve (at least one)."""
 
     def serves(self, pod: int, station: int) -> bool:
-        """Whether there is work for a pod at a station of either kind, by `consider`."""
+        """Whether there is work for a pod at a station, by `consider`; never at other kinds."""
         view = self.view
-        if station >= len(view.pick_stations):
-            return bool(view.bundles_waiting[station - len(view.pick_stations), pod])
-        target = view.pick_stations[station]
+        target = view.all_stations[station]
+        if isinstance(target, ReplenishmentStation):
+            return bool(view.bundles_waiting[target.number, pod])
+        if not isinstance(target, PickStation):
+            return False
         if view.inventory.serves(pod, list(target.requests.lines)):
             return True
         return any(self._completes(pod, order) for order in self._queued(pod, target))

@@ -229,7 +229,7 @@ def replenishment_candidates(view: View, robot: Robot, station: ReplenishmentSta
     """Find the pods at hand for which bundles wait at a replenishment station."""
     if not station.waiting:
         return Candidates(view, robot, station, np.empty(0, np.intp))
-    waiting = view.bundles_waiting[station.index - len(view.pick_stations)]
+    waiting = view.bundles_waiting[station.number]
     useful = waiting > 0
     useful &= view.storage.is_at_hand
     return Candidates(view, robot, station, useful.nonzero()[0])

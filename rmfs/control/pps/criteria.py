@@ -203,7 +203,7 @@ class BundleWorkAmount(PodCriterion):
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
         """Bundles that wait at the station for the pod, or the seconds for which they have."""
         view = candidates.view
-        station = candidates.station.index - len(view.pick_stations)
+        station = candidates.station.number
         if self.age:
             waiting = view.replenishment_stations[station].waiting
             scores: Scores = np.array(
@@ -227,7 +227,7 @@ class BundleDemand(PodCriterion):
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
         """Sum over the bundles of their units, at most the open requests for the SKU."""
         view = candidates.view
-        station = candidates.station.index - len(view.pick_stations)
+        station = candidates.station.number
         waiting = view.replenishment_stations[station].waiting
         wanted = demand(view, "unbound").tolist()
         return np.array(

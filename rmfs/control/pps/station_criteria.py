@@ -11,6 +11,7 @@ from rmfs.control.base import Parameters
 from rmfs.control.pps.criteria import by_name
 from rmfs.control.pps.requests import RequestValue, value_of
 from rmfs.control.travel import Metric
+from rmfs.world.stations import PickStation
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
     from rmfs.control.view import View
     from rmfs.world.robots import Robot
-    from rmfs.world.stations import PickStation
 
 
 class RandomNextStation(Parameters):
@@ -68,10 +68,10 @@ class MostWork(Parameters):
         return np.array([self._work(view, robot.pod, station) for station in stations], float)
 
     def _work(self, view: View, pod: int, station: int) -> float:
-        if station < len(view.pick_stations):
-            return self._picks(view, pod, view.pick_stations[station])
-        waiting = view.replenishment_stations[station - len(view.pick_stations)].waiting
-        bundles = waiting.get(pod, [])
+        target = view.stations[station]
+        if isinstance(target, PickStation):
+            return self._picks(view, pod, target)
+        bundles = target.waiting.get(pod, [])
         if self.bundle_age:
             return sum(view.now_s - bundle.assigned_s for bundle in bundles)
         return len(bundles)

@@ -16,7 +16,11 @@ def activation_order(view: View, pick: bool) -> list[int]:
     pick
         Pick stations; otherwise replenishment stations.
     """
-    first = 0 if pick else len(view.pick_stations)
-    given = view.layout.pick_stations if pick else view.layout.replenishment_stations
-    numbers = [station.activation for station in given]
-    return sorted(range(first, first + len(given)), key=lambda index: numbers[index - first])
+    layout = view.layout
+    if pick:
+        ranks = [plan.activation for plan in layout.pick_stations]
+        numbers = [station.index for station in view.pick_stations]
+    else:
+        ranks = [plan.activation for plan in layout.replenishment_stations]
+        numbers = [station.index for station in view.replenishment_stations]
+    return [number for _, number in sorted(zip(ranks, numbers, strict=True))]

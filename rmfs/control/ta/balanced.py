@@ -11,7 +11,7 @@ import pydantic
 from rmfs.control.decisions import Reposition, TaskDecision
 from rmfs.control.ta.balance import deal, split
 from rmfs.control.ta.crews import CrewParameters, Crews, NotNegative
-from rmfs.control.ta.stations import keeper_of, near_by
+from rmfs.control.ta.stations import by_kind, keeper_of, near_by
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,8 +72,7 @@ class Balanced(Crews[BalancedParameters]):
         """Divide by weight."""
         given = self.parameters
         order = [station for station in self._far_first if station in active]
-        picks = [station for station in order if station < len(self.view.pick_stations)]
-        others = [station for station in order if station >= len(self.view.pick_stations)]
+        picks, others = by_kind(self.view, order)
         pick_weight = given.pick_weight * len(picks) / max(len(self.view.pick_stations), 1)
         replenishment_weight = (
             given.replenishment_weight * len(others) / max(len(self.view.replenishment_stations), 1)

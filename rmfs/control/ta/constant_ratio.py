@@ -8,6 +8,7 @@ import pydantic
 
 from rmfs.control.ta.balance import deal
 from rmfs.control.ta.crews import CrewParameters, Crews
+from rmfs.control.ta.stations import by_kind
 
 
 class ConstantRatioParameters(CrewParameters):
@@ -44,9 +45,10 @@ class ConstantRatio(Crews[ConstantRatioParameters]):
     def goals(self, active: frozenset[int]) -> dict[int, int]:
         """Deal the robots of each kind out in turn."""
         order = [station for station in self._far_first if station in active]
-        robots, kinds = len(self.view.robots), len(self.view.pick_stations)
+        robots = len(self.view.robots)
+        picks, others = by_kind(self.view, order)
         for_picks = int(robots * self.parameters.pick_share + 1e-9)
         goals = dict.fromkeys(order, 0)
-        deal(for_picks, [s for s in order if s < kinds], robots, goals)
-        deal(robots - for_picks, [s for s in order if s >= kinds], robots, goals)
+        deal(for_picks, picks, robots, goals)
+        deal(robots - for_picks, others, robots, goals)
         return goals

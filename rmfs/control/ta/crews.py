@@ -14,7 +14,7 @@ from rmfs.control.decisions import Park, Rest, TaskDecision
 from rmfs.control.ta import Consult, TaskAllocation
 from rmfs.control.ta.balance import reassign
 from rmfs.control.ta.rest import RestPlaces, RestRule
-from rmfs.control.ta.stations import bring, far_first, keeper_of, waypoints
+from rmfs.control.ta.stations import bring, far_first, keeper_of, station_of_task, waypoints
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -58,7 +58,7 @@ class Crews(TaskAllocation[P]):
         self._waypoints = waypoints(view)
         self._far_first = far_first(view)
         self._station_of = [-1] * len(view.robots)
-        self._works_for = [_station_of_task(robot) for robot in view.robots]
+        self._works_for = [station_of_task(robot) for robot in view.robots]
         self._workers = [self._works_for.count(station) for station in range(stations)]
         self._searched: list[tuple[int, ...]] = [(-1, -1)] * stations
         self._active: frozenset[int] = frozenset()
@@ -208,8 +208,3 @@ class Crews(TaskAllocation[P]):
             axis=1,
         )
         self._station_of = reassign(self._station_of, self.goals(active), distance)
-
-
-def _station_of_task(robot: Robot) -> int:
-    """Station for which a robot works when a rule is installed, or -1."""
-    return robot.task.station if robot.task is not None else -1

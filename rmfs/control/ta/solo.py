@@ -10,6 +10,7 @@ from rmfs.control.decisions import Park, Prepare, Rest, TaskDecision
 from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
 from rmfs.control.ta import Consult, TaskAllocation
 from rmfs.control.ta.rest import RestPlaces, RestRule
+from rmfs.world.stations import PickStation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -86,11 +87,10 @@ class Solo(TaskAllocation[P]):
 
     def pods_for(self, robot: Robot, station: int) -> NDArray[np.intp]:
         """Return the pods at hand that have work at a station, ascending, shape (C,)."""
-        view = self.view
-        if station < len(view.pick_stations):
-            return pick_candidates(view, robot, view.pick_stations[station]).pods
-        others = view.replenishment_stations
-        return replenishment_candidates(view, robot, others[station - len(view.pick_stations)]).pods
+        target = self.view.stations[station]
+        if isinstance(target, PickStation):
+            return pick_candidates(self.view, robot, target).pods
+        return replenishment_candidates(self.view, robot, target).pods
 
     def _work_versions(self) -> tuple[tuple[int, ...], ...]:
         return tuple(self.view.work_version(station.index) for station in self.view.stations)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.control.decisions import BringForBundles, BringForPicks
+from rmfs.world.stations import PickStation
+from rmfs.world.tasks import VisitTask
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -24,11 +26,26 @@ def waypoints(view: View) -> NDArray[np.int64]:
     return np.array([station.waypoint for station in view.stations])
 
 
+def by_kind(view: View, stations: Iterable[int]) -> tuple[list[int], list[int]]:
+    """Part stations into pick stations and replenishment stations."""
+    picks: list[int] = []
+    others: list[int] = []
+    for station in stations:
+        (picks if isinstance(view.stations[station], PickStation) else others).append(station)
+    return picks, others
+
+
 def bring(view: View, robot: Robot, pod: int, station: int) -> TaskDecision:
     """Let a robot bring a pod to a station of either kind."""
-    if station < len(view.pick_stations):
+    if isinstance(view.stations[station], PickStation):
         return BringForPicks(robot, pod, station)
     return BringForBundles(robot, pod, station)
+
+
+def station_of_task(robot: Robot) -> int:
+    """Station for which a robot works, or -1; no station of other kinds."""
+    task = robot.task
+    return -1 if task is None or isinstance(task, VisitTask) else task.station
 
 
 def keeper_of(view: View, robot: Robot, pod: int) -> Robot:

@@ -9,7 +9,13 @@ import pydantic
 
 from rmfs.control.decisions import Prepare, TaskDecision
 from rmfs.control.ta.solo import Solo, SoloParameters
-from rmfs.control.ta.stations import bring, keeper_of, near_by, waypoints
+from rmfs.control.ta.stations import (
+    bring,
+    keeper_of,
+    near_by,
+    station_of_task,
+    waypoints,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -65,9 +71,7 @@ class Swarm(Solo[SwarmParameters]):
         super().__init__(parameters, view, rng)
         self._waypoints = waypoints(view)
         self._multiplier = np.ones(len(view.stations))
-        self._matched = [
-            robot.task.station if robot.task is not None else -1 for robot in view.robots
-        ]
+        self._matched = [station_of_task(robot) for robot in view.robots]
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
         """Go on with a pod, or draw a station."""

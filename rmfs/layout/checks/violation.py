@@ -63,11 +63,9 @@ def waypoint_label(layout: Layout, waypoint: int) -> str:
 
 def station_label(layout: Layout, station: int) -> str:
     """Name a station by its kind and its number within the kind."""
-    picks = len(layout.pick_stations)
-    name = f"pick station {station}"
-    if station >= picks:
-        name = f"replenishment station {station - picks}"
-    return f"{name} ({at(layout, layout.stations[station].waypoint)})"
+    found = layout.stations[station]
+    number = sum(other.kind.name == found.kind.name for other in layout.stations[:station])
+    return f"{found.kind.name} station {number} ({at(layout, found.waypoint)})"
 
 
 def grouped(severity: Severity, elements: Iterable[str], message: str) -> Iterator[Violation]:

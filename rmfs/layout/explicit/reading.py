@@ -12,9 +12,11 @@ from rmfs.errors import InputError
 from rmfs.files import read_bounded
 from rmfs.layout.explicit.schema import FORMAT, ExplicitElevator, ExplicitLayout
 from rmfs.layout.graph import compressed
+from rmfs.layout.kinds import station_kind
 from rmfs.layout.model import (
     Elevator,
     Layout,
+    OtherStation,
     PickStation,
     ReplenishmentStation,
     RobotKind,
@@ -35,10 +37,10 @@ def read_json(path: Path) -> Layout:
     InputError
         If the file is missing, not JSON, or does not describe a layout; all problems are named.
     """
-    return build(_parse(path), str(path))
+    return build(_parse(path), str(path), path.parent)
 
 
-def build(table: Table, source: str) -> Layout:
+def build(table: Table, source: str, folder: Path | None = None) -> Layout:
     """Turn the content of an explicit layout into the layout.
 
     Parameters
@@ -47,6 +49,8 @@ def build(table: Table, source: str) -> Layout:
         As in the JSON file.
     source
         Name of the file, for messages.
+    folder
+        Where files with kinds of station are looked for first. Default: the working directory.
 
     Raises
     ------
@@ -55,7 +59,11 @@ def build(table: Table, source: str) -> Layout:
     """
     explicit = validate(ExplicitLayout, table, source)
     stop_if_any(list(_dangling(explicit)), source)
-    return _layout(explicit)
+    try:
+        others = tuple(_other_stations(explicit, folder))
+    except InputError as error:
+        raise InputError(f"{source}: {error}") from None
+    return _layout(explicit, others)
 
 
 def _parse(path: Path) -> Table:
@@ -118,12 +126,23 @@ def _references(explicit: ExplicitLayout) -> Iterator[tuple[str, int]]:
         yield from ((f"pick_stations.{s}.queue", place) for place in pick.queue)
     for s, replenishment in enumerate(explicit.replenishment_stations):
         yield from ((f"replenishment_stations.{s}.queue", place) for place in replenishment.queue)
+    for name, group in explicit.other_stations.items():
+        for s, other in enumerate(group.stations):
+            key = f"other_stations.{name}.stations.{s}.queue"
+            yield from ((key, place) for place in other.queue)
     for e, elevator in enumerate(explicit.elevators):
         for queue in elevator.queues:
             yield from ((f"elevators.{e}.queues", place) for place in queue)
 
 
-def _layout(explicit: ExplicitLayout) -> Layout:
+def _other_stations(explicit: ExplicitLayout, folder: Path | None) -> Iterator[OtherStation]:
+    for name, given in explicit.other_stations.items():
+        kind = station_kind(name, given.kind, given.parameters, folder)
+        for station in given.stations:
+            yield OtherStation(kind, station.queue[0], tuple(station.queue), station.radius_m)
+
+
+def _layout(explicit: ExplicitLayout, others: tuple[OtherStation, ...]) -> Layout:
     waypoints = explicit.waypoints
     edges = ((v, head) for v, waypoint in enumerate(waypoints) for head in waypoint.to)
     edge_start, edge_target = compressed(len(waypoints), edges)
@@ -142,6 +161,7 @@ def _layout(explicit: ExplicitLayout) -> Layout:
     for queue in (
         *(pick.queue for pick in pick_stations),
         *(replenishment.queue for replenishment in replenishment_stations),
+        *(other.queue for other in others),
         *(queue for elevator in elevators for queue in elevator.queues.values()),
     ):
         is_queue[list(queue)] = True
@@ -157,6 +177,7 @@ def _layout(explicit: ExplicitLayout) -> Layout:
         is_queue=is_queue,
         pick_stations=pick_stations,
         replenishment_stations=replenishment_stations,
+        other_stations=others,
         elevators=elevators,
         pod_waypoint=np.array([pod.waypoint for pod in explicit.pods], dtype=np.int32),
         pod_capacity=np.array([pod.capacity for pod in explicit.pods], dtype=np.float64),

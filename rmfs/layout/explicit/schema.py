@@ -5,7 +5,7 @@ Elements are named by their position in their list, counted from 0.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -52,6 +52,21 @@ class ExplicitReplenishmentStation(Strict):
     capacity: Positive
     bundle_transfer_s: Positive
     activation: Count
+
+
+class ExplicitOtherStation(Strict):
+    """A station of another kind; `queue` as for pick stations."""
+
+    queue: list[Index] = Field(min_length=1)
+    radius_m: Positive
+
+
+class ExplicitOtherStations(Strict):
+    """All stations of another kind: its class, what is set of it, and where they are."""
+
+    kind: str
+    parameters: dict[str, Any] = Field(default_factory=dict)
+    stations: list[ExplicitOtherStation]
 
 
 class ExplicitRide(Strict):
@@ -105,6 +120,7 @@ class ExplicitLayout(Strict):
     robot_kinds: list[ExplicitRobotKind] = Field(min_length=1)
     pick_stations: list[ExplicitPickStation] = Field(default_factory=list)
     replenishment_stations: list[ExplicitReplenishmentStation] = Field(default_factory=list)
+    other_stations: dict[str, ExplicitOtherStations] = Field(default_factory=dict)
     elevators: list[ExplicitElevator] = Field(default_factory=list)
     robots: list[ExplicitRobot] = Field(default_factory=list)
     pods: list[ExplicitPod] = Field(default_factory=list)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rmfs.files import write_text
 from rmfs.layout.explicit.schema import FORMAT
+from rmfs.layout.kinds import described
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -43,6 +44,7 @@ def _table(layout: Layout) -> Table:
         "robot_kinds": [_fields(kind) for kind in layout.robot_kinds],
         "pick_stations": [_station(station) for station in layout.pick_stations],
         "replenishment_stations": [_station(station) for station in layout.replenishment_stations],
+        **({"other_stations": _others(layout)} if layout.other_stations else {}),
         "elevators": [
             {
                 "queues": [list(elevator.queues[waypoint]) for waypoint in elevator.waypoints],
@@ -69,6 +71,20 @@ def _table(layout: Layout) -> Table:
             )
         ],
         "waypoints": list(_waypoints(layout)),
+    }
+
+
+def _others(layout: Layout) -> Table:
+    return {
+        kind.name: {
+            **described(kind),
+            "stations": [
+                {"queue": list(station.queue), "radius_m": station.radius_m}
+                for station in layout.other_stations
+                if station.kind.name == kind.name
+            ],
+        }
+        for kind in layout.other_kinds
     }
 
 

@@ -7,15 +7,27 @@ from typing import TYPE_CHECKING
 from rmfs.layout.generator.assembly import Assembly
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rmfs.layout.model import Layout
     from rmfs.layout.parameters import LayoutParameters
 
 
-def generate(parameters: LayoutParameters) -> Layout:
+def generate(parameters: LayoutParameters, folder: Path | None = None) -> Layout:
     """Generate the layout that the parameters describe.
 
     Storage blocks two deep lie between horizontal and vertical aisles, a ring road runs round
     them, and each side with stations or elevators adds a hall and a buffer zone with their queues.
     The same parameters give the same layout.
+
+    Parameters
+    ----------
+    folder
+        Where files with kinds of station are looked for first. Default: the working directory.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind of station, or a parameter of it is wrong.
     """
-    return Assembly(parameters).layout()
+    return Assembly(parameters, folder).layout()

@@ -17,9 +17,11 @@ from rmfs.layout.generator.sites import sites
 from rmfs.layout.generator.tiles import ROAD, Kind, tile_kinds
 from rmfs.layout.generator.traffic_rules import TrafficRules
 from rmfs.layout.graph import compressed
+from rmfs.layout.kinds import station_kind
 from rmfs.layout.model import (
     Elevator,
     Layout,
+    OtherStation,
     PickStation,
     ReplenishmentStation,
     RobotKind,
@@ -27,6 +29,8 @@ from rmfs.layout.model import (
 )
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rmfs.layout.parameters import LayoutParameters
 
 
@@ -37,10 +41,13 @@ class Assembly:
     ----------
     parameters
         Of the layout, already validated.
+    folder
+        Where files with kinds of station are looked for first.
     """
 
-    def __init__(self, parameters: LayoutParameters) -> None:
+    def __init__(self, parameters: LayoutParameters, folder: Path | None = None) -> None:
         self._parameters = parameters
+        self._folder = folder
         self._kinds = tile_kinds(parameters)
         self._buffers = [
             buffer(parameters, site) for side in SIDES for site in sites(parameters, side)
@@ -83,6 +90,7 @@ class Assembly:
             is_queue=np.tile(kinds == Kind.BUFFER, len(tiers)),
             pick_stations=self._pick_stations(),
             replenishment_stations=self._replenishment_stations(),
+            other_stations=self._other_stations(),
             elevators=self._elevators(),
             pod_waypoint=pod_waypoint,
             pod_capacity=np.full(len(pod_waypoint), parameters.pod_capacity),
@@ -142,6 +150,15 @@ class Assembly:
                 activation=rank,
             )
             for queue, rank in zip(found, self._activation(found), strict=True)
+        )
+
+    def _other_stations(self) -> tuple[OtherStation, ...]:
+        parameters = self._parameters
+        return tuple(
+            OtherStation(kind, queue[0], queue, parameters.station_radius_m)
+            for name, given in parameters.other_stations.items()
+            for kind in [station_kind(name, given.kind, given.parameters, self._folder)]
+            for queue in self._stations(name)
         )
 
     def _stations(self, kind: str) -> list[tuple[int, ...]]:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     Rule = Callable[[LayoutParameters], list[str]]
 
-STATIONS = ("pick_stations", "replenishment_stations", "elevators")
+STATIONS = ("pick_stations", "replenishment_stations", "other_stations", "elevators")
 AISLES = ("horizontal_aisles", "vertical_aisles")
 SIZE = (*AISLES, *STATIONS, "block_length", "single_lane", "hall_width", "buffer_width")
 

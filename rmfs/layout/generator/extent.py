@@ -78,7 +78,8 @@ def block_at(parameters: LayoutParameters, side: Direction) -> int:
 def sites_at(parameters: LayoutParameters, side: Direction) -> int:
     """Return how many stations and elevators stand on a side of a tier."""
     name = side.name.lower()
-    groups = (parameters.pick_stations, parameters.replenishment_stations, parameters.elevators)
+    groups = [parameters.pick_stations, parameters.replenishment_stations, parameters.elevators]
+    groups += parameters.other_stations.values()
     return sum(int(getattr(group, name)) for group in groups)
 
 

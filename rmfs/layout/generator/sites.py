@@ -1,21 +1,19 @@
 """Where stations and elevators stand along the sides of a tier.
 
 RAWSim-O default layout: possible exits lie opposite the aisles that run inward; the stations of a
-side take the middle places, pick stations first, then replenishment stations, then elevators.
+side take the middle places: pick stations, replenishment stations, other kinds, elevators.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from rmfs.layout.generator.compass import Direction
 from rmfs.layout.generator.extent import RING_WIDTH, aisles_at, block_at, lanes
 
 if TYPE_CHECKING:
     from rmfs.layout.parameters import LayoutParameters, PerSide
-
-SiteKind = Literal["pick", "replenishment", "elevator"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,12 +22,14 @@ class Site:
 
     Attributes
     ----------
+    kind
+        Of station: its name; or `elevator`.
     exit, entrance
         Where its buffer opens into the hall: tiles along the side, counted from the corner of the
         ring road at the low end (north or west).
     """
 
-    kind: SiteKind
+    kind: str
     side: Direction
     exit: int
     entrance: int
@@ -38,9 +38,10 @@ class Site:
 def sites(parameters: LayoutParameters, side: Direction) -> list[Site]:
     """Return the sites of one side in ascending position."""
     name = side.name.lower()
-    groups: tuple[tuple[SiteKind, PerSide], ...] = (
+    groups: tuple[tuple[str, PerSide], ...] = (
         ("pick", parameters.pick_stations),
         ("replenishment", parameters.replenishment_stations),
+        *parameters.other_stations.items(),
         ("elevator", parameters.elevators),
     )
     kinds = [kind for kind, group in groups for _ in range(getattr(group, name))]

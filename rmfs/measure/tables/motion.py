@@ -109,10 +109,14 @@ def heat(logs: Logs) -> pd.DataFrame:
 
 def _by_task(layout: Layout, by_purpose: NDArray[Any], what: str) -> dict[str, NDArray[Any]]:
     """Add up what was counted per station, which is what traffic knows, per kind of task."""
-    pick, stations = len(layout.pick_stations), len(layout.stations)
+    kinds = np.array([station.kind.name for station in layout.stations], str)
+    stations = len(kinds)
+    bound = by_purpose[:, :stations]
+    pick, replenish = kinds == "pick", kinds == "replenishment"
+    other = bound[:, ~(pick | replenish)].sum(axis=1)
     return {
-        f"pick_{what}": by_purpose[:, :pick].sum(axis=1),
-        f"replenish_{what}": by_purpose[:, pick:stations].sum(axis=1),
-        f"store_{what}": by_purpose[:, stations],
+        f"pick_{what}": bound[:, pick].sum(axis=1),
+        f"replenish_{what}": bound[:, replenish].sum(axis=1),
+        f"store_{what}": by_purpose[:, stations] + other,
         f"rest_{what}": by_purpose[:, stations + 1],
     }

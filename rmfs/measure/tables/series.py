@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rmfs.layout.model import PickStation
 from rmfs.measure.columns import INTEGER, REAL, Column
 from rmfs.measure.recorder import TASKS
 from rmfs.measure.steps import Steps, counts
@@ -90,8 +89,8 @@ def series(logs: Logs) -> pd.DataFrame:
         "backlog_bundles": Steps.between(bundles["created_s"], bundles["assigned_s"]).at(ends),
         "inventory_share": inventory_share(logs).at(ends),
     }
-    for kind, is_pick in (("pick", True), ("replenishment", False)):
-        columns[f"{kind}_station_busy_share"] = _busy_share(logs, edges, is_pick)
+    for kind in ("pick", "replenishment"):
+        columns[f"{kind}_station_busy_share"] = _busy_share(logs, edges, kind)
     for task in TASKS:
         columns[f"robots_task_{task}"] = with_task(logs, task).at(ends)
     for state in STATES:
@@ -116,12 +115,10 @@ def inventory_share(logs: Logs) -> Steps:
     return Steps(time, change / inventory.total_capacity, initial)
 
 
-def _busy_share(logs: Logs, edges: Floats, is_pick: bool) -> Floats:
+def _busy_share(logs: Logs, edges: Floats, kind: str) -> Floats:
     """Return the share of each interval that the stations of one kind were busy."""
     chosen = [
-        number
-        for number, station in enumerate(logs.layout.stations)
-        if isinstance(station, PickStation) == is_pick
+        number for number, station in enumerate(logs.layout.stations) if station.kind.name == kind
     ]
     if not chosen:
         return np.full(len(edges) - 1, np.nan)

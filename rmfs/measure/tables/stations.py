@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rmfs.layout.model import PickStation
+from rmfs.layout.model import PickStation, ReplenishmentStation
 from rmfs.measure.columns import INTEGER, REAL, TEXT, Column
 from rmfs.measure.steps import Steps, covered
 from rmfs.measure.tables.at_pile_on import units_per_h
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-    from rmfs.layout.model import Layout, ReplenishmentStation
+    from rmfs.layout.model import Layout, OtherStation
     from rmfs.measure.tables.logs import Logs
 
-    Station = PickStation | ReplenishmentStation
+    Station = PickStation | ReplenishmentStation | OtherStation
 
 
 STATIONS = (
     Column("station", INTEGER, "", "Number in the common numbering: pick stations come first"),
-    Column("kind", TEXT, "", "pick or replenishment"),
+    Column("kind", TEXT, "", "pick, replenishment, or the name of another kind"),
     Column("waypoint", INTEGER, "", "Where the robot stands while its pod is served"),
     Column("tier", INTEGER, "", "Floor"),
     Column("x_m", REAL, "m", "Position"),
@@ -33,7 +33,12 @@ STATIONS = (
     Column(
         "queue_places", INTEGER, "places", "Places in the queue, the one at the station included"
     ),
-    Column("visits", INTEGER, "visits", "Stays of a pod in which something was handled"),
+    Column(
+        "visits",
+        INTEGER,
+        "visits",
+        "Stays of a pod in which something was handled; all, of other kinds",
+    ),
     Column("visit_time_mean_s", REAL, "s", "Mean length of the visits that ended"),
     Column("units_picked", INTEGER, "units", "Units picked"),
     Column("late_bound_units", INTEGER, "units", "Of these, bound after the robot got its task"),
@@ -43,19 +48,19 @@ STATIONS = (
     Column("busy_s", REAL, "s", "Time spent handling units or bundles"),
     Column("idle_share", REAL, "share", "1 - busy_s / duration"),
     Column("active_share", REAL, "share", "Time switched on / duration"),
-    Column(
-        "units_per_h_at_pile_on", REAL, "1/h", "See footprint; empty for replenishment stations"
-    ),
+    Column("units_per_h_at_pile_on", REAL, "1/h", "See footprint; of pick stations only"),
     Column("units_per_visit", REAL, "units", "Pile-on: units_picked / visits"),
     Column("orders_per_visit", REAL, "orders", "orders_completed / visits"),
     Column("bundles_per_visit", REAL, "bundles", "bundles_stored / visits"),
-    Column("order_slots", INTEGER, "orders", "Orders open at once; 0 for replenishment stations"),
-    Column("capacity", REAL, "space units", "Bundles assigned at once; empty for pick stations"),
+    Column("order_slots", INTEGER, "orders", "Orders open at once; 0 for other kinds"),
+    Column(
+        "capacity", REAL, "space units", "Bundles assigned at once; of replenishment stations only"
+    ),
     Column(
         "without_work_share",
         REAL,
         "share",
-        "Share of the time in which no order (bundle) was assigned to it",
+        "Share of the time in which no order (bundle) was assigned to it; empty for other kinds",
     ),
 )
 
@@ -65,7 +70,9 @@ def stations(logs: Logs) -> pd.DataFrame:
     layout = logs.layout
     number = len(layout.stations)
     place = np.array([station.waypoint for station in layout.stations], np.int64)
-    visits = logs.visits[(logs.visits["units"] > 0) | (logs.visits["bundles"] > 0)]
+    works = len(layout.pick_stations) + len(layout.replenishment_stations)
+    handled = (logs.visits["units"] > 0) | (logs.visits["bundles"] > 0)
+    visits = logs.visits[handled | (logs.visits["station"] >= works)]
     units, orders = logs.units_now, logs.orders
     visited = count(visits["station"], number)
     pile_on = _per(count(units["station"], number), visited)
@@ -77,7 +84,7 @@ def stations(logs: Logs) -> pd.DataFrame:
         STATIONS,
         {
             "station": np.arange(number),
-            "kind": [_kind(station) for station in layout.stations],
+            "kind": [station.kind.name for station in layout.stations],
             "waypoint": place,
             "tier": layout.tier[place],
             "x_m": layout.x_m[place],
@@ -129,15 +136,16 @@ def _per(amount: NDArray[np.int64], visits: NDArray[np.int64]) -> NDArray[np.flo
 
 def _without_work(logs: Logs, station: int) -> float:
     """Return the share of the measured time in which nothing was assigned to a station."""
-    is_pick = isinstance(logs.layout.stations[station], PickStation)
-    work, done = (logs.orders, "completed_s") if is_pick else (logs.bundles, "time_s")
+    match logs.layout.stations[station]:
+        case PickStation():
+            work, done = logs.orders, "completed_s"
+        case ReplenishmentStation():
+            work, done = logs.bundles, "time_s"
+        case _:
+            return float("nan")
     own = work["station"].to_numpy() == station
     begin, end = work["assigned_s"].to_numpy()[own], work[done].to_numpy()[own]
     return 1.0 - Steps.between(begin, end).positive().mean(logs.start_s, logs.end_s)
-
-
-def _kind(station: Station) -> str:
-    return "pick" if isinstance(station, PickStation) else "replenishment"
 
 
 def _mean_visit(visits: pd.DataFrame, stations: int) -> NDArray[np.float64]:

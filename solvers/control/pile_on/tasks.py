@@ -19,12 +19,13 @@ from rmfs.control.pps.lexicographic import Lexicographic
 from rmfs.control.problems import Problem, Trigger
 from rmfs.control.ta import WORK, TaskAllocation
 from rmfs.control.ta.rest import RestPlaces, RestRule
-from rmfs.control.ta.stations import keeper_of
+from rmfs.control.ta.stations import bring, keeper_of
 from rmfs.solvers.control.buffer import Buffer
 from rmfs.solvers.control.pile_on import snapshot
 from rmfs.solvers.control.pile_on.parameters import JointParameters
 from rmfs.solvers.control.pile_on.plan import Plan
 from rmfs.solvers.control.pile_on.question import by_rule
+from rmfs.world.tasks import ReplenishTask
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -217,8 +218,7 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
         self.basis = None
         station = robot.station
         if station >= 0 and consult.serves(robot.pod, station):
-            bring = BringForPicks if station < len(self.view.pick_stations) else BringForBundles
-            yield bring(robot, robot.pod, station)
+            yield bring(self.view, robot, robot.pod, station)
             return
         place = consult.place_for(robot)
         if place >= 0:
@@ -226,11 +226,9 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
 
     def _replenish(self) -> Iterator[Decision]:
         """Send robots for bundles, as many as may work for that at a time."""
-        view, first = self.view, len(self.view.pick_stations)
+        view = self.view
         waiting = [s for s in view.replenishment_stations if view.has_open_work(s.index)]
-        working = sum(
-            robot.task is not None and robot.task.station >= first for robot in view.robots
-        )
+        working = sum(isinstance(robot.task, ReplenishTask) for robot in view.robots)
         for robot in self._free_robots() if waiting else ():
             if working >= self._at_bundles:
                 return

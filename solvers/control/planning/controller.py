@@ -12,11 +12,13 @@ from rmfs.control.pps.lexicographic import Lexicographic
 from rmfs.control.problems import Problem, Trigger
 from rmfs.control.ta import WORK, TaskAllocation
 from rmfs.control.ta.rest import RestPlaces
-from rmfs.control.ta.stations import keeper_of
+from rmfs.control.ta.stations import bring, keeper_of
 from rmfs.solvers.control.planning import snapshot
 from rmfs.solvers.control.planning.parameters import PlanningParameters
 from rmfs.solvers.control.planning.plan import Plan
 from rmfs.solvers.control.planning.question import by_rule
+from rmfs.world.stations import PickStation
+from rmfs.world.tasks import ReplenishTask
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
     from rmfs.solvers.control.planning.question import Question
     from rmfs.world.robots import Robot
-    from rmfs.world.stations import PickStation, ReplenishmentStation
+    from rmfs.world.stations import ReplenishmentStation
 
     Decision = Ask[Question] | AssignOrder | TaskDecision
 
@@ -83,7 +85,7 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
         if trigger is Trigger.ROBOT_FREE:
             self._changed |= view.robots[subject].pod < 0
         elif trigger is Trigger.POD_AT_STATION:
-            self._changed |= subject < len(view.pick_stations)
+            self._changed |= isinstance(view.all_stations[subject], PickStation)
         else:
             free = max(station.free_slots for station in view.pick_stations)
             self._changed |= bool(view.resting) or free > _WORTH_A_PLAN
@@ -192,14 +194,14 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
         view, here = self.view, robot.station
         self.basis = None
         if here >= 0 and consult.serves(robot.pod, here):
-            bring = BringForPicks if here < len(view.pick_stations) else BringForBundles
-            yield bring(robot, robot.pod, here)
+            yield bring(view, robot, robot.pod, here)
             return
-        if 0 <= here < len(view.pick_stations) and self._waits(robot, view.pick_stations[here]):
+        station = view.all_stations[here] if here >= 0 else None
+        if isinstance(station, PickStation) and self._waits(robot, station):
             return
-        for station in view.replenishment_stations:
-            if station.index != here and consult.serves(robot.pod, station.index):
-                yield BringForBundles(robot, robot.pod, station.index)
+        for other in view.replenishment_stations:
+            if other.index != here and consult.serves(robot.pod, other.index):
+                yield BringForBundles(robot, robot.pod, other.index)
                 return
         place = consult.place_for(robot)
         if place >= 0:
@@ -212,8 +214,7 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
 
     def _at_bundles(self) -> int:
         """How many robots work for replenishment stations."""
-        first = len(self.view.pick_stations)
-        return sum(r.task is not None and r.task.station >= first for r in self.view.robots)
+        return sum(isinstance(robot.task, ReplenishTask) for robot in self.view.robots)
 
     def _replenish(self, most: int) -> Iterator[Decision]:
         """Send at most so many robots for bundles, each to the nearest station with work."""

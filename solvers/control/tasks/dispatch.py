@@ -16,6 +16,7 @@ from rmfs.solvers.control.answers import answer
 from rmfs.solvers.control.tasks.asking import Asking, NotNegative, TaskParameters
 from rmfs.solvers.models.tasks import balance, matching
 from rmfs.solvers.models.tasks.balance import Balance
+from rmfs.world.stations import PickStation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -163,11 +164,10 @@ class DispatchControl(Asking[DispatchParameters]):
         view, column = self.view, np.full(len(robots), np.inf)
         if not empty or not view.has_open_work(number):
             return column
-        picks = len(view.pick_stations)
-        if number < picks:
-            pods = pick_candidates(view, robots[empty[0]], view.pick_stations[number]).pods
+        station = view.stations[number]
+        if isinstance(station, PickStation):
+            pods = pick_candidates(view, robots[empty[0]], station).pods
         else:
-            station = view.replenishment_stations[number - picks]
             pods = replenishment_candidates(view, robots[empty[0]], station).pods
         if len(pods):
             at = view.storage.pod_waypoint[pods]
@@ -179,11 +179,10 @@ class DispatchControl(Asking[DispatchParameters]):
 
     def _wanted(self, number: int) -> int:
         """How many pods a station could use at most."""
-        picks = len(self.view.pick_stations)
-        if number < picks:
-            target = self.view.pick_stations[number]
+        target = self.view.stations[number]
+        if isinstance(target, PickStation):
             return target.requests.units + target.queued_requests.units
-        return len(self.view.replenishment_stations[number - picks].waiting)
+        return len(target.waiting)
 
     def _balance(
         self,
@@ -193,8 +192,8 @@ class DispatchControl(Asking[DispatchParameters]):
         arrive: list[NDArray[np.float64]],
     ) -> Balance:
         view, given = self.view, self.parameters
-        picks = len(view.pick_stations)
-        value = [given.pick_value_s if s < picks else given.bundle_value_s for s in station]
+        picks = [isinstance(view.stations[s], PickStation) for s in station]
+        value = [given.pick_value_s if pick else given.bundle_value_s for pick in picks]
         due_s = [
             min((order.due_s for order in target.orders.values()), default=np.inf) - view.now_s
             for target in view.pick_stations
@@ -206,7 +205,10 @@ class DispatchControl(Asking[DispatchParameters]):
         return Balance(
             arrive_s=np.stack(arrive, axis=1) if arrive else np.zeros((robots, 0)),
             leave_s=np.array(value, np.float64),
-            due_s=np.array([due_s[s] if s < picks else np.inf for s in station], np.float64),
+            due_s=np.array(
+                [due_s[s] if pick else np.inf for s, pick in zip(station, picks, strict=True)],
+                np.float64,
+            ),
             station=np.array(station, np.int64),
             queue=np.array(queue),
             service_s=np.full(len(queue), given.service_s),

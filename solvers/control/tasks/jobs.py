@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
+from rmfs.world.stations import PickStation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
     from rmfs.control.pps.candidates import PickCandidates
     from rmfs.control.view import View
-    from rmfs.world.stations import PickStation, ReplenishmentStation
+    from rmfs.world.stations import ReplenishmentStation
 
 
 @dataclass(frozen=True)
@@ -81,12 +82,10 @@ def jobs(view: View, worth: Worth, robots_per_station: int, per_station: int) ->
     for station in view.stations:
         count = min(per_station, robots_per_station - len(station.tasks))
         if count > 0 and view.has_open_work(station.index):
-            if station.index < len(view.pick_stations):
-                target = view.pick_stations[station.index]
-                found += _picks(view, target, worth, count, taken)
+            if isinstance(station, PickStation):
+                found += _picks(view, station, worth, count, taken)
             else:
-                number = station.index - len(view.pick_stations)
-                found += _bundles(view, view.replenishment_stations[number], worth, count, taken)
+                found += _bundles(view, station, worth, count, taken)
     return found
 
 
@@ -130,10 +129,9 @@ def _bundles(
 ) -> Iterator[Job]:
     """Bring the pods with the most bundles."""
     pods = replenishment_candidates(view, view.robots[0], station).pods
-    number = station.index - len(view.pick_stations)
-    each_s = view.layout.replenishment_stations[number].bundle_transfer_s
+    each_s = view.layout.replenishment_stations[station.number].bundle_transfer_s
     busy_s = each_s * sum(len(task.bundles) for task in station.tasks.values())
-    bundles = view.bundles_waiting[number][pods]
+    bundles = view.bundles_waiting[station.number][pods]
     bring_s = view.travel.to(station.waypoint, loaded=True)[view.storage.pod_waypoint[pods]]
     rating = bundles * worth.bundle_s - bring_s
     for best in np.argsort(-rating, kind="stable").tolist():

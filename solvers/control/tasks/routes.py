@@ -20,7 +20,7 @@ from rmfs.solvers.control.tasks.jobs import Job, Worth, jobs
 from rmfs.solvers.models.solution import Limits
 from rmfs.solvers.models.tasks import sequence
 from rmfs.solvers.models.tasks.sequence import TaskSequence
-from rmfs.world.tasks import TaskKind
+from rmfs.world.tasks import ParkTask, PickTask, ReplenishTask
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -268,15 +268,18 @@ class RoutesControl(Asking[RoutesParameters]):
         task = robot.task
         if robot.station < 0 or task is None:
             return 0.0
-        if task.kind is TaskKind.PICK:
+        if isinstance(task, PickTask):
             seconds = view.layout.pick_stations[robot.station].unit_transfer_s
             return seconds * len(task.picks)
-        number = robot.station - len(view.pick_stations)
-        return view.layout.replenishment_stations[number].bundle_transfer_s * len(task.bundles)
+        if isinstance(task, ReplenishTask):
+            number = view.stations[robot.station].number
+            each_s = view.layout.replenishment_stations[number].bundle_transfer_s
+            return each_s * len(task.bundles)
+        return 0.0
 
 
 def _is_parking(robot: Robot) -> bool:
-    return robot.task is not None and robot.task.kind is TaskKind.PARK
+    return isinstance(robot.task, ParkTask)
 
 
 def _is_soon_free(robot: Robot) -> bool:

@@ -1,14 +1,14 @@
 /** Courses for the charts: throughput, backlog, robots by task, in bins of equal length. */
 
 import { type Events, Kind } from "./events";
-import { type Robots, TASKS } from "./robots";
+import type { Robots } from "./robots";
 
 export interface Course {
   /** Length of a bin in microseconds; bin k ends at (k + 1) times that. */
   bin_us: number;
   unitsPerHour: number[];
   backlog: number[];
-  /** Robots with each of the `TASKS` at the end of each bin. */
+  /** Robots with each of the tasks at the end of each bin. */
   robots: number[][];
 }
 
@@ -46,7 +46,7 @@ export function course(events: Events, robots: Robots, end_us: number): Course {
 }
 
 function byTask(robots: Robots, count: number, bin_us: number, end_us: number): number[][] {
-  const table = TASKS.map(() => new Array<number>(count).fill(0));
+  const table = robots.words.map(() => new Array<number>(count).fill(0));
   for (const steps of robots.tasks) {
     for (let bin = 0; bin < count; bin++) {
       table[steps.at(Math.min((bin + 1) * bin_us, end_us)).kind][bin]++;

@@ -10,13 +10,19 @@ export interface Tier {
 }
 
 export interface Station {
-  kind: "pick" | "replenishment";
+  /** The word for its kind: "pick", "replenishment", or what another kind calls itself. */
+  kind: string;
+  /** What stands before its number where there is little room. */
+  letter: string;
+  colour: string;
+  /** What is counted there, in words. */
+  handles: string;
   waypoint: number;
   queue: number[];
   radius_m: number;
-  /** Orders open at once; 0 at replenishment stations. */
+  /** Orders open at once; 0 but at pick stations. */
   order_slots: number;
-  /** How long one unit (pick) or bundle (replenishment) keeps the station busy. */
+  /** How long one of what it handles keeps the station busy; 0 if that differs. */
   transfer_s: number;
 }
 

@@ -1,11 +1,15 @@
 /** What robots are doing and why: task, state, load and delay. */
 
 import { type Events, Kind } from "./events";
-import type { Layout } from "./layout";
+import type { Header, Layout } from "./layout";
 import { type Motion, Piece, type Pose } from "./motion";
 import { Steps } from "./steps";
 
-export const TASKS = ["pick", "replenish", "park", "reposition", "rest"] as const;
+/** Returns the words for tasks in the order in which they are numbered. */
+export function tasksOf(header: Header): string[] {
+  return Object.keys(header.robot_colours.task);
+}
+
 export const STATES = [
   "driving",
   "turning",
@@ -18,18 +22,20 @@ export const STATES = [
 ] as const;
 
 export interface Task {
-  /** Index into `TASKS`. */
+  /** Index into the words for tasks. */
   kind: number;
   station: number;
 }
 
-const RESTING: Task = { kind: TASKS.indexOf("rest"), station: -1 };
 const [DRIVING, TURNING, TRANSFER, RIDING, QUEUEING, WAITING, SERVED, IDLE] = STATES.keys();
 
 export class Robots {
   readonly tasks: Steps<Task>[];
   /** The station that serves the robot, or -1. */
   readonly served: Steps<number>[];
+  /** The words for tasks. */
+  readonly words: string[];
+  private readonly rest: number;
 
   constructor(
     private readonly layout: Layout,
@@ -37,12 +43,13 @@ export class Robots {
     events: Events,
   ) {
     const robots = Array.from(layout.robotWaypoint);
-    this.tasks = robots.map(() => new Steps<Task>(RESTING));
+    this.words = tasksOf(layout.header);
+    this.rest = this.words.indexOf("rest");
+    this.tasks = robots.map(() => new Steps<Task>({ kind: this.rest, station: -1 }));
     this.served = robots.map(() => new Steps<number>(-1));
     events.onEach(({ kind, robot, time_us, station, detail }) => {
       if (kind === Kind.TASK) {
-        const task = TASKS.indexOf(detail as (typeof TASKS)[number]);
-        this.tasks[robot].push(time_us, { kind: task, station });
+        this.tasks[robot].push(time_us, { kind: this.words.indexOf(detail), station });
       } else if (kind === Kind.VISIT_STARTED) this.served[robot].push(time_us, station);
       else if (kind === Kind.VISIT_ENDED) this.served[robot].push(time_us, -1);
     });
@@ -63,7 +70,7 @@ export class Robots {
 
   /** Returns whether a robot has no task but to rest. */
   isIdle(robot: number, time_us: number): boolean {
-    return this.tasks[robot].at(time_us).kind === RESTING.kind;
+    return this.tasks[robot].at(time_us).kind === this.rest;
   }
 
   /** Returns for how long (s) the robot has stood with a way to go since its task began. */

@@ -7,13 +7,16 @@ import { Steps } from "./steps";
 
 export interface StationFigures {
   openOrders: number;
-  /** Units picked, or bundles stored, per hour within the last hour. */
+  /** Units picked, bundles stored or, elsewhere, pods that left, per hour within the last hour. */
   perHour: number;
   idleShare: number;
   active: boolean;
 }
 
 const HOUR_US = 3600e6;
+
+/** Kinds of station where units or bundles are handled; at others pods are. */
+const WORK = new Set(["pick", "replenishment"]);
 
 export class Stations {
   private readonly open: Steps<number>[];
@@ -40,6 +43,8 @@ export class Stations {
       if (kind === Kind.ORDER_ASSIGNED) this.change(this.open[station], time_us, 1);
       else if (kind === Kind.ORDER_COMPLETED) this.change(this.open[station], time_us, -1);
       else if (kind === Kind.UNIT_PICKED || kind === Kind.BUNDLE_STORED) {
+        this.change(this.handled[station], time_us, 1);
+      } else if (kind === Kind.VISIT_ENDED && !WORK.has(stations[station].kind)) {
         this.change(this.handled[station], time_us, 1);
       } else if (kind === Kind.STATION_SWITCHED) this.active[station].push(time_us, units > 0);
     });

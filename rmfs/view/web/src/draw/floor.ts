@@ -119,8 +119,7 @@ export class Floor {
   private addStations(): void {
     const { x, y, tier, header } = this.layout;
     header.stations.forEach((station, number) => {
-      const { kind, waypoint, radius_m } = station;
-      const colour = this.colour(kind === "pick" ? "pick_station" : "replenishment_station");
+      const { colour, letter, waypoint, radius_m } = station;
       const size_m = 1.6 * radius_m;
       const body = new Mesh(
         shaded(new CylinderGeometry(size_m, size_m, 0.06, 24).rotateX(Math.PI / 2)),
@@ -132,7 +131,7 @@ export class Floor {
       const { length_m, width_m } = header.tiers[tier[waypoint]];
       // beside the station, on the side that is nearer to the wall
       const [dx, dy] = outward(x[waypoint], y[waypoint], length_m, width_m);
-      const name = `${kind === "pick" ? "P" : "R"}${number}`;
+      const name = `${letter}${number}`;
       const away = size_m + 0.2;
       this.write(name, tier[waypoint], x[waypoint] + away * dx, y[waypoint] + away * dy, [dx, dy]);
     });

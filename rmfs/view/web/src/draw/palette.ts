@@ -2,20 +2,25 @@
 
 import { Color, ColorManagement } from "three";
 import type { Header } from "../data/layout";
-import { STATES, TASKS } from "../data/robots";
+import { STATES, tasksOf } from "../data/robots";
 
 // colours reach the screen as they are written here: nothing is lit, so nothing is converted
 ColorManagement.enabled = false;
 
 export type Theme = "light" | "dark";
 
-/** Robots are told apart by these words; their colours come with the run. */
-const KINDS = { task: TASKS, state: STATES, load: ["without pod", "with pod"] } as const;
-export type Kinds = keyof typeof KINDS;
+const LOADS = ["without pod", "with pod"];
+
+/** What robots are told apart by; the words and their colours come with the run. */
+export type Kinds = "task" | "state" | "load";
+
+function words(header: Header, kinds: Kinds): readonly string[] {
+  return { task: tasksOf(header), state: STATES, load: LOADS }[kinds];
+}
 
 /** Returns the colours of robots, in the order in which tasks, states and loads are numbered. */
-export function robotColours({ robot_colours }: Header, kinds: Kinds): string[] {
-  return KINDS[kinds].map((word) => robot_colours[kinds][word]);
+export function robotColours(header: Header, kinds: Kinds): string[] {
+  return words(header, kinds).map((word) => header.robot_colours[kinds][word]);
 }
 
 export const GROUND: Record<Theme, { back: string; floor: string; line: string; text: string }> = {
@@ -67,5 +72,5 @@ export interface Entry {
 /** Returns what the colours of robots mean. */
 export function robotEntries(header: Header, kinds: Kinds): Entry[] {
   const colours = robotColours(header, kinds);
-  return KINDS[kinds].map((label, i) => ({ label, colour: colours[i] }));
+  return words(header, kinds).map((label, i) => ({ label, colour: colours[i] }));
 }

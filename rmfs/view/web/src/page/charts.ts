@@ -1,7 +1,6 @@
 /** Throughput, backlog and robots by task over time, with a cursor at the present. */
 
 import type { Course } from "../data/figures";
-import { TASKS } from "../data/robots";
 import type { Run } from "../data/run";
 import { GROUND, robotColours, type Theme } from "../draw/palette";
 import { clock, h } from "./dom";
@@ -107,14 +106,14 @@ function course(
 function tasks(run: Run, name: string): Chart {
   const colours = robotColours(run.header, "task");
   const tell = (time_s: number) => {
-    const count = TASKS.map(() => 0);
+    const count = run.robots.words.map(() => 0);
     for (const steps of run.robots.tasks) count[steps.at(time_s * 1e6).kind]++;
     return [...count.keys()]
       .filter((kind) => count[kind] > 0)
       .map((kind) => {
         const patch = h("i", {});
         patch.style.background = colours[kind];
-        return h("span", {}, patch, `${count[kind]} ${TASKS[kind]}`);
+        return h("span", {}, patch, `${count[kind]} ${run.robots.words[kind]}`);
       });
   };
   const draw: Chart["draw"] = (pen, frame, theme) => stacked(pen, frame, run, theme, colours);
@@ -182,7 +181,7 @@ function stacked(
     const from = across(frame, (bin * bin_us) / 1e6);
     const to = across(frame, Math.min((bin + 1) * bin_us, run.known_us) / 1e6);
     let below = 0;
-    TASKS.forEach((_, task) => {
+    run.robots.words.forEach((_, task) => {
       const count = robots[task][bin];
       pen.fillStyle = colours[task];
       pen.fillRect(from, up((below + count) / most), to - from + 0.5, up(0) - up(count / most));

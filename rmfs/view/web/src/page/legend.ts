@@ -43,8 +43,7 @@ export function legend(
     parts.push(
       swatches([
         ...(pods === "plain" ? [pod] : []),
-        { colour: colours.pick_station, label: "pick station (P)" },
-        { colour: colours.replenishment_station, label: "replenishment station (R)" },
+        ...stationKinds(header),
         { colour: colours.elevator, label: "elevator" },
         { colour: faint(colours.storage, theme).getStyle(), label: "storage place" },
         { colour: faint(colours.queue_zone, theme).getStyle(), label: "queue zone" },
@@ -57,6 +56,14 @@ export function legend(
   });
   update();
   return { root, update };
+}
+
+/** Returns an entry for each kind of station, in the order of the stations. */
+function stationKinds({ stations }: Header): Entry[] {
+  const kinds = new Map(stations.map((one) => [one.kind, one]));
+  return [...kinds.values()].map(({ kind, letter, colour }) => {
+    return { colour, label: `${kind} station (${letter})` };
+  });
 }
 
 const POD_WORDS = { plain: "", fill: "fill", popularity: "popularity", age: "age of visit" };

@@ -27,8 +27,8 @@ export function queues({ run, poses }: Pane): number[][] {
 
 function stationTable(store: Store, pane: Pane, run: number) {
   const { stations } = pane.run.header;
-  const rows = stations.map(({ kind }, index) => {
-    const name = `${kind === "pick" ? "P" : "R"}${index}`;
+  const rows = stations.map(({ letter }, index) => {
+    const name = `${letter}${index}`;
     const choose = () => store.set({ selection: { run, what: "station", index } });
     const figures = HEADS.slice(1).map(() => h("td", {}));
     const row = h("tr", {}, h("td", {}, button(name, "Choose this station", choose)), ...figures);
@@ -53,7 +53,7 @@ function stationTable(store: Store, pane: Pane, run: number) {
       const texts = [
         slots > 0 ? `${now.openOrders}/${slots}` : "",
         now.perHour.toFixed(0),
-        `${(100 * now.idleShare).toFixed(0)} %`,
+        stations[index].transfer_s > 0 ? `${(100 * now.idleShare).toFixed(0)} %` : "",
         String(waiting[index].length),
       ];
       figures.forEach((cell, n) => {

@@ -1,7 +1,7 @@
 /** What is known of the chosen robot, pod or station, now and before. */
 
 import { tell } from "../data/events";
-import { STATES, TASKS } from "../data/robots";
+import { STATES } from "../data/robots";
 import { button, clock, h } from "./dom";
 import { overview, queues } from "./overview";
 import type { Pane } from "./pane";
@@ -79,7 +79,7 @@ function robotRows({ run, poses }: Pane, robot: number, time_us: number): Rows {
   const task = run.robots.tasks[robot].at(time_us);
   const towards = task.station >= 0 ? ` for station ${task.station}` : "";
   return [
-    ["task", `${TASKS[task.kind]}${towards}`],
+    ["task", `${run.robots.words[task.kind]}${towards}`],
     ["state", STATES[run.robots.state(robot, time_us, pose)]],
     ["carries", pose.pod >= 0 ? `pod ${pose.pod}` : "nothing"],
     ["waited in this task", `${run.robots.delay_s(robot, time_us).toFixed(1)} s`],
@@ -111,15 +111,11 @@ function podRows({ run }: Pane, pod: number, time_us: number): Rows {
 }
 
 function stationRows(pane: Pane, station: number, time_us: number): Rows {
-  const { kind, order_slots } = pane.run.header.stations[station];
+  const { kind, handles, order_slots, transfer_s } = pane.run.header.stations[station];
   const figures = pane.run.stations.figures(station, time_us);
   const rows: Rows = [
     ["kind", `${kind} station${figures.active ? "" : " (switched off)"}`],
-    [
-      kind === "pick" ? "units picked" : "bundles stored",
-      `${figures.perHour.toFixed(0)} per h (last hour)`,
-    ],
-    ["idle share", `${(100 * figures.idleShare).toFixed(1)} % (last hour)`],
+    [handles, `${figures.perHour.toFixed(0)} per h (last hour)`],
     [
       "in its queue",
       queues(pane)
@@ -127,7 +123,9 @@ function stationRows(pane: Pane, station: number, time_us: number): Rows {
         .join(", ") || "nobody",
     ],
   ];
-  if (kind === "pick")
+  if (transfer_s > 0)
+    rows.splice(2, 0, ["idle share", `${(100 * figures.idleShare).toFixed(1)} % (last hour)`]);
+  if (order_slots > 0)
     rows.splice(1, 0, ["open orders", `${figures.openOrders} of ${order_slots}`]);
   return rows;
 }

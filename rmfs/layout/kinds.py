@@ -1,0 +1,217 @@
+"""Kinds of station: what belongs to one, from the file of a layout to the colour in the viewer.
+
+A kind is one class. It names its parts, each by class or by reference (`module:Class`): the layout,
+which holds the kind, is read before there is a world, and knows nothing of it. Pick stations and
+replenishment stations are kinds like any other; others are named in layout files, by
+`module:Class`, by `path/to/file.py:Class`, or by the name under which a distribution registers them
+in the entry-point group `rmfs.stations`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cache
+from importlib.metadata import entry_points
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+from rmfs.config import Model, validate
+from rmfs.errors import InputError
+from rmfs.layout import colours
+from rmfs.references import anchored, is_reference, reference_of, resolve
+from rmfs.sources import sources
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+GROUP = "rmfs.stations"
+"""Entry-point group of third-party kinds of station."""
+
+T = TypeVar("T")
+
+
+class NoParameters(Model):
+    """A kind that has nothing to set."""
+
+
+class StationKind:
+    """A kind of station; derive from it, name the parts, and write it into a layout.
+
+    Parameters
+    ----------
+    parameters
+        Of all stations of the kind in a layout, and of their controller.
+
+    Attributes
+    ----------
+    name
+        The word for it in files, tables and the viewer.
+    letter
+        What stands before the number of a station where there is little room.
+    colour
+        Of stations, and of robots on their way to them.
+    handles
+        What is counted there, in the viewer.
+    parameters_model
+        The model of the parameters.
+    task
+        Kind of task that brings a pod there: a `VisitTask` of its own.
+    state
+        What a station is and knows during a run: a `Station`.
+    service
+        What happens at the head of the queue: a `Service`.
+    controller
+        Who says which pod goes there, and when: a `VisitController`; None if decision problems do.
+    measures
+        Classes of measures whose columns the footprint has wherever there are such stations.
+    """
+
+    name: ClassVar[str]
+    letter: ClassVar[str]
+    colour: ClassVar[str]
+    handles: ClassVar[str] = "visits"
+    parameters_model: ClassVar[type[Model]] = NoParameters
+    task: ClassVar[str | type] = "rmfs.world.tasks:VisitTask"
+    state: ClassVar[str | type] = "rmfs.world.stations:Station"
+    service: ClassVar[str | type] = "rmfs.simulation.service:VisitService"
+    controller: ClassVar[str | type | None] = None
+    measures: ClassVar[tuple[str | type, ...]] = ()
+
+    def __init__(self, parameters: Any = None) -> None:
+        self.parameters = self.parameters_model() if parameters is None else parameters
+
+    def digested(self) -> tuple[object, ...]:
+        """What tells it from other kinds: the files it is written in, and its parameters."""
+        files = sources([type(self)]).values()
+        written = sorted(hashlib.sha256(path.read_bytes()).hexdigest() for path in files)
+        return self.name, written, self.parameters.model_dump(mode="json")
+
+    def part(self, name: str, base: type[T]) -> type[T]:
+        """Return one of its parts, such as `service`, which is derived from `base`.
+
+        Raises
+        ------
+        InputError
+            If it cannot be imported, or is something else.
+        """
+        return resolve(getattr(self, name), base, f"{name} of {self.name} stations")
+
+    def busy_s(self, station: Any) -> float:
+        """How long one of what it handles keeps a station busy; 0 if that differs."""
+        return 0.0
+
+
+class PickKind(StationKind):
+    """Units go from pods into orders."""
+
+    name = "pick"
+    letter = "P"
+    colour = colours.PICK_STATION
+    handles = "units picked"
+    task = "rmfs.world.tasks:PickTask"
+    state = "rmfs.world.stations:PickStation"
+    service = "rmfs.simulation.service:PickService"
+
+    def busy_s(self, station: Any) -> float:
+        """Time of a unit."""
+        return float(station.unit_transfer_s)
+
+
+class ReplenishmentKind(StationKind):
+    """Bundles go into pods."""
+
+    name = "replenishment"
+    letter = "R"
+    colour = colours.REPLENISHMENT_STATION
+    handles = "bundles stored"
+    task = "rmfs.world.tasks:ReplenishTask"
+    state = "rmfs.world.stations:ReplenishmentStation"
+    service = "rmfs.simulation.service:ReplenishmentService"
+
+    def busy_s(self, station: Any) -> float:
+        """Time of a bundle."""
+        return float(station.bundle_transfer_s)
+
+
+PICK, REPLENISHMENT = PickKind(), ReplenishmentKind()
+
+TASK_COLOURS = {
+    "pick": PICK.colour,
+    "replenish": REPLENISHMENT.colour,
+    "park": "#56B4E9",
+    "reposition": "#CC79A7",
+    "rest": "#999999",
+}
+"""Of robots by what they have to do; a robot bound for another kind of station has its colour."""
+
+_RESERVED = ("pick", "replenish", "replenishment", "elevator", "park", "reposition", "rest")
+
+
+def find(reference: str) -> type[StationKind]:
+    """Find the class of a kind of station.
+
+    Raises
+    ------
+    InputError
+        If there is none of that name.
+    """
+    if not is_reference(reference):
+        known = _installed()
+        if reference not in known:
+            there = f"; installed: {', '.join(sorted(known))}" if known else ""
+            raise InputError(
+                f"no kind of station {reference}; expected module:Class or "
+                f"path/to/file.py:Class{there}"
+            )
+        reference = known[reference]
+    return resolve(reference, StationKind, "kind of station")
+
+
+def station_kind(
+    name: str, reference: str, parameters: Mapping[str, Any], folder: Path | None = None
+) -> StationKind:
+    """Make a kind of station from what a layout file says of it.
+
+    Parameters
+    ----------
+    name
+        The key of its table below `other_stations`: what it calls itself.
+    reference
+        Its class.
+    folder
+        Where a file is looked for first. Default: the working directory.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind, its name is another one, or a parameter is wrong.
+    """
+    key = f"other_stations.{name}"
+    try:
+        found = find(anchored(reference, folder))
+    except InputError as error:
+        raise InputError(f"{key}.kind: {error}") from None
+    told = getattr(found, "name", None)
+    if told != name or name in _RESERVED:
+        raise InputError(
+            f"{key}: {reference} is named {told!r}: its table is other_stations.{told}"
+            if told != name
+            else f"{key}: the name {name} is taken; its class needs another one"
+        )
+    for needed in ("letter", "colour"):
+        if not isinstance(getattr(found, needed, None), str):
+            raise InputError(f"{key}.kind: {reference} has no {needed}")
+    return found(validate(found.parameters_model, dict(parameters), f"{key}.parameters"))
+
+
+def described(kind: StationKind) -> dict[str, Any]:
+    """Return what a layout file says of a kind, its stations left out."""
+    return {
+        "kind": reference_of(type(kind)),
+        "parameters": kind.parameters.model_dump(mode="json"),
+    }
+
+
+@cache
+def _installed() -> dict[str, str]:
+    return {entry.name: entry.value for entry in entry_points(group=GROUP)}

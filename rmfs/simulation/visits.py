@@ -1,0 +1,91 @@
+"""Visits: what brings pods to stations of other kinds than pick and replenishment stations."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from rmfs.control.legality import reason
+from rmfs.observer import Observer
+from rmfs.random import Stream, generator
+from rmfs.world.stations import Station
+from rmfs.world.tasks import VisitTask
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.control.decisions import Visit
+    from rmfs.control.view import View
+    from rmfs.layout.kinds import StationKind
+    from rmfs.simulation.dispatch import Dispatch
+    from rmfs.world import World
+    from rmfs.world.robots import Robot
+
+S = TypeVar("S", bound=Station[Any])
+
+
+class VisitController(Observer, Generic[S]):
+    """Says which pods go to the stations of a kind, and when.
+
+    It is asked about each robot that needs a task, before anybody else is, and watches the run by
+    the callbacks of `Observer`. It changes nothing: its decisions do. A run can be copied or saved
+    at any moment: it holds plain data.
+
+    Parameters
+    ----------
+    kind
+        With its parameters.
+    stations
+        Its stations, as they are at any moment.
+    view
+        The world, to be read.
+    seed
+        Of the run.
+
+    Attributes
+    ----------
+    task
+        The kind of task to be named in a `Visit`.
+    rng
+        For what it draws.
+    """
+
+    def __init__(self, kind: StationKind, stations: Sequence[S], view: View, seed: int = 0) -> None:
+        self.parameters = kind.parameters
+        self.task: type[VisitTask] = kind.part("task", VisitTask)
+        self.stations = list(stations)
+        self.view = view
+        self.rng = generator(seed, Stream.VISITS, *kind.name.encode())
+
+    def visit_for(self, robot: Robot) -> Visit | None:
+        """Say where a robot that needs a task is to go now, with the pod it carries or another.
+
+        A robot that carries a pod can only go on with this one; an empty one may fetch any pod that
+        is at hand (`view.storage.is_at_hand`).
+        """
+        raise NotImplementedError
+
+
+class Visits:
+    """The controllers of all kinds of station in a layout, and who applies what they say."""
+
+    def __init__(self, world: World, view: View, dispatch: Dispatch, seed: int) -> None:
+        self._world, self._view, self._dispatch = world, view, dispatch
+        self.controllers: list[VisitController[Any]] = []
+        plans = world.layout.stations
+        for kind in world.layout.other_kinds:
+            if kind.controller is not None:
+                own = [s for s in world.stations if plans[s.index].kind.name == kind.name]
+                controller = kind.part("controller", VisitController)
+                self.controllers.append(controller(kind, own, view, seed))
+
+    def give(self) -> None:
+        """Send robots that need a task on the visits that are due."""
+        for robot in list(self._world.asking.values()) if self.controllers else ():
+            for controller in self.controllers:
+                visit = controller.visit_for(robot)
+                if visit is not None:
+                    wrong = reason(visit, self._view)
+                    if wrong:
+                        raise ValueError(f"{type(controller).__qualname__}: {visit}: {wrong}")
+                    self._dispatch.start(visit)
+                    break
