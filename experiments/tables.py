@@ -41,7 +41,7 @@ HALF = "±"
 UNITS = {column.name: column.unit for column in FOOTPRINT}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Table:
     """A table of numbers that knows how to be written.
 
@@ -58,6 +58,12 @@ class Table:
     frame: pd.DataFrame
     decimals: Mapping[tuple[str, str], int]
     caption: str
+
+    def __repr__(self) -> str:
+        return f"{self._shown().to_string()}\n{self.caption}"
+
+    def _repr_html_(self) -> str:
+        return self.html()
 
     def noted(self, note: str) -> Table:
         """Return the table with a note at the end of its caption; as it is if there is none."""

@@ -27,6 +27,9 @@ T = TypeVar("T")
 _FILE = "file:"
 _SUFFIX = ".py"
 
+_GIVEN: dict[str, type] = {}
+"""Classes that were given as such, of notebooks and functions: nothing else finds them."""
+
 
 def resolve(reference: str | type, base: type[T], what: str) -> type[T]:
     """Return the class that a user means.
@@ -105,6 +108,20 @@ def reference_of(found: type) -> str:
     return f"{Path(file).absolute()}:{found.__qualname__}"
 
 
+def name_of(found: type) -> str:
+    """Return the name under which this process finds a class, wherever it was defined."""
+    try:
+        return reference_of(found) if found.__module__ != "__main__" else _remembered(found)
+    except InputError:
+        return _remembered(found)
+
+
+def _remembered(found: type) -> str:
+    name = f"{found.__module__}:{found.__qualname__}"
+    _GIVEN[name] = found
+    return name
+
+
 def source_file(found: type) -> Path | None:
     """Return the file in which a class was written; nothing for one typed at a prompt."""
     try:
@@ -115,6 +132,8 @@ def source_file(found: type) -> Path | None:
 
 def _imported(reference: str, what: str) -> object:
     place, _, name = reference.rpartition(":")
+    if reference in _GIVEN:
+        return _GIVEN[reference]
     if not place or not name:
         raise InputError(
             f"{reference}: no {what} of that name; expected module:Class or path/to/file.py:Class"

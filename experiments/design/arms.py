@@ -14,6 +14,7 @@ import tomllib
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from rmfs import references
 from rmfs.config import Table, read_toml
 from rmfs.errors import InputError
 from rmfs.measure.dictionary import footprint_column
@@ -348,7 +349,7 @@ def _arm(
                 f"{key}: not a parameter; must begin with layout., scenario. or controllers."
             )
         else:
-            overrides.append((path, value))
+            overrides.append((path, _anchored_rule(path, value, folder)))
     return Arm(
         name=_arm_name(combination, keys),
         levels=levels,
@@ -371,6 +372,16 @@ def anchored(given: str, folder: Path) -> str:
     """Return a path for a file beside the design; a name or another path stays as it is."""
     beside = folder / given
     return str(beside) if beside.is_file() else given
+
+
+def _anchored_rule(path: list[str], value: Any, folder: Path) -> Any:
+    """Return a rule's name so that the file it may be in is found from everywhere."""
+    if path[0] != "controllers":
+        return value
+    if isinstance(value, dict) and isinstance(value.get("name"), str):
+        return {**value, "name": references.anchored(value["name"], folder)}
+    is_name = len(path) == 2 or path[-1] == "name"
+    return references.anchored(value, folder) if is_name and isinstance(value, str) else value
 
 
 def _name_problems(made: list[Arm]) -> list[str]:

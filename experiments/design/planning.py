@@ -187,18 +187,38 @@ def plan(
         If the file itself is wrong. What is wrong with arms is listed in `problems`.
     """
     path = design_file.locate(name_or_path)
-    design, table = design_file.read(path)
-    measures = design_file.own_measures(table, path.parent)
+    _, table = design_file.read(path)
     if base or replications is not None:
         table = {**table, "base": {**table["base"], **(base or {})}}
         if replications is not None:
             table = {key: value for key, value in table.items() if key != "seeds"}
             table["replications"] = replications
-        design = config.validate(DesignFile, table, str(path))
-    made, problems = arms(design, path.parent)
+    return plan_of(table, path.parent, str(path), without=without, told=told)
+
+
+def plan_of(
+    table: Table,
+    folder: Path,
+    source: str,
+    *,
+    without: Collection[str] = (),
+    told: Callable[[int, int], None] | None = None,
+) -> Plan:
+    """Resolve all arms of a design that is given as the content of a design file; see `plan`.
+
+    Parameters
+    ----------
+    folder
+        Where files are looked for first.
+    source
+        Where the design comes from, for errors.
+    """
+    measures = design_file.own_measures(table, folder)
+    design = config.validate(DesignFile, table, source)
+    made, problems = arms(design, folder)
     made = [arm for arm in made if arm.name not in without]
     if any(problem.startswith("base: ") for problem in problems):
-        return Plan(design, table, made, {}, problems, str(path))
+        return Plan(design, table, made, {}, problems, source)
     resolver = Resolver(design.allow_not_well_formed, measures)
     resolved: list[Arm] = []
     wrong: dict[str, list[str]] = {}
@@ -212,7 +232,7 @@ def plan(
     problems += [f"{_named(names)}: {problem}" for problem, names in wrong.items()]
     problems += [] if wrong else _twins(resolved)
     files = dict(sorted(resolver.files.items()))
-    return Plan(design, table, resolved, files, problems, str(path), described(measures))
+    return Plan(design, table, resolved, files, problems, source, described(measures))
 
 
 def load(folder: Path) -> Plan:

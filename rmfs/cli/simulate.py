@@ -254,9 +254,9 @@ def conclude(target: Path, footprint: pd.Series, report: CheckReport | None) -> 
     """Print the main figures; an unsafe trace or a score above 1 is a defect: exit code 1."""
     from rich.console import Console
 
-    from rmfs.measure.summary import summary
+    from rmfs.measure.summary import summarised
 
-    Console(highlight=False).print(summary(footprint))
+    Console(highlight=False).print(summarised(footprint))
     print(target)
     if footprint["units_score"] > 1.0:
         print("rmfs: more units were picked than is possible: a defect", file=sys.stderr)

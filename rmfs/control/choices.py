@@ -13,6 +13,7 @@ from rmfs.control.problems import Problem
 from rmfs.control.trackers.turnover import TurnoverParameters
 from rmfs.control.trackers.zones import ZoneParameters
 from rmfs.errors import InputError
+from rmfs.references import anchored
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -63,6 +64,7 @@ def choose(problem: Problem, table: Table, source: str) -> Choice:
     name = parameters.pop("name", DEFAULTS[problem])
     if not isinstance(name, str):
         raise InputError(f"{source}: {problem}.name: must be a string (given: {name!r})")
+    name = anchored(name)
     try:
         model = registry.find(problem, name).parameters_model
     except InputError as error:

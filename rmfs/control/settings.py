@@ -14,6 +14,7 @@ from rmfs.control import registry
 from rmfs.control.base import RuleTables
 from rmfs.control.choices import DEFAULTS, Choice, check_together, choose
 from rmfs.control.problems import Problem
+from rmfs.references import anchored
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -104,7 +105,16 @@ def load_with_notes(
         table, notes = foreign.read(path)
     else:
         table, notes = config.read_toml(path), []
+        _anchor(table, path.parent)
     return settings(table, overrides, source=str(path)), notes
+
+
+def _anchor(table: Table, folder: Path) -> None:
+    """Let files of rules be looked for beside the controllers file first."""
+    for problem in Problem:
+        rule = table.get(problem)
+        if isinstance(rule, dict) and isinstance(rule.get("name"), str):
+            rule["name"] = anchored(rule["name"], folder)
 
 
 def settings(

@@ -92,6 +92,10 @@ class Recorded(Measured, Protocol):
         """Controllers exchanged by hand, and when (s)."""
 
     @property
+    def slow_robots(self) -> list[tuple[int, int, int, float]]:
+        """When which robots were slow: robot, from when to when (us), share of the top speed."""
+
+    @property
     def trace(self) -> dict[str, NDArray[Any]]:
         """Every piece of motion; only if the run was asked to record it."""
 

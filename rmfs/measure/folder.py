@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ from rmfs.errors import InputError
 from rmfs.files import replacing, replacing_folder
 from rmfs.measure.dictionary import TABLES, learn, names
 from rmfs.measure.registry import columns_of
+from rmfs.measure.results import Results
 from rmfs.measure.trace import read_events, read_layout, read_motion, write_trace
 
 if TYPE_CHECKING:
@@ -77,14 +79,21 @@ def fill(
     report: CheckReport | None = None,
     trace: bool = False,
     inputs: Mapping[str, str] | None = None,
+    tables: Mapping[str, pd.DataFrame] | None = None,
 ) -> None:
-    """Write a run's files into an existing folder; parameters as in `write_run`."""
+    """Write a run's files into an existing folder; parameters as in `write_run`.
+
+    Parameters
+    ----------
+    tables
+        All tables of the run, if they are made already.
+    """
     from rmfs.measure.events import as_table
     from rmfs.measure.footprints import all_tables
     from rmfs.measure.provenance import describe
 
     try:
-        tables = all_tables(run, report)
+        tables = all_tables(run, report) if tables is None else tables
         for name, frame in tables.items():
             _write_table(folder / f"{name}.parquet", frame)
         tables["footprint"].to_csv(folder / "footprint.csv", index=False, lineterminator="\n")
@@ -131,8 +140,8 @@ def _write_table(path: Path, frame: pd.DataFrame) -> None:
     frame.to_parquet(path, index=False, compression="zstd")
 
 
-@dataclass(frozen=True, slots=True)
-class RunFolder:
+@dataclass(frozen=True, slots=True, repr=False)
+class RunFolder(Results):
     """A run read back from its folder; tables are read when asked for.
 
     Attributes
@@ -176,6 +185,25 @@ class RunFolder:
     def layout(self) -> Layout:
         """The layout of a run with a trace; raises as `trace` does."""
         return read_layout(self.path)
+
+    def check(self) -> CheckReport:
+        """Have the independent checker prove the motion safe; raises as `trace` does."""
+        from rmfs.measure.checker import Slow, check
+
+        told = self.parameters
+        until_us = round((told["warmup_s"] + told["duration_s"]) * 1e6)
+        slow = [Slow(*one) for one in told.get("slow_robots", [])]
+        trace = {str(name): column.to_numpy() for name, column in self.trace.items()}
+        return check(self.layout, trace, until_us=until_us, slow=slow)
+
+    def save(self, path: str | Path, *, force: bool = False) -> RunFolder:
+        """Copy the folder; see `Results.save`."""
+        with reserved(Path(path), force=force) as folder:
+            shutil.copytree(self.path, folder, dirs_exist_ok=True)
+        return load_run(Path(path))
+
+    def _in_folder(self, path: Path) -> RunFolder:
+        return self
 
     def table(self, name: str) -> pd.DataFrame:
         """Read one table.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from rmfs.measure.folder import RunFolder
+    from rmfs.measure.results import Results
 
 PICTURES: dict[str, tuple[str, Callable[..., None], str]] = {
     "progression": ("series", plots.progression, "Picked units and distance per hour"),
@@ -30,11 +31,23 @@ PICTURES: dict[str, tuple[str, Callable[..., None], str]] = {
 }
 """Table, function and title of each picture."""
 
+ALIASES = {"throughput": "progression"}
+"""Other names of pictures."""
+
 FORMATS = {"png": "Software", "svg": "Date", "pdf": "CreationDate"}
 """Suffix, and the entry of its metadata that would make every file another one."""
 
 
-def picture(run: RunFolder, what: str) -> Figure:
+class Picture(Figure):
+    """A figure that shows itself in a notebook, whatever back end is chosen there."""
+
+    def _repr_png_(self) -> bytes:
+        content = io.BytesIO()
+        self.savefig(content, format="png", dpi=100)
+        return content.getvalue()
+
+
+def picture(run: Results, what: str) -> Figure:
     """Draw one picture; the heat map has axes for every tier.
 
     Parameters
@@ -48,13 +61,13 @@ def picture(run: RunFolder, what: str) -> Figure:
     InputError
         If there is no such picture, or the run folder lacks what it is drawn from.
     """
-    name, _, column = what.partition(":")
+    name, _, column = ALIASES.get(what, what).partition(":")
     if name not in PICTURES or (column and name != "heat"):
         raise InputError(f"picture {what}: no such; valid: {', '.join(PICTURES)}, heat:COLUMN")
     table, draw, title = PICTURES[name]
     frame = run.table(table)
     tiers = sorted(frame["tier"].unique()) if name == "heat" else [0]
-    figure = Figure(figsize=(7.0, 4.0 * len(tiers)), layout="constrained")
+    figure = Picture(figsize=(7.0, 4.0 * len(tiers)), layout="constrained")
     FigureCanvasAgg(figure)
     for place, tier in enumerate(tiers, start=1):
         ax = figure.add_subplot(len(tiers), 1, place)
@@ -63,7 +76,7 @@ def picture(run: RunFolder, what: str) -> Figure:
     return figure
 
 
-def _more(run: RunFolder, what: str, tier: int, column: str) -> dict[str, Any]:
+def _more(run: Results, what: str, tier: int, column: str) -> dict[str, Any]:
     """Return what a picture shows besides its table."""
     if what == "heat":
         return {"tier": tier, **({"column": column} if column else {})}
@@ -72,7 +85,7 @@ def _more(run: RunFolder, what: str, tier: int, column: str) -> dict[str, Any]:
     return {}
 
 
-def save(run: RunFolder, what: str, path: Path) -> None:
+def save(run: Results, what: str, path: Path) -> None:
     """Write one picture as PNG, SVG or PDF; the same run gives the same file.
 
     Raises

@@ -98,6 +98,7 @@ def describe(
         "measures": described(own_measures(run)),
         "overrides": {".".join(path): value for path, value in run.overrides},
         "notes": run.notes,
+        "slow_robots": run.slow_robots,
         "seed": run.seed,
         "pacing": run.pacing,
         "pacing_parameters": run.pacing_settings.model_dump(mode="json"),

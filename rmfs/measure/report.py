@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rmfs.files import write_text
 from rmfs.measure.dictionary import TABLES
 from rmfs.measure.pictures import PICTURES, picture
-from rmfs.measure.summary import FIGURES, figure, shown
+from rmfs.measure.summary import summarised
 
 if TYPE_CHECKING:
     from rmfs.measure.folder import RunFolder
@@ -49,10 +49,7 @@ def render(run: RunFolder) -> str:
         title=f"{names}, seed {footprint['seed']}",
         subtitle=f"{footprint['duration_s'] / 3600.0:g} h measured after "
         f"{footprint['warmup_s'] / 3600.0:g} h of warm-up, written {told.get('written', '')}",
-        main=[
-            *((label, shown(footprint[column], column, form)) for label, column, form in FIGURES),
-            *(figure(footprint, column) for column in run.own_columns),
-        ],
+        main=summarised(footprint).rows,
         pictures=[(name, title, _png(run, name)) for name, (_, _, title) in PICTURES.items()],
         footprint=[
             (column.name, _text(footprint[column.name]), column.unit, column.meaning)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 from rmfs.measure.dictionary import learnt
@@ -33,26 +35,70 @@ FIGURES: tuple[tuple[str, str, str], ...] = (
 )
 """Label, column and format of each figure."""
 
+MISSING = "-"
+"""What was not measured."""
 
-def summary(footprint: pd.Series) -> Group:
-    """Return the main figures as an aligned table; what was not measured shows as -.
 
-    What measures of the user say stands below.
+LINES = 19
+"""Most lines that a summary takes at a prompt."""
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The main figures of a run: plain text, a table of rich, or HTML, as it is asked for.
+
+    Attributes
+    ----------
+    title
+        What was simulated.
+    rows
+        Label and value; those of measures of the user come last.
     """
-    from rich import box
-    from rich.console import Group
-    from rich.table import Table
 
+    title: str
+    rows: tuple[tuple[str, str], ...]
+
+    def __str__(self) -> str:
+        told = [row for row in self.rows if row[1] != MISSING]
+        if len(told) >= LINES:
+            told = [*told[: LINES - 2], ("...", f"{len(told) - LINES + 2} more")]
+        widest = [max(len(row[column]) for row in told) for column in (0, 1)]
+        lines = [f"  {label:{widest[0]}}  {value:>{widest[1]}}" for label, value in told]
+        return "\n".join([self.title, *lines])
+
+    __repr__ = __str__
+
+    def __rich__(self) -> Group:
+        from rich import box
+        from rich.console import Group
+        from rich.table import Table
+
+        table = Table(box=box.SIMPLE_HEAD, show_header=False)
+        table.add_column()
+        table.add_column(justify="right")
+        for label, value in self.rows:
+            table.add_row(label, value)
+        return Group(self.title, table)
+
+    def _repr_html_(self) -> str:
+        cell = '<td style="text-align: {}">{}</td>'
+        rows = [
+            f"<tr>{cell.format('left', escape(label))}{cell.format('right', escape(value))}</tr>"
+            for label, value in self.rows
+        ]
+        return f"<table><caption>{escape(self.title)}</caption>{''.join(rows)}</table>"
+
+
+def summarised(footprint: pd.Series) -> Summary:
+    """Return the main figures; what was not measured shows as -."""
     names = " / ".join(footprint[["layout", "scenario", "controllers"]])
-    title = f"{names}, seed {footprint['seed']}"
-    table = Table(box=box.SIMPLE_HEAD, show_header=False)
-    table.add_column()
-    table.add_column(justify="right")
-    for label, column, form in FIGURES:
-        table.add_row(label, shown(footprint[column], column, form))
-    for own in own_columns(footprint):
-        table.add_row(*figure(footprint, own))
-    return Group(title, table)
+    return Summary(
+        f"{names}, seed {footprint['seed']}",
+        (
+            *((label, shown(footprint[column], column, form)) for label, column, form in FIGURES),
+            *(figure(footprint, own) for own in own_columns(footprint)),
+        ),
+    )
 
 
 def own_columns(footprint: pd.Series) -> list[Column]:
@@ -72,5 +118,5 @@ def shown(value: Any, column: str, form: str) -> str:
     import pandas as pd
 
     if pd.isna(value):
-        return "-"
+        return MISSING
     return form.format(value / 1000.0 if column == "distance_m" else value)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rmfs import control, scenario
+import numpy as np
+
+from rmfs import control, references, scenario
 from rmfs import layout as layouts
 from rmfs.control.settings import ControllerSettings
 from rmfs.errors import InputError
@@ -81,6 +84,32 @@ def load_inputs(
         pacing=given["pacing"],
         notes=notes,
     )
+
+
+def as_overrides(settings: Mapping[str, Any]) -> Overrides:
+    """Return parameters by dotted key as pairs of path and value; classes become their names."""
+    if not isinstance(settings, Mapping):
+        raise InputError(
+            'set: must be a mapping of keys to values, such as {"layout.robots": 16} '
+            f"(given: {type(settings).__name__})"
+        )
+    wrong = [key for key in settings if not isinstance(key, str)]
+    if wrong:
+        raise InputError(f'set: {wrong[0]!r}: must be a dotted key, such as "layout.robots"')
+    return [(key.split("."), _plain(value)) for key, value in settings.items()]
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as a file would hold it."""
+    if isinstance(value, type):
+        return references.name_of(value)
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, Path):
+        return str(value)
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def name_of(given: Any) -> str:

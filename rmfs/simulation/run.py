@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from rmfs import layout as layouts
@@ -12,19 +13,23 @@ from rmfs.control.pp import planner_settings
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
 from rmfs.measure.checker import Slow, check
+from rmfs.measure.dictionary import TABLES
+from rmfs.measure.ended import EndedRun
+from rmfs.measure.folder import fill, reserved
+from rmfs.measure.footprints import footprint
 from rmfs.measure.measures import SHIPPED
 from rmfs.measure.provenance import MARK
 from rmfs.measure.registry import find_all
+from rmfs.measure.results import Results
 from rmfs.simulation import forking, saving
 from rmfs.simulation.checkpoints import resumed
-from rmfs.simulation.inputs import Overrides, load_inputs, name_of
+from rmfs.simulation.inputs import Overrides, as_overrides, load_inputs, name_of
 from rmfs.simulation.kernel import Kernel
 from rmfs.simulation.pacing import Replay, ReplayPacing, pacing_settings
 from rmfs.traffic import Traffic
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
-    from pathlib import Path
 
     import pandas as pd
     from numpy.typing import NDArray
@@ -32,7 +37,7 @@ if TYPE_CHECKING:
     from rmfs.control.choices import Choice
     from rmfs.control.settings import ControllerSettings
     from rmfs.layout.model import Layout
-    from rmfs.measure import EventLog, Recorder
+    from rmfs.measure import EventLog, Recorder, RunFolder
     from rmfs.measure.base import Measure
     from rmfs.measure.checker import CheckReport
     from rmfs.observer import Observer
@@ -45,9 +50,12 @@ if TYPE_CHECKING:
     Driver = Callable[[Kernel, Callable[[float, float], None] | None], None]
 
 
-@dataclass
-class Run:
+@dataclass(repr=False, eq=False)
+class Run(Results):
     """A run that has ended.
+
+    Sent to another process, it takes its tables and its trace along and leaves behind what can
+    only be used here: `world`, `traffic`, `recorder` and `disturbances`.
 
     Attributes
     ----------
@@ -104,39 +112,112 @@ class Run:
     events: EventLog | None = None
     interventions: Sequence[tuple[float, Choice]] = ()
 
+    _report: CheckReport | None = None
+    _sent: _Sent | None = None
+
     @cached_property
     def footprint(self) -> pd.Series[Any]:
         """Measures of the whole run; one row of `footprint.csv`."""
-        return measure.footprint(self)
+        row: pd.Series[Any] = self.table("footprint").iloc[0]
+        return row
 
-    @cached_property
+    @property
     def series(self) -> pd.DataFrame:
         """Measures minute by minute."""
-        return measure.series(self)
+        return self.table("series")
 
-    @cached_property
+    @property
     def decisions(self) -> pd.DataFrame:
         """Measures per decision problem."""
-        return measure.decisions(self)
+        return self.table("decisions")
+
+    def table(self, name: str) -> pd.DataFrame:
+        """Return a table by name; see `Results.table`."""
+        if name not in TABLES:
+            raise InputError(f"{name}: no such table; valid: {', '.join(TABLES)}")
+        if self._sent is not None:
+            return self._sent.tables[name]
+        if name == "footprint":
+            return self._footprint
+        return self._ended.tables[name]
 
     def check(self) -> CheckReport:
-        """Have the independent checker prove the motion safe; the trace must be recorded."""
+        """Have the independent checker prove the motion safe; `collisions` tells of it then."""
         until_us = round(self.end_s * 1e6)
-        slow = [Slow(*one) for one in self.disturbances.slow]
-        return check(self.layout, self.trace, until_us=until_us, slow=slow)
+        slow = [Slow(*one) for one in self.slow_robots]
+        self._require_trace()
+        self._report = check(self.layout, self.trace, until_us=until_us, slow=slow)
+        for known in ("footprint", "_footprint", "_ended"):
+            self.__dict__.pop(known, None)
+        return self._report
+
+    def save(self, path: str | Path, *, force: bool = False) -> RunFolder:
+        """Write a run folder, with the trace if there is one; see `Results.save`."""
+        has_trace = self.events is not None
+        with reserved(Path(path), force=force) as folder:
+            fill(folder, self, report=self._report, trace=has_trace, tables=self._tables())
+        return measure.load_run(Path(path))
 
     @property
     def trace(self) -> dict[str, NDArray[Any]]:
         """Every piece of motion; only if the run was asked to record it."""
-        return self.traffic.trace()
+        return self.traffic.trace() if self._sent is None else self._sent.trace
+
+    @property
+    def slow_robots(self) -> list[tuple[int, int, int, float]]:
+        """When which robots were slow: robot, from when to when (us), share of the top speed."""
+        return self.disturbances.slow if self._sent is None else self._sent.slow_robots
+
+    def _tables(self) -> dict[str, pd.DataFrame]:
+        return {name: self.table(name) for name in TABLES}
+
+    @cached_property
+    def _footprint(self) -> pd.DataFrame:
+        return footprint(self._ended, self.measures)
+
+    @cached_property
+    def _ended(self) -> EndedRun:
+        return EndedRun(self, self._report)
+
+    def _in_folder(self, path: Path) -> RunFolder:
+        self._require_trace()
+        return self.save(path)
+
+    def _require_trace(self) -> None:
+        if self.events is None:
+            raise InputError("the run has recorded no trace; simulate it with trace=True")
+
+    def __getstate__(self) -> dict[str, Any]:
+        trace = {} if self.events is None else self.trace
+        kept = {key: value for key, value in self.__dict__.items() if key not in _STAYS}
+        return {**kept, "_sent": _Sent(self._tables(), trace, self.slow_robots)}
+
+    def __getattr__(self, name: str) -> Any:
+        if name in _STAYS:
+            raise AttributeError(f"{name} was left behind when the run was sent to this process")
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+
+@dataclass(frozen=True)
+class _Sent:
+    """What a run takes along to another process in place of what it was made from."""
+
+    tables: dict[str, pd.DataFrame]
+    trace: dict[str, NDArray[Any]]
+    slow_robots: list[tuple[int, int, int, float]]
+
+
+_STAYS = frozenset(("world", "traffic", "recorder", "disturbances", "_ended", "_footprint"))
+"""What of a run cannot travel."""
 
 
 def simulate(
-    layout: str | Path | Layout,
-    scenario: str | Path | Scenario,
-    controllers: str | Path | ControllerSettings,
+    layout: str | Path | Layout = "default",
+    scenario: str | Path | Scenario = "default",
+    controllers: str | Path | ControllerSettings = "default",
     *,
     seed: int = 0,
+    set: Mapping[str, Any] | None = None,
     overrides: Sequence[tuple[list[str], Any]] = (),
     observers: Sequence[Observer] = (),
     measures: Sequence[str | type[Measure]] = (),
@@ -159,9 +240,11 @@ def simulate(
         Names of shipped instances, paths, or the objects themselves.
     seed
         Seed of all random streams, 0 or greater.
+    set
+        Parameters by dotted key, as `--set` has them: `{"layout.robots": 16}`. Where a rule is
+        named, its class will do: `{"controllers.psa.name": MyRule}`.
     overrides
-        Pairs of path and value, for example `(["layout", "robots"], 16)`, applied to what is read
-        from files.
+        The same as pairs of path and value, for example `(["layout", "robots"], 16)`; `set` wins.
     observers
         Told of everything that happens, besides the recorder of the usual measures.
     measures
@@ -201,6 +284,7 @@ def simulate(
         scenario,
         controllers,
         seed=seed,
+        set=set,
         overrides=overrides,
         observers=observers,
         measures=measures,
@@ -257,7 +341,7 @@ streams, remark, allow_not_well_formed, traffic_maker
     ) -> None:
         if seed < 0:
             raise InputError(f"seed {seed}: must be 0 or greater")
-        changes = [*overrides, *((key.split("."), value) for key, value in (set or {}).items())]
+        changes = [*overrides, *as_overrides(set or {})]
         inputs = load_inputs(layout, scenario, controllers, changes)
         plan, work, rules = inputs.layout, inputs.scenario, inputs.controllers
         self.names = name_of(layout), name_of(scenario), name_of(controllers)

@@ -313,6 +313,7 @@ def run():
         end_s=END_S,
         wall_s=0.5,
         measures=[kind() for kind in SHIPPED],
+        slow_robots=[],
         recorder=recorder,
         trace=trace,
         check=lambda: check(place, trace, until_us=round(END_S * 1e6)),

@@ -1,0 +1,240 @@
+"""`experiment`: a whole study in one call, from factors to tables."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.experiments.design.planning import plan_of
+from rmfs.experiments.results import load
+from rmfs.experiments.tables import differences, means
+from rmfs.references import reference_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+    from rmfs.experiments.design.planning import Plan
+    from rmfs.experiments.running.driver import Watcher
+    from rmfs.experiments.tables import Table
+    from rmfs.measure.base import Measure
+
+COLUMN = "units_per_h"
+
+
+@dataclass(frozen=True, repr=False)
+class Study:
+    """An experiment that has been run.
+
+    Attributes
+    ----------
+    plan
+        Its arms, seeds and inputs.
+    folder
+        Where its results are.
+    """
+
+    plan: Plan
+    folder: Path
+
+    @cached_property
+    def frame(self) -> pd.DataFrame:
+        """Every run a row: `arm`, the factors, `replication`, the footprint."""
+        return load(self.folder)
+
+    def table(self, *columns: str, by: str | None = None, confidence: float = 0.95) -> Table:
+        """Return means over the seeds with confidence intervals.
+
+        Parameters
+        ----------
+        columns
+            Of the footprint. Default `units_per_h`.
+        by
+            A factor, whose levels get a row each: the mean over all other factors, seed by seed.
+            Default: a row for every arm.
+
+        Raises
+        ------
+        InputError
+            If there is no such column or factor.
+        """
+        chosen = self._columns(columns)
+        return means(self._rows(by, chosen), chosen, confidence=confidence, by=by or "arm")
+
+    def compare(
+        self,
+        *columns: str,
+        baseline: Any = None,
+        by: str | None = None,
+        confidence: float = 0.95,
+    ) -> Table:
+        """Return paired differences to a baseline, seed by seed, with confidence intervals.
+
+        Parameters
+        ----------
+        columns
+            Of the footprint. Default `units_per_h`.
+        baseline
+            An arm, or a level of the factor `by`. Default the first.
+        by
+            As in `table`.
+
+        Raises
+        ------
+        InputError
+            If there is no such column, factor or baseline.
+        """
+        chosen = self._columns(columns)
+        rows = self._rows(by, chosen)
+        known = list(rows[by or "arm"].unique())
+        first = known[0] if baseline is None else baseline
+        if first not in known:
+            raise InputError(f"baseline {first}: valid: {', '.join(map(str, known))}")
+        return differences(rows, chosen, first, confidence=confidence, by=by or "arm")
+
+    def plot(
+        self, column: str = COLUMN, *, by: str | None = None, confidence: float = 0.95
+    ) -> Figure:
+        """Draw a dot for every seed, and means with their intervals; parameters as in `table`.
+
+        Raises
+        ------
+        InputError
+            If there is no such column or factor.
+        """
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+        from rmfs.experiments.figures import intervals
+        from rmfs.measure.pictures import Picture
+
+        rows = self._rows(by, self._columns([column]))
+        levels = rows[by or "arm"].nunique()
+        figure = Picture(figsize=(7.0, 1.2 + 0.28 * levels), layout="constrained")
+        FigureCanvasAgg(figure)
+        intervals(rows, column, figure.subplots(), confidence=confidence, by=by or "arm")
+        return figure
+
+    def __repr__(self) -> str:
+        return (
+            f"Study of {len(self.plan.arms)} arms, {len(self.frame)} runs, in {self.folder}\n"
+            + "\n".join(f"  {arm.name}" for arm in self.plan.arms[:16])
+            + ("\n  ..." if len(self.plan.arms) > 16 else "")
+        )
+
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()
+
+    def _columns(self, given: Sequence[str]) -> list[str]:
+        wrong = [column for column in given if column not in self.frame]
+        if wrong:
+            raise InputError(f"{', '.join(wrong)}: no such column of the footprint")
+        return list(given) or [COLUMN]
+
+    def _rows(self, by: str | None, columns: list[str]) -> pd.DataFrame:
+        """Return a row per run, or per seed and level of a factor."""
+        if by is None:
+            return self.frame
+        if by not in self.plan.factors:
+            raise InputError(f"{by}: no such factor; factors: {', '.join(self.plan.factors)}")
+        if columns == [by]:
+            raise InputError(f"{by}: is the factor itself")
+        grouped = self.frame.groupby([by, "replication"], sort=False)
+        return grouped[columns].mean().reset_index()
+
+
+def experiment(
+    factors: Mapping[str, Sequence[Any]],
+    *,
+    seeds: Iterable[int] = range(10),
+    base: Mapping[str, Any] | None = None,
+    measures: Sequence[str | type[Measure]] = (),
+    keep: Sequence[str] = (),
+    name: str = "experiment",
+    out: str | Path | None = None,
+    processes: int | None = None,
+    watcher: Watcher | None = None,
+) -> Study:
+    """Run an experiment: every combination of the factors' levels with every seed.
+
+    What is there already is not run again; a design file can say more (see `rmfs.experiments`).
+
+    Parameters
+    ----------
+    factors
+        Levels by parameter, as `set` of `rmfs.simulate` names it: `{"layout.robots": [8, 16]}`.
+        Where a rule is named, its class will do.
+    seeds
+        The same for every arm, so that arms can be compared seed by seed.
+    base
+        What all arms share: `layout`, `scenario`, `controllers`, all by default `default`, and
+        parameters.
+    measures
+        Measures of your own, as in `rmfs.simulate`.
+    keep
+        Tables kept of every run besides its footprint.
+    out
+        The folder of the results. Default: below `results`, named by what is run.
+    processes
+        Runs at a time. Default: one per core.
+    watcher
+        Told of progress.
+
+    Raises
+    ------
+    InputError
+        If something given is wrong; names what and says what would be valid.
+    RuntimeError
+        If a run failed.
+    """
+    from rmfs.experiments import running
+
+    table = {
+        "format": "rmfs-design/1",
+        "name": re.sub(r"[^A-Za-z0-9._-]", "-", name),
+        "seeds": [int(seed) for seed in seeds],
+        "base": {"layout": "default", "scenario": "default", "controllers": "default"}
+        | {key: _plain(value) for key, value in (base or {}).items()},
+        "factors": {key: [*map(_level, levels)] for key, levels in factors.items()},
+        "measures": [_plain(one) for one in measures],
+        "keep": list(keep),
+    }
+    plan = plan_of(table, Path(), "rmfs.experiment")
+    plan.require_sound()
+    folder = Path(out or Path("results") / f"{table['name']}-{plan.hash[:8]}")
+    done = running.run(plan, folder, processes=processes, watcher=watcher)
+    if done.failed:
+        from rmfs.experiments.results import failures
+
+        first = failures(folder).iloc[0]
+        raise RuntimeError(
+            f"{len(done.failed)} of {done.wanted} runs failed; the first, {first['arm']} with seed "
+            f"{first['seed']}: {first['error']}"
+        )
+    return Study(plan, folder)
+
+
+def _level(value: Any) -> Any:
+    """Return a level as a design has it; a class is shown by its name."""
+    if isinstance(value, type):
+        return {"label": value.__name__, "value": reference_of(value)}
+    return _plain(value)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, type):
+        return reference_of(value)
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, Path):
+        return str(value)
+    return value.item() if isinstance(value, np.generic) else value
