@@ -223,7 +223,7 @@ class RunFolder(Results):
         return frame
 
 
-def load_run(path: Path) -> RunFolder:
+def load_run(path: str | Path) -> RunFolder:
     """Open a run folder.
 
     Raises
@@ -231,6 +231,7 @@ def load_run(path: Path) -> RunFolder:
     InputError
         If it is not one.
     """
+    path = Path(path)
     file = path / PARAMETERS
     try:
         parameters = json.loads(file.read_text(encoding="utf-8"))
