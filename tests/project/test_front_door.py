@@ -75,7 +75,7 @@ def test_a_study_of_a_few_runs(here: Path) -> None:
     ):
         with pytest.raises(InputError, match=message):
             wrong()
-    with pytest.raises(InputError, match="poa=nonsense.*no poa rule of the name"):
+    with pytest.raises(InputError, match=r"poa=nonsense.*no poa rule of the name"):
         rmfs.experiment({"controllers.poa.name": ["nonsense"]})
 
 
