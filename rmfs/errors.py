@@ -2,7 +2,8 @@
 
 An `InputError` carries one line for the user: which file, which key, what would be valid. The
 command line prints it and exits with code 2; everything else is a defect and keeps its traceback.
-An `InternalError` is a defect that the program has noticed itself; the command line writes a file
+A `RuleError` carries one line, too: what a controller of the user did wrong in a run. An
+`InternalError` is a defect that the program has noticed itself; the command line writes a file
 that tells how to come to it again, and exits with code 1.
 """
 
@@ -34,6 +35,16 @@ class LayoutError(InputError):
         self.source = source
         self.problems = problems
         super().__init__(f"{source}: {'; '.join(problems)}")
+
+
+class RuleError(RuntimeError):
+    """A controller of the user decided what is impossible; the run cannot go on.
+
+    Parameters
+    ----------
+    message
+        One line: decision problem, rule, simulated time, decision, and why it is impossible.
+    """
 
 
 class InternalError(RuntimeError):

@@ -14,7 +14,7 @@ import typer
 from rmfs.cli.exit_codes import GIVEN_UP, UNSAFE
 from rmfs.cli.groups import names_of
 from rmfs.cli.terminal import progress, step, terminable
-from rmfs.errors import InputError, InternalError
+from rmfs.errors import InputError, InternalError, RuleError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -214,7 +214,7 @@ def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
     with progress(what) as advance:
         try:
             return simulate(*inputs.values(), seed=seed, progress=advance, remark=told, **options)
-        except (StalledError, OptimiserError, ReplayError) as error:
+        except (StalledError, OptimiserError, ReplayError, RuleError) as error:
             print(f"rmfs: {error}", file=sys.stderr)
             raise typer.Exit(GIVEN_UP) from None
         except InternalError as error:

@@ -167,9 +167,18 @@ def find(problem: Problem, name: str) -> type[Controller[Any]]:
 
 def _load(problem: Problem, reference: str) -> type[Controller[Any]]:
     found = resolve(reference, Controller, "controller")
+    if lacking := _lacking(found):
+        raise InputError(f"{reference}: {found.__qualname__} has no {', '.join(lacking)}")
     if found.problem is not problem:
         raise InputError(f"{reference}: solves {found.problem}, not {problem}")
     return resolve(found, resolve(problem.protocol, Controller, "controller"), "controller")
+
+
+@cache
+def _lacking(found: type) -> list[str]:
+    """Return the names of methods that a class leaves to others to write."""
+    members = ((name, getattr(found, name, None)) for name in dir(found))
+    return [name for name, member in members if getattr(member, "__isabstractmethod__", False)]
 
 
 @cache

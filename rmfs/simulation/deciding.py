@@ -6,7 +6,9 @@ from time import perf_counter_ns
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control.asks import Ask
+from rmfs.control.legality import reason
 from rmfs.control.problems import Problem
+from rmfs.errors import RuleError
 from rmfs.simulation.outside import Awaits
 from rmfs.simulation.statistics import DecisionStatistics
 
@@ -23,6 +25,12 @@ if TYPE_CHECKING:
     from rmfs.simulation.outside import Outside
     from rmfs.simulation.rule_state import RuleState
     from rmfs.world import World
+
+_WRONG = (AttributeError, LookupError, TypeError, ValueError)
+"""What comes of decisions that the world cannot follow."""
+
+LONGEST = 200
+"""Characters of a decision that an error shows, at most."""
 
 
 class Deciding:
@@ -66,6 +74,8 @@ class Deciding:
         An answer may come while the controller that asked is still deciding: then this is nested.
         """
         apply, controller = self._apply, self._controllers[problem]
+        if given is None:
+            raise RuleError(f"{self._whose(problem, controller)}: decide returned nothing to go by")
         nested_ns, self._nested_ns = self._nested_ns, 0
         former, controller.basis = controller.basis, basis
         count = by_rule = spent_ns = 0
@@ -77,13 +87,17 @@ class Deciding:
                 if type(decision) is Ask:
                     self._optimisers.ask(problem, controller, decision)
                 else:
-                    apply(decision)
+                    try:
+                        apply(decision)
+                    except _WRONG as error:
+                        self._refuse(problem, controller, decision, error)
+                        raise
                     count += 1
                     if controller.optimisers and controller.is_modelled(decision):
                         self.decided(problem, controller)
                     by_rule += controller.basis is None
                 start = perf_counter_ns()
-        except Awaits:
+        except (Awaits, RuleError):
             raise
         except Exception as error:
             self._blame(error, problem, decision)
@@ -148,6 +162,29 @@ class Deciding:
         self.record(problem, spent_ns, count, by_rule)
         self._alarms.asked(problem)
 
+    def _refuse(
+        self, problem: Problem, controller: Controller[Any], decision: Any, error: Exception
+    ) -> None:
+        """Say what is wrong with a decision of a user's rule; what is ours stays a defect.
+
+        Raises
+        ------
+        RuleError
+            If the rule is not one of rmfs.
+        """
+        if type(controller).__module__.partition(".")[0] == "rmfs":
+            return
+        try:
+            why = reason(decision, controller.view)
+        except Exception:  # so wrong that nobody can say why
+            why = ""
+        raise RuleError(
+            f"{self._whose(problem, controller)}: {_short(decision)} is impossible: {why or error}"
+        ) from error
+
+    def _whose(self, problem: Problem, controller: Controller[Any]) -> str:
+        return f"{problem} {type(controller).__qualname__} at {self._world.now_s:.3f} s"
+
     def consulted(
         self,
         problem: Problem,
@@ -174,3 +211,19 @@ class Deciding:
         self.statistics[problem].record(wall_ns, count)
         now_s, wall_s = self._world.now_s, wall_ns / 1e9
         self._events.decision(problem.value, now_s, wall_s, by_rule)
+
+
+def _short(decision: Any) -> str:
+    """Return a decision in one line: orders, bundles and the like by their index."""
+    fields = getattr(decision, "_fields", None)
+    if fields is None:
+        text = " ".join(repr(decision).split())
+    else:
+        told = (f"{name}={_named(value)}" for name, value in zip(fields, decision, strict=True))
+        text = f"{type(decision).__name__}({', '.join(told)})"
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]}..."
+
+
+def _named(value: Any) -> str:
+    index = getattr(value, "index", None)
+    return str(index) if isinstance(index, int) else repr(value)
