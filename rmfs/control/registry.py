@@ -11,12 +11,15 @@ from __future__ import annotations
 import difflib
 from functools import cache
 from importlib.metadata import entry_points
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rmfs.control.base import Controller
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
 from rmfs.references import is_reference, resolve
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
 
 GROUP = "rmfs.controllers"
 """Entry-point group of third-party controllers."""
@@ -175,7 +178,7 @@ def _load(problem: Problem, reference: str) -> type[Controller[Any]]:
 
 
 @cache
-def _lacking(found: type) -> list[str]:
+def _lacking(found: Hashable) -> list[str]:
     """Return the names of methods that a class leaves to others to write."""
     members = ((name, getattr(found, name, None)) for name in dir(found))
     return [name for name, member in members if getattr(member, "__isabstractmethod__", False)]
