@@ -144,7 +144,7 @@ def test_an_experiment_in_worker_processes(
     repeating = reproducible_table(frame)
     assert "pods_used" in repeating and "looked_at_s" not in repeating
     assert main(["experiment", "table", "own.toml", "--out", "out", "--column", "pods_used"]) == 0
-    assert "pods_used" in capsys.readouterr().out
+    assert "pods used" in capsys.readouterr().out
     # what was planned is read without the measure's file; a changed file is another experiment
     before = plan.arms[0].digest
     Path("busiest.py").write_text(FILE + "\n# changed\n")
