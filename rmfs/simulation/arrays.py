@@ -4,17 +4,28 @@ from __future__ import annotations
 
 import copyreg
 import pickle
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
 
 class ArrayPickler(pickle.Pickler):
-    """Pickles views of arrays as views, where NumPy alone makes independent copies of them."""
+    """Pickles views of arrays as views, where NumPy alone makes independent copies of them.
 
-    def __init__(self, stream: Any) -> None:
-        super().__init__(stream, protocol=5)
+    Parameters
+    ----------
+    aside
+        Takes the contents of arrays, which are then not part of the stream.
+    """
+
+    def __init__(
+        self, stream: Any, aside: Callable[[pickle.PickleBuffer], object] | None = None
+    ) -> None:
+        super().__init__(stream, protocol=5, buffer_callback=aside)
         # looked up by type: nothing is called for the many small objects of a run
         self.dispatch_table: dict[type, Any] = dict(copyreg.dispatch_table)
         self.dispatch_table[np.ndarray] = _reduced

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from rmfs.simulation.arrays import ArrayPickler
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from rmfs.simulation.kernel import Kernel
 
@@ -49,19 +49,31 @@ def _never_changing(simulation: Kernel) -> list[Any]:
 def _copied(thing: Any, original: Sequence[Any], copied: Sequence[Any]) -> Any:
     """Copy something; what is in `original` becomes what is at the same place in `copied`."""
     stream = io.BytesIO()
-    _Referring(stream, original).dump(thing)
+    arrays: list[pickle.PickleBuffer] = []
+    _Referring(stream, original, arrays.append).dump(thing)
     token = _SHARED.set(copied)
     try:
-        return pickle.loads(stream.getbuffer())
+        return pickle.loads(stream.getbuffer(), buffers=map(_copy, arrays))
     finally:
         _SHARED.reset(token)
+
+
+def _copy(array: pickle.PickleBuffer) -> bytes | bytearray:
+    """Copy the content of an array, the only time that this is done."""
+    content = array.raw()
+    return bytes(content) if content.readonly else bytearray(content)
 
 
 class _Referring(ArrayPickler):
     """Refers to some objects by their number; all objects of their types must be among them."""
 
-    def __init__(self, stream: io.BytesIO, shared: Sequence[Any]) -> None:
-        super().__init__(stream)
+    def __init__(
+        self,
+        stream: io.BytesIO,
+        shared: Sequence[Any],
+        aside: Callable[[pickle.PickleBuffer], object],
+    ) -> None:
+        super().__init__(stream, aside)
         self._number = {id(thing): number for number, thing in enumerate(shared)}
         for thing in shared:
             self.dispatch_table[type(thing)] = self._reduced
