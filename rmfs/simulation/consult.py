@@ -57,6 +57,11 @@ class PhaseConsult:
         psa: PodStorageAssignment[Any] = self._controllers.consulted(Problem.PSA)
         return self._number(Problem.PSA, psa, lambda: psa.place(robot))
 
+    def may_move(self) -> bool:
+        """Whether repositioning may have a pod to move."""
+        rule: Repositioning[Any] = self._controllers.consulted(Problem.REPOSITIONING)
+        return not rule.never
+
     def move_for(self, robot: Robot) -> Move | None:
         """Ask repositioning for a pod to move, unless it would not answer now."""
         rule: Repositioning[Any] = self._controllers.consulted(Problem.REPOSITIONING)
@@ -112,6 +117,10 @@ class OutsideConsult(PhaseConsult):
         """Ask for a place."""
         question = Question(Problem.PSA, "place", robot.index)
         return self._asked(question, lambda: super(OutsideConsult, self).place_for(robot))
+
+    def may_move(self) -> bool:
+        """Say that it may: who decides outside may have one."""
+        return True
 
     def move_for(self, robot: Robot) -> Move | None:
         """Ask for a pod to move, unless repositioning would not answer now."""

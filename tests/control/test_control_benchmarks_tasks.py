@@ -211,6 +211,9 @@ class Others:
         others = self._view.replenishment_stations
         return self._pps.replenishment_pod(robot, others[station - STATIONS])
 
+    def may_move(self):
+        return True
+
     def move_for(self, robot):
         return None
 

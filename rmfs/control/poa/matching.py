@@ -20,14 +20,13 @@ def line_matches(view: View, station: int) -> NDArray[np.int32]:
     that an available unit counts for one order only.
     """
     orders = view.orders
-    sku = orders.sku
-    spare: NDArray[np.int32] = view.inventory.inbound[station][sku] - view.need[station][sku]
-    np.clip(spare, 0, orders.units, out=spare)
+    by_sku: NDArray[np.int32] = view.inventory.inbound[station] - view.need[station]
+    spare = by_sku.take(orders.sku)
+    np.minimum(spare, orders.units, out=spare)
+    np.maximum(spare, 0, out=spare)
     return spare
 
 
 def matches(view: View, stations: list[PickStation]) -> NDArray[np.int32]:
     """Units of each order that spare stock on inbound pods can serve, per station, (S, B)."""
-    return np.stack(
-        [line_matches(view, station.index).sum(axis=1, dtype=np.int32) for station in stations]
-    )
+    return np.stack([np.einsum("bl->b", line_matches(view, station.index)) for station in stations])

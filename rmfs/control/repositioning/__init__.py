@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from math import inf
-from typing import TYPE_CHECKING, Annotated, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Annotated, ClassVar, NamedTuple, TypeVar
 
 import pydantic
 
@@ -68,6 +68,8 @@ class Repositioning(Controller[P]):
     """
 
     problem = Problem.REPOSITIONING
+    never: ClassVar[bool] = False
+    """Whether it moves no pods at all, so that nobody needs to ask."""
 
     @abstractmethod
     def move(self, robot: Robot) -> Move | None:

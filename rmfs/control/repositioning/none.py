@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 class NoMoves(Repositioning[NoParameters]):
     """Moves no pod."""
 
+    never = True
+
     def move(self, robot: Robot) -> Move | None:
         """Find nothing."""
         return None

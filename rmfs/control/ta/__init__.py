@@ -38,6 +38,10 @@ class Consult(Protocol):
         """Ask PSA for an empty place for the pod a robot carries, or -1."""
         ...
 
+    def may_move(self) -> bool:
+        """Whether there is repositioning to be asked at all."""
+        ...
+
     def move_for(self, robot: Robot) -> Move | None:
         """Ask repositioning for a pod that a robot without one should move, and where to."""
         ...

@@ -107,6 +107,16 @@ class Balanced(Crews[BalancedParameters]):
             return None
         return self.bring(robot, robot.pod, consult.next_station(robot, stations))
 
+    def looks_elsewhere(self) -> bool:
+        """Only if it searches all stations."""
+        return self.parameters.search_all
+
+    def may_be_moved(self, consult: Consult) -> bool:
+        """Whether it moves idle pods, and there is a rule that does."""
+        given = self.parameters
+        moves = given.reposition_before_rest or given.reposition_weight > 0
+        return moves and consult.may_move()
+
     def instead_of_rest(self, robot: Robot, consult: Consult) -> TaskDecision | None:
         """Move an idle pod."""
         given = self.parameters

@@ -96,6 +96,14 @@ class Crews(TaskAllocation[P]):
         """Find something for a robot to do for which no station has work."""
         return None
 
+    def may_be_moved(self, consult: Consult) -> bool:
+        """Whether `instead_of_rest` may find something for any robot now."""
+        return True
+
+    def looks_elsewhere(self) -> bool:
+        """Whether `stations_for` names other stations than a robot's own."""
+        return True
+
     # --- tasks ----------------------------------------------------------------------------------
 
     def next_event_s(self) -> float:
@@ -189,12 +197,30 @@ class Crews(TaskAllocation[P]):
         return Rest(robot, place if place >= 0 else robot.waypoint)
 
     def _wake(self, consult: Consult) -> Iterator[TaskDecision]:
-        """Give work to robots at rest whose station has some that is new."""
+        """Give work to robots at rest whose station has some that is new.
+
+        Most stations have none: looking at these first, and not at each robot, is what keeps this
+        cheap in big fleets.
+        """
+        everybody = self.looks_elsewhere() or self.may_be_moved(consult)
+        news = self._stations_with_news()
         for robot in list(self.view.resting.values()):
+            if not everybody and self._station_of[robot.index] not in news:
+                continue
             if robot.index in self.view.resting:
                 task = self._fetch(robot, consult) or self.instead_of_rest(robot, consult)
                 if task is not None:
                     yield task
+                    news = self._stations_with_news()
+
+    def _stations_with_news(self) -> set[int]:
+        """Stations with work for which no pod has been looked for in vain."""
+        view, searched = self.view, self._searched
+        return {
+            station
+            for station in range(len(view.stations))
+            if view.has_open_work(station) and searched[station] != view.work_version(station)
+        }
 
     # --- who works for which station ------------------------------------------------------------
 
