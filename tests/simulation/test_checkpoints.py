@@ -18,7 +18,6 @@ from rmfs.errors import InputError
 from rmfs.measure.dictionary import reproducible
 from rmfs.simulation import saving
 from rmfs.simulation.checkpoints import Checkpoints, resumed
-from rmfs.simulation.kernel import Kernel
 
 SMALL = {"scenario.duration_s": 900}
 
@@ -47,7 +46,7 @@ def test_a_decision_that_waits_is_saved(tmp_path: Path) -> None:
         take(run.step())
     pending = run.step()
     run.save(tmp_path / "file")
-    again = Kernel.load(tmp_path / "file")
+    again = rmfs.Simulation.load(tmp_path / "file")
     assert repr(again.decision) == repr(pending)
     for one in (run, again):
         while (decision := one.step()) is not None:
