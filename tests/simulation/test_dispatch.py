@@ -15,6 +15,9 @@ class ToRobot0(Balanced):
 
     chosen = 0
 
+    def looks_elsewhere(self):
+        return True
+
     def _fetch(self, robot, consult):
         if robot.index != self.chosen or not self.view.has_open_work(0):
             return None

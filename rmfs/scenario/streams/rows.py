@@ -78,7 +78,7 @@ class _Fields:
 
     def sku(self, text: str) -> int:
         index = self._by_name.get(text)
-        if index is None and (text.isdecimal() or not self._by_name):
+        if index is None and (not text or text.isdecimal() or not self._by_name):
             index = self._index_of.get(_whole("sku", text))
         if index is None:
             raise _FieldError(f"sku {text:.40} is unknown")
