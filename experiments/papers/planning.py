@@ -1,10 +1,9 @@
-"""What planning ahead is worth: the search against its own start rule, and against one visit.
+"""What planning ahead is worth: the search against its own start rule.
 
 TA planning on the small site with three to five robots, whole orders, a backlog and arrivals, after
 half an hour of warm-up. The start rule is the same controller with `method = "greedy"`: same
-horizon, same values, plans that go on from the last one, but nothing searched. Pile-on decides
-orders and pods for one visit at a time. Bundles and space in use stand beside, as who stores fewer
-has robots to spare for a while.
+horizon, same values, plans that go on from the last one, but nothing searched. Bundles and space in
+use stand beside, as who stores fewer has robots to spare for a while.
 """
 
 from __future__ import annotations
