@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rmfs.solvers.control.planning.snapshot import under_way
 
 if TYPE_CHECKING:
@@ -120,11 +122,13 @@ class Plan:
         return any(list(planned.units) == [pod] for planned in self._orders[station])
 
     def units(self, station: PickStation) -> int:
-        """Units that pods under way have to give: bound ones, and those of orders without slot."""
-        coming = under_way(self._view, station)
-        bound = sum(len(task.picks) for task in station.tasks.values())
-        orders = self._orders[station.index]
-        return bound + sum(one.units.get(pod, 0) for one in orders for pod in coming)
+        """Units that pods under way have to give: bound, wanted, or of orders without slot yet."""
+        view, index = self._view, station.index
+        coming = under_way(view, station)
+        units = sum(len(task.picks) for task in station.tasks.values())
+        units += int(np.minimum(view.need[index], view.inventory.inbound[index]).sum())
+        orders = self._orders[index]
+        return units + sum(one.units.get(pod, 0) for one in orders for pod in coming)
 
     def _head(self, station: PickStation) -> int:
         return self._view.robots[station.robot].pod if station.robot >= 0 else -1

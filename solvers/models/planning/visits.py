@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rmfs.solvers.models.planning.appeal import Appeal
-    from rmfs.solvers.models.planning.data import Planning
+    from rmfs.solvers.models.planning.data import Planning, Reals
     from rmfs.solvers.models.planning.filling import Draft, Filling
     from rmfs.solvers.models.planning.values import Plan
 
@@ -37,6 +37,7 @@ def extended(filling: Filling, appeal: Appeal, pods: Sequence[Sequence[int]]) ->
         units = _units(filling, draft)
         station = min(stations, key=lambda s: (units[s], s))
         better = _best(filling, appeal, draft, station)
+        better = better or _for_one_order(filling, appeal, draft, station)
         if better is None:
             done.add(station)
         else:
@@ -90,6 +91,43 @@ def _best(filling: Filling, appeal: Appeal, draft: Draft, station: int) -> Draft
             if trial.value > best.value:
                 best = trial
     return None if best is draft else best
+
+
+def _for_one_order(filling: Filling, appeal: Appeal, draft: Draft, station: int) -> Draft | None:
+    """Let all the pods come that one order lacks; None if that pays for none of a few orders.
+
+    An order of several pods that no other order brings is not begun otherwise: one more visit alone
+    would serve nothing of it.
+    """
+    data, scores = filling.data, appeal.scores(draft, station)
+    room = data.visits - len(draft.pods[station])
+    waits = np.flatnonzero(np.array(draft.order_station, np.int64) < 0)
+    count = np.bincount(data.line_order, minlength=data.orders)
+    waits = waits[count[waits] > 1]
+    for order in waits[np.argsort(-data.order_worth[waits], kind="stable")][:TRIED].tolist():
+        pods = _lacking(data, draft, station, order, scores)
+        if pods and len(pods) <= room:
+            new = [list(one) for one in draft.pods]
+            new[station] += pods
+            trial = filling.draft(new)
+            if trial.value > draft.value:
+                return trial
+    return None
+
+
+def _lacking(data: Planning, draft: Draft, station: int, order: int, scores: Reals) -> list[int]:
+    """Choose pods for the lines of an order that no visit of a station has; none if one lacks."""
+    there = [*data.under_way[station], *draft.pods[station]]
+    chosen: list[int] = []
+    for line in np.flatnonzero(data.line_order == order).tolist():
+        enough = data.stock[:, data.line_sku[line]] >= data.line_units[line]
+        if enough[[*there, *chosen]].any():
+            continue
+        pods = np.flatnonzero(enough & np.isfinite(scores))
+        if not len(pods):
+            return []
+        chosen.append(int(pods[scores[pods].argmax()]))
+    return chosen
 
 
 def _units(filling: Filling, draft: Draft) -> list[int]:

@@ -129,6 +129,17 @@ def test_orders_of_several_pods_keep_a_slot() -> None:
     assert solve(hand_made(slots=[1]), "cp_sat").objective == single.objective
 
 
+def test_an_order_that_needs_two_new_pods_is_begun() -> None:
+    """Neither pod alone serves anything; together they pay."""
+    data = hand_made(
+        coming=[], coming_to=[], order_station=[-1], order_until=[-1], order_worth=[5.0],
+        line_order=[0, 0], line_sku=[0, 1], line_units=[1, 2], line_worth=[10.0, 20.0],
+        cost=[[3.0], [4.0], [5.0]],
+    )  # fmt: skip
+    for method in METHODS:
+        assert sorted(solve(data, method).required.pods[0]) == [0, 1]
+
+
 def test_objective_by_hand() -> None:
     """The second visit counts half: cost 12, line 20 and the order's 5 at its end."""
     data = hand_made()

@@ -1,0 +1,165 @@
+"""TA planning in a small warehouse by hand: what it commits itself to of its plans."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from doubles import Situation, small_layout
+
+from rmfs.control.asks import Ask, Call
+from rmfs.control.decisions import AssignOrder, BringForBundles, BringForPicks, Rest
+from rmfs.control.problems import Problem, Trigger
+from rmfs.solvers.control.planning import PlanningControl
+
+
+class NoConsult:
+    """Nothing to go on with, nowhere to park."""
+
+    def serves(self, pod: int, station: int) -> bool:
+        return False
+
+    def place_for(self, robot: Any) -> int:
+        return -1
+
+
+def said(situation: Situation, control: PlanningControl, *, answer: bool = True) -> list[Any]:
+    """Ask for decisions; what is said is applied and returned, questions are answered at once."""
+    found: list[Any] = []
+    control.basis = None
+    for robot in situation.world.robots:
+        if robot.task is None:
+            situation.world.asking[robot.index] = robot
+    _apply(control.decide(NoConsult()), situation, control, answer, found)  # type: ignore[arg-type]
+    return found
+
+
+def _apply(
+    given: Any, situation: Situation, control: PlanningControl, answer: bool, found: list[Any]
+) -> None:
+    world = situation.world
+    for decision in given:
+        if isinstance(decision, Ask):
+            call = Call(0, Problem.TA, control, decision, 0, "")
+            call.answer = decision.solve(decision.question) if answer else None
+            _apply(control.answered(call), situation, control, answer, found)
+            continue
+        found.append(decision)
+        if isinstance(decision, AssignOrder):
+            world.assign_order(decision.order, decision.station)
+        elif isinstance(decision, BringForPicks):
+            world.start_pick(decision.robot, decision.pod, decision.station)
+        elif isinstance(decision, BringForBundles):
+            world.start_replenish(decision.robot, decision.pod, decision.station)
+        elif isinstance(decision, Rest):
+            world.start_rest(decision.robot, decision.place)
+
+
+def pods(found: list[Any]) -> list[int]:
+    """The pods that robots are sent for, for picks."""
+    return [decision.pod for decision in found if isinstance(decision, BringForPicks)]
+
+
+def orders(found: list[Any]) -> list[Any]:
+    """The orders that get slots."""
+    return [decision.order for decision in found if isinstance(decision, AssignOrder)]
+
+
+@pytest.mark.parametrize("answer", [True, False], ids=["optimiser", "start rule"])
+def test_an_order_waits_at_its_station_for_a_second_pod(answer: bool) -> None:
+    """No pod has both lines: two come one after the other, and the order has its slot at once."""
+    situation = Situation()
+    situation.stock(0, s1=5)
+    situation.stock(1, s2=5)
+    order = situation.order(s1=1, s2=1)
+    control = situation.make(PlanningControl)
+    found = said(situation, control, answer=answer)
+    assert orders(found) == [order]
+    assert sorted(pods(found)) == [0, 1]
+    sent = [d.robot.index for d in found if isinstance(d, BringForPicks)]
+    assert sorted(sent) == [0, 1]
+
+
+def test_no_further_pod_while_there_is_work_enough() -> None:
+    """One unit is ten seconds of work: with a horizon of five the second pod is not sent for."""
+    for horizon_s, sent in ((5.0, 1), (15.0, 2)):
+        situation = Situation()
+        situation.stock(0, s1=5)
+        situation.stock(1, s2=5)
+        situation.order(s1=1), situation.order(s2=1)
+        control = situation.make(PlanningControl, horizon_s=horizon_s)
+        assert len(pods(said(situation, control))) == sent
+
+
+def test_one_slot_is_left_for_the_pod_at_the_head() -> None:
+    """Three orders for one pod, two slots: one while it comes, the next when it is there."""
+    situation = Situation(small_layout(slots=2))
+    situation.stock(0, s1=5)
+    waiting = [situation.order(s1=1) for _ in range(3)]
+    control = situation.make(PlanningControl)
+    assert len(orders(said(situation, control))) == 1
+    robot = next(r for r in situation.world.robots if r.task is not None and r.task.pod == 0)
+    station = situation.world.pick_stations[0]
+    situation.world.lift(robot, 0)
+    robot.station, station.robot = 0, robot.index
+    assert len(orders(said(situation, control))) == 1
+    assert sum(order in situation.world.orders for order in waiting) == 1
+
+
+def test_bundles_come_first_while_stock_is_low() -> None:
+    """Below the floor a robot works for bundles, and that is no decision of the model."""
+    for floor, first in ((0.0, BringForPicks), (1.0, BringForBundles)):
+        situation = Situation(small_layout(robots=1))
+        situation.stock(0, s1=5)
+        situation.order(s1=1)
+        situation.waiting_bundle(pod=1, station=1)
+        control = situation.make(PlanningControl, stock_floor=floor)
+        (sent,) = [d for d in said(situation, control) if isinstance(d, first)]
+        assert control.is_modelled(sent) == (first is BringForPicks)
+
+
+def test_a_plan_for_some_stations_leaves_the_others_theirs() -> None:
+    """What is planned for the first station is no matter of the second, orders and pods."""
+    situation = Situation(small_layout(pick_stations=2))
+    situation.stock(0, s1=2)
+    situation.stock(1, s1=2, s2=1)
+    situation.stock(2, s3=3)
+    situation.order(s1=2)
+    control = situation.make(PlanningControl, stations=1, buffer_s=0.0, horizon_s=0.0)
+    (first,) = _asked(situation, control)
+    assert (first.data.stations, first.data.orders) == (1, 1)
+    situation.assigned(s3=1)
+    situation.world.start_pick(situation.world.robots[0], 2, 0)  # now the other has less work
+    situation.order(s2=1)
+    control.hear(Trigger.POD_AT_STATION, 0)
+    (second,) = _asked(situation, control)
+    assert (second.data.stations, second.data.orders) == (1, 1)
+    may_come = np.isfinite(second.data.cost[:, 0])
+    assert may_come.sum() == np.isfinite(first.data.cost[:, 0]).sum() - 2
+
+
+def _asked(situation: Situation, control: PlanningControl) -> list[Any]:
+    """The questions that are asked now; they are answered at once."""
+    asked = []
+    for decision in control.decide(NoConsult()):  # type: ignore[arg-type]
+        if isinstance(decision, Ask):
+            asked.append(decision.question)
+            call = Call(0, Problem.TA, control, decision, 0, "")
+            call.answer = decision.solve(decision.question)
+            assert not [d for d in control.answered(call) if isinstance(d, BringForPicks)]
+    return asked
+
+
+def test_what_does_not_hold_any_more_is_dropped_and_counted() -> None:
+    """The pod of a planned visit is taken by somebody else: it is passed over as stale."""
+    situation = Situation(small_layout(robots=1))
+    situation.stock(0, s1=5)
+    situation.order(s1=1)
+    control = situation.make(PlanningControl, horizon_s=0.0)
+    (ask,) = [d for d in control.decide(NoConsult()) if isinstance(d, Ask)]
+    call = Call(0, Problem.TA, control, ask, 0, "")
+    call.answer = ask.solve(ask.question)
+    situation.world.storage.claim(0, 0)
+    assert pods(list(control.answered(call))) == []
+    assert call.stale == 1
