@@ -60,10 +60,6 @@ class ArrivalProcess:
         self._bundles = bundle_intake(scenario, world.skus, site, seed, recorder)
         self._woken_us = -1
 
-    def sources(self) -> list[object]:
-        """What draws orders and bundles by their number, and so is the same for every copy."""
-        return []
-
     def top_up(self) -> None:
         """Make the orders and bundles that come now."""
         now_us = self._agenda.now_us

@@ -42,7 +42,6 @@ def _never_changing(simulation: Kernel) -> list[Any]:
         simulation.controllers,
         simulation.world.skus,
         simulation.view.travel.tables,
-        *simulation.arrivals.sources(),
     ]
 
 
