@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from math import isfinite, isnan, nan
-from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
 
 from numpy.typing import NDArray
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rmfs.control.problems import Problem
 
 Q = TypeVar("Q")
+D = TypeVar("D")
 
 BOUND_TOLERANCE = 1e-6
 """How far, relative to the objective, a bound may pass it by rounding."""
@@ -215,3 +216,25 @@ class Call:
     def forget(self) -> None:
         """Let go of the question, which may be large; the sizes stay."""
         self.ask = replace(self.ask, question=None, memo=None)
+
+
+class By(NamedTuple, Generic[D]):
+    """A decision, and the call whose solution it comes from; None: the controller's own rule.
+
+    Without it a decision is the controller's own when it was asked for one, and the answer's when
+    it was told an answer (`answered`).
+    """
+
+    decision: D
+    call: Call | None
+
+
+def told_by(decision: Any, otherwise: Call | None) -> tuple[Any, Call | None]:
+    """Part a decision from the call it comes from."""
+    return decision if type(decision) is By else (decision, otherwise)
+
+
+def own(decisions: Iterable[D]) -> Iterator[D | By[D]]:
+    """Yield decisions as the controller's own, whatever it was asked or told."""
+    for decision in decisions:
+        yield decision if type(decision) is Ask else By(decision, None)

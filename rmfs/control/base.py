@@ -87,10 +87,6 @@ class Controller(Generic[P]):
         that asks optimisers names one at least.
     in_flight
         How many of its questions wait for an answer.
-    basis
-        The call whose solution the present decision comes from, None for the controller's own rule.
-        It is None when the controller is asked and the call when it is told the answer; whoever
-        decides by a solution it has kept sets it to that call.
     """
 
     problem: ClassVar[Problem]
@@ -103,7 +99,6 @@ class Controller(Generic[P]):
     is_dummy: ClassVar[bool] = False
     optimisers: ClassVar[tuple[str, ...]] = ()
     in_flight: int = 0
-    basis: Call | None = None
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
         self.parameters = parameters
@@ -121,7 +116,8 @@ class Controller(Generic[P]):
         """Yield the decisions of a solution that still hold, as `decide` yields its own.
 
         It is called once for each question, also if there is no solution. Decisions that no longer
-        hold are to be counted in `call.stale`. Here: no decisions.
+        hold are to be counted in `call.stale`; one that does not come from this answer says so
+        (`rmfs.control.asks.By`). Here: no decisions.
         """
         return iter(())
 

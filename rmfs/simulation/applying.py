@@ -9,6 +9,7 @@ from rmfs.control import decisions as say
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rmfs.control.asks import Call
     from rmfs.simulation.dispatch import Dispatch
     from rmfs.simulation.events import Events
     from rmfs.world import World
@@ -30,11 +31,12 @@ class Applying:
         events: Events,
         dispatch: Dispatch,
         *,
-        prepare: Callable[[say.Prepare], None],
+        prepare: Callable[[say.Prepare, Call | None], None],
         exchange: Callable[[say.Exchange], None],
     ) -> None:
         self._world = world
         self._events = events
+        self._prepare = prepare
         self._how: dict[type, Callable[[Any], None]] = {
             say.SwitchStation: self._switch_station,
             say.PromiseBundle: self._promise_bundle,
@@ -49,12 +51,11 @@ class Applying:
             say.Park: dispatch.start,
             say.Reposition: dispatch.start,
             say.Rest: dispatch.start,
-            say.Prepare: prepare,
             say.Exchange: exchange,
         }
 
-    def __call__(self, decision: Any) -> None:
-        """Apply a decision.
+    def __call__(self, decision: Any, call: Call | None) -> None:
+        """Apply a decision; `call`: whose solution it comes from, if it comes from one.
 
         Raises
         ------
@@ -63,6 +64,9 @@ class Applying:
         TypeError
             If it is no decision.
         """
+        if type(decision) is say.Prepare:
+            self._prepare(decision, call)
+            return
         how = self._how.get(type(decision))
         if how is None:
             raise TypeError(f"{decision!r} is no decision (see rmfs.control.decisions)")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from time import perf_counter_ns
 from typing import TYPE_CHECKING, Any
 
+from rmfs.control.asks import By, told_by
 from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
 from rmfs.world.stations import PickStation
@@ -77,17 +78,15 @@ class PhaseConsult:
         self,
         problem: Problem,
         controller: Controller[Any],
-        question: Callable[[], int],
+        question: Callable[[], int | By[int]],
         modelled: bool = True,
     ) -> int:
         """Ask for a number; -1 is no decision."""
-        former, controller.basis = controller.basis, None
         start = perf_counter_ns()
-        number = question()
+        number, call = told_by(question(), None)
         spent_ns = perf_counter_ns() - start
-        self._deciding.consulted(problem, controller, spent_ns, number >= 0, modelled)
-        controller.basis = former
-        return number
+        self._deciding.consulted(problem, controller, spent_ns, number >= 0, call, modelled)
+        return int(number)
 
 
 class OutsideConsult(PhaseConsult):

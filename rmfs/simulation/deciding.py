@@ -5,7 +5,7 @@ from __future__ import annotations
 from time import perf_counter_ns
 from typing import TYPE_CHECKING, Any
 
-from rmfs.control.asks import Ask
+from rmfs.control.asks import Ask, told_by
 from rmfs.control.legality import reason
 from rmfs.control.problems import Problem
 from rmfs.errors import RuleError
@@ -54,7 +54,7 @@ class Deciding:
         self._events = events
         self._controllers = controllers
         self._alarms = alarms
-        self._apply: Callable[[Any], None]
+        self._apply: Callable[[Any, Call | None], None]
         self._optimisers: OptimiserGateway
         self._nested_ns = 0
         self._unfinished = (0, 0, 0)
@@ -64,38 +64,41 @@ class Deciding:
             if problem is not Problem.PP
         }
 
-    def connect(self, apply: Callable[[Any], None], optimisers: OptimiserGateway) -> None:
+    def connect(
+        self, apply: Callable[[Any, Call | None], None], optimisers: OptimiserGateway
+    ) -> None:
         """Say who applies decisions, and who takes questions for optimisers."""
         self._apply, self._optimisers = apply, optimisers
 
-    def ask(self, problem: Problem, given: Iterable[Any], basis: Call | None = None) -> None:
+    def ask(self, problem: Problem, given: Iterable[Any], answer: Call | None = None) -> None:
         """Apply decisions one by one, and measure the time it takes to come to them.
 
-        An answer may come while the controller that asked is still deciding: then this is nested.
+        `answer` is the call whose answer the controller was told. It may come while the controller
+        that asked is still deciding: then this is nested.
         """
         apply, controller = self._apply, self._controllers[problem]
         if given is None:
             raise RuleError(f"{self._whose(problem, controller)}: decide returned nothing to go by")
         nested_ns, self._nested_ns = self._nested_ns, 0
-        former, controller.basis = controller.basis, basis
         count = by_rule = spent_ns = 0
         decision = None
         start = perf_counter_ns()
         try:
-            for decision in given:
+            for told in given:
                 spent_ns += perf_counter_ns() - start
+                decision, call = told_by(told, answer)
                 if type(decision) is Ask:
                     self._optimisers.ask(problem, controller, decision)
                 else:
                     try:
-                        apply(decision)
+                        apply(decision, call)
                     except _WRONG as error:
                         self._refuse(problem, controller, decision, error)
                         raise
                     count += 1
                     if controller.optimisers and controller.is_modelled(decision):
-                        self.decided(problem, controller)
-                    by_rule += controller.basis is None
+                        self.decided(problem, call)
+                    by_rule += call is None
                 start = perf_counter_ns()
         except (Awaits, RuleError):
             raise
@@ -103,7 +106,7 @@ class Deciding:
             self._blame(error, problem, decision)
             raise
         spent_ns += perf_counter_ns() - start - self._nested_ns
-        self._nested_ns, controller.basis = nested_ns, former
+        self._nested_ns = nested_ns
         self.record(problem, spent_ns, count, by_rule)
         self._alarms.asked(problem)
 
@@ -139,15 +142,16 @@ class Deciding:
         outside.taken = 0
         given = iter(decide())
         try:
-            for decision in given:
+            for told in given:
+                decision, call = told_by(told, None)
                 if type(decision) is Ask:
                     self._optimisers.ask(problem, controller, decision)
                 else:
-                    self._apply(decision)
+                    self._apply(decision, call)
                     count += 1
                     if controller.optimisers and controller.is_modelled(decision):
-                        self.decided(problem, controller)
-                    by_rule += controller.basis is None
+                        self.decided(problem, call)
+                    by_rule += call is None
                 outside.begin_attempt()
                 kept = state.keep(controller)
         except Awaits:
@@ -191,20 +195,21 @@ class Deciding:
         controller: Controller[Any],
         wall_ns: int,
         decided: bool,
+        call: Call | None = None,
         modelled: bool = True,
     ) -> None:
         """Take note that TA asked another controller; `modelled`: a choice that models take."""
         self._nested_ns += wall_ns
-        self.record(problem, wall_ns, int(decided), int(decided and controller.basis is None))
-        if decided and controller.optimisers and (modelled or controller.basis is not None):
-            self.decided(problem, controller)
+        self.record(problem, wall_ns, int(decided), int(decided and call is None))
+        if decided and controller.optimisers and (modelled or call is not None):
+            self.decided(problem, call)
 
-    def decided(self, problem: Problem, controller: Controller[Any]) -> None:
+    def decided(self, problem: Problem, call: Call | None) -> None:
         """Count a decision of a controller that asks optimisers: by a solution or by its rule."""
-        if controller.basis is None:
+        if call is None:
             self._events.rule_decided(problem.value, self._world.now_s)
         else:
-            controller.basis.count()
+            call.count()
 
     def record(self, problem: Problem, wall_ns: int, count: int, by_rule: int) -> None:
         """Take note of a call; decisions by a solution are told with the question."""

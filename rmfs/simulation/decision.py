@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
-from rmfs.control.asks import Ask
+from rmfs.control.asks import Ask, told_by
 from rmfs.control.candidates import candidates_for
 from rmfs.control.legality import why_not
 from rmfs.simulation.outside import Awaits
@@ -174,7 +174,7 @@ class Decision:
             return None if isinstance(found, int) and found < 0 else found
         if outside.advisor is None:
             outside.advisor = simulation.phase.advice(self.problem)
-        decision = next(outside.advisor, None)
+        decision, _ = told_by(next(outside.advisor, None), None)
         if isinstance(decision, Ask):
             raise NotImplementedError(f"{self.problem} {type(rule).__name__} asks an optimiser")
         return decision

@@ -55,7 +55,7 @@ class Dispatch:
         self._services = services
         self._tier: list[int] = layout.tier.tolist()
         self._held_up: dict[int, Robot] = {}
-        self._basis: dict[Task, Call] = {}
+        self._call_of: dict[Task, Call] = {}
 
     # --- decisions of TA ------------------------------------------------------------------------
 
@@ -113,18 +113,18 @@ class Dispatch:
 
     # --- tasks prepared ahead -------------------------------------------------------------------
 
-    def prepare(self, decision: Prepare, basis: Call | None = None) -> None:
-        """Remember what a robot is to do after its present task, and by whose solution."""
+    def prepare(self, decision: Prepare, call: Call | None = None) -> None:
+        """Remember what a robot is to do after its present task, and by which solution."""
         robot, tasks = decision
         self.forget_prepared(robot)
         robot.prepared.extend(task.task() for task in tasks)
-        if basis is not None:
-            self._basis.update(dict.fromkeys(robot.prepared, basis))
+        if call is not None:
+            self._call_of.update(dict.fromkeys(robot.prepared, call))
 
     def forget_prepared(self, robot: Robot) -> None:
         """Forget what a robot was to do after its present task."""
         for task in robot.prepared:
-            self._basis.pop(task, None)
+            self._call_of.pop(task, None)
         robot.prepared.clear()
 
     def start_prepared(self, robot: Robot, consult: Consult) -> None:
@@ -135,15 +135,15 @@ class Dispatch:
                 # may be asked of somebody outside: until it is answered, nothing has changed
                 task.place = consult.place_for(robot)
             robot.prepared.popleft()
-            basis = self._basis.pop(task, None)
+            call = self._call_of.pop(task, None)
             if task.is_possible(self._world, consult.serves):
                 self._begin(task)
-                if basis is not None:
-                    basis.count()
+                if call is not None:
+                    call.count()
                 return
             self._world.tasks_dropped += 1
-            if basis is not None:
-                basis.stale += 1
+            if call is not None:
+                call.stale += 1
 
     # --- reports of traffic ---------------------------------------------------------------------
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control import decisions as say
-from rmfs.control.asks import Outcome
+from rmfs.control.asks import Outcome, told_by
 from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
 from rmfs.simulation import errands, steps
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from rmfs.simulation.steps import Due
     from rmfs.simulation.visits import Visits
     from rmfs.world import World
+    from rmfs.world.robots import Robot
 
 
 class DecisionPhase:
@@ -191,13 +192,13 @@ class DecisionPhase:
             if robot.prepared:
                 self._dispatch.start_prepared(robot, self._consult)
 
-    def prepare(self, decision: say.Prepare) -> None:
+    def prepare(self, decision: say.Prepare, call: Call | None) -> None:
         """Remember tasks for later, or start the first if the robot has nothing better to do."""
         robot = decision.robot
         rule = self._controllers[Problem.TA]
-        self._dispatch.prepare(decision, rule.basis)
-        if rule.optimisers and rule.basis is None:
-            self._deciding.decided(Problem.TA, rule)
+        self._dispatch.prepare(decision, call)
+        if rule.optimisers and call is None:
+            self._deciding.decided(Problem.TA, call)
         if robot.task is None or robot.index in self._world.resting:
             self._dispatch.start_prepared(robot, self._consult)
 
@@ -255,7 +256,7 @@ class DecisionPhase:
         if whole is None:
             outside.refused.append(decision)
         else:
-            self._applying(whole)
+            self._applying(whole, None)
             outside.decided += 1
         outside.doing = None
         outside.begin_attempt()
@@ -271,6 +272,10 @@ class DecisionPhase:
         """Ask the rule that is installed what TA asks."""
         rule = self._controllers[question.problem]
         robot = self._world.robots[question.robot]
+        found = self._say(rule, robot, question)
+        return told_by(found, None)[0]
+
+    def _say(self, rule: Any, robot: Robot, question: Question) -> Any:
         match question.kind:
             case "pick pod":
                 return rule.pick_pod(robot, self._world.pick_stations[question.stations[0]])

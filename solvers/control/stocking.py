@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 import numpy as np
 import pydantic
 
-from rmfs.control.asks import Answer, Ask
+from rmfs.control.asks import Answer, Ask, own
 from rmfs.control.decisions import PromiseBundle, ReleasePod, SendBundle
 from rmfs.control.problems import Problem, Trigger
 from rmfs.control.rps import ReplenishmentPodSelection
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rmfs.control.asks import Call
+    from rmfs.control.asks import By, Call
     from rmfs.control.view import View
     from rmfs.world.orders import Bundle
 
-    Told = Ask["Question"] | PromiseBundle | ReleasePod | SendBundle
+    Told = Ask["Question"] | PromiseBundle | ReleasePod | SendBundle | By[Any]
 
 Method = Literal["cp_sat", "highs", "rounding", "greedy"]
 NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
@@ -133,9 +133,8 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
             return
         question: Question = call.ask.question
         found = solve(Question(question.data, "greedy", question.limits)).solution
-        self.basis = None
         if found is not None:
-            yield from self._apply(found, call.ask.memo, None)
+            yield from own(self._apply(found, call.ask.memo, None))
 
     def _is_possible(self) -> bool:
         waiting = self.view.bundles.without_pod.values()

@@ -11,7 +11,7 @@ from rmfs.control.problems import Problem, Trigger
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rmfs.control.asks import Ask
+    from rmfs.control.asks import Ask, By
     from rmfs.control.decisions import AssignLines, AssignOrder, QueueOrder
 
 P = TypeVar("P", bound=Parameters)
@@ -37,5 +37,5 @@ class PickOrderAssignment(Controller[P]):
     )
 
     @abstractmethod
-    def decide(self) -> Iterator[AssignOrder | AssignLines | QueueOrder | Ask[Any]]:
+    def decide(self) -> Iterator[AssignOrder | AssignLines | QueueOrder | Ask[Any] | By[Any]]:
         """Yield an order and a station, again and again, until nothing is to be assigned now."""

@@ -14,7 +14,7 @@ from rmfs.world.stations import PickStation, ReplenishmentStation
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from rmfs.control.asks import Ask
+    from rmfs.control.asks import Ask, By
     from rmfs.world.orders import Order
     from rmfs.world.robots import Robot
 
@@ -68,15 +68,15 @@ class PodSelection(Controller[P]):
         return iter(())
 
     @abstractmethod
-    def pick_pod(self, robot: Robot, station: PickStation) -> int:
+    def pick_pod(self, robot: Robot, station: PickStation) -> int | By[int]:
         """Choose a pod at hand with units that open requests of the station want, or -1."""
 
     @abstractmethod
-    def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
+    def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int | By[int]:
         """Choose a pod at hand for which bundles wait at the station, or -1."""
 
     @abstractmethod
-    def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
+    def next_station(self, robot: Robot, stations: Sequence[int]) -> int | By[int]:
         """Choose one of several stations that the pod of a robot can serve (at least one)."""
 
     def serves(self, pod: int, station: int) -> bool:

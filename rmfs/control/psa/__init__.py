@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rmfs.control.asks import Ask
+    from rmfs.control.asks import Ask, By
     from rmfs.world.robots import Robot
 
 P = TypeVar("P", bound=Parameters)
@@ -34,7 +34,7 @@ class PodStorageAssignment(Controller[P]):
         return iter(())
 
     @abstractmethod
-    def place(self, robot: Robot) -> int:
+    def place(self, robot: Robot) -> int | By[int]:
         """Choose an empty place (waypoint) for the pod a robot carries; -1 if there is none."""
 
     def least(self, costs: NDArray[np.float64], among: NDArray[np.bool_]) -> int:

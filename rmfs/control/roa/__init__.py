@@ -11,7 +11,7 @@ from rmfs.control.problems import Problem, Trigger
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rmfs.control.asks import Ask
+    from rmfs.control.asks import Ask, By
     from rmfs.control.decisions import SendBundle
 
 P = TypeVar("P", bound=Parameters)
@@ -30,5 +30,5 @@ class ReplenishmentOrderAssignment(Controller[P]):
     )
 
     @abstractmethod
-    def decide(self) -> Iterator[SendBundle | Ask[Any]]:
+    def decide(self) -> Iterator[SendBundle | Ask[Any] | By[Any]]:
         """Yield a bundle and a station, again and again, until nothing is to be sent now."""

@@ -11,7 +11,7 @@ from rmfs.control.problems import Problem, Trigger
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rmfs.control.asks import Ask
+    from rmfs.control.asks import Ask, By
     from rmfs.control.decisions import PromiseBundle, ReleasePod, SendBundle
 
 P = TypeVar("P", bound=Parameters)
@@ -29,7 +29,7 @@ class ReplenishmentPodSelection(Controller[P]):
     triggers = frozenset({Trigger.START, Trigger.NEW_BUNDLE, Trigger.UNIT_PICKED})
 
     @abstractmethod
-    def decide(self) -> Iterator[PromiseBundle | ReleasePod | SendBundle | Ask[Any]]:
+    def decide(self) -> Iterator[PromiseBundle | ReleasePod | SendBundle | Ask[Any] | By[Any]]:
         """Yield promises and releases until nothing is to be decided now.
 
         A rule that also decides ROA sends the bundles of a pod after it has released them.

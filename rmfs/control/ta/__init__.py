@@ -11,7 +11,7 @@ from rmfs.control.problems import Problem, Trigger
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from rmfs.control.asks import Ask
+    from rmfs.control.asks import Ask, By
     from rmfs.control.decisions import AssignLines, AssignOrder, Prepare, TaskDecision
     from rmfs.control.repositioning import Move
     from rmfs.world.robots import Robot
@@ -68,7 +68,7 @@ class TaskAllocation(Controller[P]):
     @abstractmethod
     def decide(
         self, consult: Consult
-    ) -> Iterator[TaskDecision | Prepare | AssignOrder | AssignLines | Ask[Any]]:
+    ) -> Iterator[TaskDecision | Prepare | AssignOrder | AssignLines | Ask[Any] | By[Any]]:
         """Yield tasks for robots until nothing is to be given out now.
 
         A controller that decides POA as well yields orders too, and is also asked when no robot is.

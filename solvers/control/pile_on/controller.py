@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from rmfs.control.asks import By
 from rmfs.control.poa import PickOrderAssignment
 from rmfs.control.pps.lexicographic import Lexicographic
 from rmfs.control.problems import Problem, Trigger
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation, ReplenishmentStation
 
-    Decision = Ask[Question] | AssignOrder | AssignLines
+    Decision = Ask[Question] | By[AssignOrder | AssignLines]
 
 
 class PileOnControl(PickOrderAssignment[PileOnParameters]):
@@ -82,7 +83,6 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         if call.solution is not None:
             self._plan.extend(call.solution, taken.items, call)
         else:
-            self.basis = None
             found = by_rule(call.ask.question)
             self._plan.extend(found, taken.items, None)
         yield from self._carry_out()
@@ -111,20 +111,18 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         """Put planned orders on free slots."""
         for station in self.view.pick_stations:
             for planned in self._plan.due(station):
-                self.basis = planned.call
-                yield planned.item.decision(station.index)
+                yield By(planned.item.decision(station.index), planned.call)
 
     # --- pods -----------------------------------------------------------------------------------
 
-    def pick_pod(self, robot: Robot, station: PickStation) -> int:
+    def pick_pod(self, robot: Robot, station: PickStation) -> int | By[int]:
         """Give a robot the nearest of the pods called, or what the heuristic says if none is."""
         called = self._plan.pods[station.index]
         pods = [pod for pod in called if self._plan.useful(pod, station)]
         if pods:
             at = self.view.storage.pod_waypoint[pods]
             pod = pods[int(self.view.travel.estimate_s(robot.waypoint, at).argmin())]
-            self.basis = called.pop(pod).call
-            return pod
+            return By(pod, called.pop(pod).call)
         missing = self.view.need[station.index] > self.view.inventory.inbound[station.index]
         return self._heuristic.pick_pod(robot, station) if missing.any() and not called else -1
 

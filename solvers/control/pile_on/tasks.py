@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 import numpy as np
 import pydantic
 
+from rmfs.control.asks import By
 from rmfs.control.decisions import (
     AssignLines,
     AssignOrder,
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation, ReplenishmentStation
 
-    Decision = Ask[Question] | AssignOrder | AssignLines | TaskDecision
+    Decision = Ask[Question] | TaskDecision | By[AssignOrder | AssignLines | BringForPicks]
 
 
 AsksTasks = Literal["pod-at-station", "robot-free", "new-order"]
@@ -142,7 +143,6 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
         if call.solution is not None:
             self._plan.extend(call.solution, taken.items, call)
         else:
-            self.basis = None
             self._plan.extend(by_rule(call.ask.question), taken.items, None)
         robots = [robot.index for robot in taken.robots]
         for called in self._plan.pods:
@@ -190,8 +190,7 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
         """Put planned orders on free slots, and send robots for the pods called."""
         for station in self.view.pick_stations:
             for planned in self._plan.due(station):
-                self.basis = planned.call
-                yield planned.item.decision(station.index)
+                yield By(planned.item.decision(station.index), planned.call)
             yield from self._fetch(station)
 
     def _fetch(self, station: PickStation) -> Iterator[Decision]:
@@ -202,9 +201,9 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
             if not free:
                 return
             call, named = called.pop(pod)
-            self.basis = call
             chosen = free[named] if named in free else self._nearest(list(free.values()), pod)
-            yield BringForPicks(keeper_of(self.view, chosen, pod), pod, station.index)
+            fetch = BringForPicks(keeper_of(self.view, chosen, pod), pod, station.index)
+            yield By(fetch, call)
 
     def _nearest(self, robots: Sequence[Robot], pod: int) -> Robot:
         at = self.view.storage.pod_waypoint[[pod]]
@@ -215,7 +214,6 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
 
     def _go_on(self, robot: Robot, consult: Consult) -> Iterator[Decision]:
         """Use a pod that has been served again, or park it."""
-        self.basis = None
         station = robot.station
         if station >= 0 and consult.serves(robot.pod, station):
             yield bring(self.view, robot, robot.pod, station)
@@ -237,13 +235,11 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
                 station = waiting[number]
                 pod = self._heuristic.replenishment_pod(robot, station)
                 if pod >= 0:
-                    self.basis = None
                     yield BringForBundles(keeper_of(view, robot, pod), pod, station.index)
                     working += 1
                     break
 
     def _to_rest(self, robot: Robot) -> Rest:
-        self.basis = None
         place = self._rest.choose(robot)
         return Rest(robot, place if place >= 0 else robot.waypoint)
 

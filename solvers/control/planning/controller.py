@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from rmfs.control.asks import By
 from rmfs.control.decisions import AssignOrder, BringForBundles, BringForPicks, Park, Rest
 from rmfs.control.pps.lexicographic import Lexicographic
 from rmfs.control.problems import Problem, Trigger
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
     from rmfs.world.stations import ReplenishmentStation
 
-    Decision = Ask[Question] | AssignOrder | TaskDecision
+    Decision = Ask[Question] | TaskDecision | By[Any]
 
 _WORTH_A_PLAN = 2
 """Free slots of a station from which on a new order alone is worth a new plan."""
@@ -148,8 +149,7 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
         """Put orders on slots whose first pod is under way."""
         for station in self.view.pick_stations:
             for order in self._plan.due(station):
-                self.basis = self._plan.call(station.index)
-                yield AssignOrder(order, station.index)
+                yield By(AssignOrder(order, station.index), self._plan.call(station.index))
 
     def _send(self) -> Iterator[Decision]:
         """Send free robots: for bundles if stock is low, for picks, then for bundles again."""
@@ -161,8 +161,8 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
             pod = self._plan.pods[station.index].pop(0)
             at = view.storage.pod_waypoint[[pod]]
             near = min(free, key=lambda r: (view.travel.estimate_s(r.waypoint, at)[0], r.index))
-            self.basis = self._plan.call(station.index)
-            yield BringForPicks(keeper_of(view, near, pod), pod, station.index)
+            fetch = BringForPicks(keeper_of(view, near, pod), pod, station.index)
+            yield By(fetch, self._plan.call(station.index))
             yield from self._give_slots()
         yield from self._replenish(len(view.robots))
 
@@ -192,7 +192,6 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
     def _go_on(self, robot: Robot, consult: Consult) -> Iterator[Decision]:
         """Use a pod that has been served again, take it to its bundles, or park it."""
         view, here = self.view, robot.station
-        self.basis = None
         if here >= 0 and consult.serves(robot.pod, here):
             yield bring(view, robot, robot.pod, here)
             return
@@ -228,13 +227,11 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
                 station = waiting[number]
                 pod = self._heuristic.replenishment_pod(robot, station)
                 if pod >= 0:
-                    self.basis = None
-                    yield BringForBundles(keeper_of(view, robot, pod), pod, station.index)
+                    yield By(BringForBundles(keeper_of(view, robot, pod), pod, station.index), None)
                     most -= 1
                     break
 
     def _to_rest(self, robot: Robot) -> Rest:
-        self.basis = None
         place = self._rest.choose(robot)
         return Rest(robot, place if place >= 0 else robot.waypoint)
 

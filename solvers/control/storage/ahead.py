@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from rmfs.control.asks import By
 from rmfs.control.problems import Trigger
 from rmfs.control.psa import PodStorageAssignment
 from rmfs.control.psa.nearest import Nearest
@@ -76,14 +77,13 @@ class Ahead(PodStorageAssignment[P]):
                     call.stale += 1
         return iter(())
 
-    def place(self, robot: Robot) -> int:
+    def place(self, robot: Robot) -> int | By[int]:
         """Store the pod where the plan says, or at the nearest place."""
         planned = self._plan.pop(robot.pod, None)
         if planned is not None:
             place, call = planned
             if self._is_empty(place):
-                self.basis = call
-                return place
+                return By(place, call)
             call.stale += 1
         return self._heuristic.place(robot)
 

@@ -10,7 +10,7 @@ import numpy as np
 import pydantic
 from numpy.typing import NDArray
 
-from rmfs.control.asks import Answer, Ask
+from rmfs.control.asks import Answer, Ask, By
 from rmfs.control.problems import Trigger
 from rmfs.control.psa import PodStorageAssignment
 from rmfs.control.psa.nearest import Nearest
@@ -110,7 +110,7 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
             self._prices = prices, call.ask.memo, call
         return iter(())
 
-    def place(self, robot: Robot) -> int:
+    def place(self, robot: Robot) -> int | By[int]:
         """Take the best bargain among the empty places."""
         if self._prices is None:
             return self._heuristic.place(robot)
@@ -123,8 +123,7 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
             pod_class=pod_class[[robot.pod]],
             stay_h=expected_stay_h(rate, self.parameters.horizon_s / 3600.0),
         )
-        self.basis = call
-        return self.least(values[0], self.view.storage.is_empty)
+        return By(self.least(values[0], self.view.storage.is_empty), call)
 
     def _steady_state(self, rate: NDArray[np.float64], pod_class: NDArray[np.int64]) -> Zones:
         """State the problem: mean ways of the zones, mean visits of the classes."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import pydantic
 
+from rmfs.control.asks import own
 from rmfs.control.decisions import Park, Rest, TaskDecision
 from rmfs.control.ta import TaskAllocation
 from rmfs.control.ta.rest import RestPlaces, RestRule
@@ -19,13 +20,13 @@ if TYPE_CHECKING:
 
     import numpy as np
 
-    from rmfs.control.asks import Ask, Call
+    from rmfs.control.asks import Ask, By, Call
     from rmfs.control.decisions import Prepare
     from rmfs.control.ta import Consult
     from rmfs.control.view import View
     from rmfs.world.robots import Robot
 
-    Told = TaskDecision | Prepare | Ask[Any]
+    Told = TaskDecision | Prepare | Ask[Any] | By[Any]
 
 NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 
@@ -88,15 +89,14 @@ class Asking(TaskAllocation[P]):
         consult = self._consult
         if call.solution is not None:
             yield from self.carry_out(call, consult)
-            self.basis = None
         told = {robot.index for robot in call.ask.memo.robots}
         for robot in list(self.view.asking.values()):
             if robot.task is None and robot.index in told:
-                yield from self._by_rule(robot, consult)
+                yield from own(self._by_rule(robot, consult))
         waiting = (robot for robot in self.view.asking.values() if robot.task is None)
         if any(robot.index not in told for robot in waiting):
             # they have come to need a task meanwhile; who was told nothing would be told it again
-            yield from self.decide(consult)
+            yield from own(self.decide(consult))
 
     def rest_place(self, robot: Robot) -> int:
         """Choose by the rest rule."""

@@ -8,7 +8,7 @@ import pytest
 from doubles import Situation, small_layout
 
 from rmfs import simulate
-from rmfs.control.asks import Ask, Call
+from rmfs.control.asks import Ask, Call, told_by
 from rmfs.control.choices import choose
 from rmfs.control.decisions import AssignLines, AssignOrder, BringForBundles, BringForPicks, Rest
 from rmfs.control.problems import Problem
@@ -21,7 +21,8 @@ def decisions(situation: Situation, control: PileOnControl, *, answer: bool = Tr
     found: list[Any] = []
     given = [control.decide()]
     while given:
-        for decision in given.pop():
+        for told in given.pop():
+            decision, _ = told_by(told, None)
             if isinstance(decision, Ask):
                 call = Call(0, Problem.POA, control, decision, 0, "")
                 call.answer = decision.solve(decision.question) if answer else None
@@ -48,7 +49,7 @@ def test_one_pod_for_both_orders(answer: bool) -> None:
     assert {decision.order for decision in found} == {one, other}
     station = situation.world.pick_stations[0]
     robot = situation.world.robots[0]
-    assert control.pick_pod(robot, station) == 2
+    assert told_by(control.pick_pod(robot, station), None)[0] == 2
     situation.world.start_pick(robot, 2, 0)
     assert control.pick_pod(situation.world.robots[1], station) == -1
 
@@ -85,7 +86,8 @@ def test_splits_an_order_whose_lines_no_pod_has_together() -> None:
     found = decisions(situation, control)
     assert all(isinstance(decision, AssignLines) for decision in found)
     assert {decision.order for decision in found} <= {order, rest}
-    assert control.pick_pod(situation.world.robots[0], situation.world.pick_stations[0]) in (0, 1)
+    pod = control.pick_pod(situation.world.robots[0], situation.world.pick_stations[0])
+    assert told_by(pod, None)[0] in (0, 1)
 
 
 def test_stale_items_and_pods_are_dropped() -> None:
@@ -103,7 +105,6 @@ def test_stale_items_and_pods_are_dropped() -> None:
 def tasks(situation: Situation, control: PileOnTasks, *, answer: bool = True) -> list[Any]:
     """Ask for tasks; what is said is applied and returned, questions are answered at once."""
     found: list[Any] = []
-    control.basis = None
     apply(control.decide(NoConsult()), situation, control, answer, found)  # type: ignore[arg-type]
     return found
 
@@ -113,7 +114,8 @@ def apply(
 ) -> None:
     """Apply decisions one by one."""
     world = situation.world
-    for decision in decisions:
+    for told in decisions:
+        decision, _ = told_by(told, None)
         if isinstance(decision, Ask):
             call = Call(0, Problem.TA, control, decision, 0, "")
             call.answer = decision.solve(decision.question) if answer else None

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from doubles import Situation, small_layout
 
-from rmfs.control.asks import Ask, Call
+from rmfs.control.asks import Ask, Call, told_by
 from rmfs.control.decisions import AssignOrder, BringForBundles, BringForPicks, Rest
 from rmfs.control.problems import Problem, Trigger
 from rmfs.solvers.control.planning import PlanningControl
@@ -27,7 +27,6 @@ class NoConsult:
 def said(situation: Situation, control: PlanningControl, *, answer: bool = True) -> list[Any]:
     """Ask for decisions; what is said is applied and returned, questions are answered at once."""
     found: list[Any] = []
-    control.basis = None
     for robot in situation.world.robots:
         if robot.task is None:
             situation.world.asking[robot.index] = robot
@@ -39,7 +38,8 @@ def _apply(
     given: Any, situation: Situation, control: PlanningControl, answer: bool, found: list[Any]
 ) -> None:
     world = situation.world
-    for decision in given:
+    for told in given:
+        decision, _ = told_by(told, None)
         if isinstance(decision, Ask):
             call = Call(0, Problem.TA, control, decision, 0, "")
             call.answer = decision.solve(decision.question) if answer else None
@@ -147,7 +147,7 @@ def _asked(situation: Situation, control: PlanningControl) -> list[Any]:
             asked.append(decision.question)
             call = Call(0, Problem.TA, control, decision, 0, "")
             call.answer = decision.solve(decision.question)
-            assert not [d for d in control.answered(call) if isinstance(d, BringForPicks)]
+            assert pods([told_by(said, call)[0] for said in control.answered(call)]) == []
     return asked
 
 
@@ -161,5 +161,5 @@ def test_what_does_not_hold_any_more_is_dropped_and_counted() -> None:
     call = Call(0, Problem.TA, control, ask, 0, "")
     call.answer = ask.solve(ask.question)
     situation.world.storage.claim(0, 0)
-    assert pods(list(control.answered(call))) == []
+    assert pods([told_by(said, call)[0] for said in control.answered(call)]) == []
     assert call.stale == 1

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from doubles import Situation, small_layout
 
-from rmfs.control.asks import Ask, Call
+from rmfs.control.asks import Ask, Call, told_by
 from rmfs.control.problems import Problem
 from rmfs.solvers.control.storage.bands import bands, means
 from rmfs.solvers.control.storage.placement import PlacementControl, worth_looking_at
@@ -31,9 +31,12 @@ def ask(control: Any) -> list[Call]:
 
 def tell(control: Any, call: Call) -> None:
     """Tell a controller an answer."""
-    control.basis = call
     assert list(control.answered(call)) == []
-    control.basis = None
+
+
+def place(control: Any, situation: Situation) -> tuple[int, Call | None]:
+    """Ask for the place of the pod of robot 0, and by whose solution it was found."""
+    return told_by(control.place(situation.world.robots[0]), None)
 
 
 def carried(places: int = 8) -> Situation:
@@ -52,8 +55,9 @@ def test_one_pod_takes_the_place_nearest_to_the_only_station(control: type) -> N
     made = situation.make(control)
     for call in ask(made):
         tell(made, call)
-    assert made.place(situation.world.robots[0]) == 3
-    assert made.basis is not None
+    found, call = place(made, situation)
+    assert found == 3
+    assert call is not None
 
 
 @pytest.mark.parametrize("control", [*ASKS_AHEAD, PricesControl])
@@ -61,12 +65,10 @@ def test_without_an_answer_the_nearest_place(control: type) -> None:
     situation = carried()
     made = situation.make(control)
     (call,) = ask(made)
-    assert made.place(situation.world.robots[0]) == 3
-    assert made.basis is None
+    assert place(made, situation) == (3, None)
     call.answer = None
     tell(made, call)
-    assert made.place(situation.world.robots[0]) == 3
-    assert made.basis is None
+    assert place(made, situation) == (3, None)
 
 
 def test_after_a_failure_old_prices_decide_nothing() -> None:
@@ -75,27 +77,22 @@ def test_after_a_failure_old_prices_decide_nothing() -> None:
     made = situation.make(PricesControl)
     (call,) = ask(made)
     tell(made, call)
-    made.place(situation.world.robots[0])
-    assert made.basis is call
+    assert place(made, situation)[1] is call
     failed = Call(1, Problem.PSA, made, call.ask, 0, "")
-    made.basis = None
     tell(made, failed)
-    assert made.place(situation.world.robots[0]) == 3
-    assert made.basis is None
+    assert place(made, situation) == (3, None)
 
 
 @pytest.mark.parametrize("control", ASKS_AHEAD)
 def test_a_place_taken_meanwhile_is_stale(control: type) -> None:
     """Somebody else comes to keep place 3: the call counts it, and the next place is taken."""
     situation = carried()
-    robot = situation.world.robots[0]
     made = situation.make(control)
     (call,) = ask(made)
     tell(made, call)
     other = Situation(small_layout(places=8)).world.robots[1]
     situation.world.storage.keep(other, 3)
-    assert made.place(robot) == 4
-    assert made.basis is None
+    assert place(made, situation) == (4, None)
     assert call.stale == 1
 
 
@@ -124,7 +121,7 @@ def test_the_pod_wanted_more_gets_the_nearer_place() -> None:
     made = situation.make(PlacementControl)
     for call in ask(made):
         tell(made, call)
-    assert [made.place(robot) for robot in situation.world.robots] == [3, 2]
+    assert [told_by(made.place(robot), None)[0] for robot in situation.world.robots] == [3, 2]
 
 
 def test_places_left_out_never_matter() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from doubles import Situation, small_layout
 
-from rmfs.control.asks import Ask, Call
+from rmfs.control.asks import Ask, Call, told_by
 from rmfs.control.decisions import (
     BringForPicks,
     Park,
@@ -50,13 +50,15 @@ def told(
     found: list[Any] = []
     calls: list[Call] = []
     advice, world = Advice(situation), situation.world
-    for decision in control.decide(advice):
+    for told in control.decide(advice):
+        decision, _ = told_by(told, None)
         assert isinstance(decision, Ask)
         call = Call(0, Problem.TA, control, decision, 0, "")
         calls.append(call)
         if answer:
             call.answer = decision.solve(decision.question)
-        for said in control.answered(call):
+        for told_now in control.answered(call):
+            said, _ = told_by(told_now, call)
             found.append(said)
             if isinstance(said, BringForPicks):
                 world.start_pick(*said)
@@ -177,7 +179,7 @@ def test_bundles_go_together_and_the_greedy_rule_stands_in() -> None:
         (question,) = list(control.decide())
         call = Call(0, Problem.RPS, control, question, 0, "")
         call.answer = question.solve(question.question) if answer else None
-        found = list(control.answered(call))
+        found = [told_by(said, call)[0] for said in control.answered(call)]
         kinds = [type(decision) for decision in found]
         assert kinds == [PromiseBundle, PromiseBundle, ReleasePod, SendBundle, SendBundle]
         assert {d.bundle for d in found if isinstance(d, PromiseBundle)} == {one, other}
