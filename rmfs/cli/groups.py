@@ -16,6 +16,7 @@ SUB_COMMANDS = {
     "scenario": ("rmfs.scenario.commands", "List, show and check scenarios."),
     "controllers": ("rmfs.control.commands", "List, show and check sets of controllers."),
     "traffic": ("rmfs.experiments.traffic.commands", "Path planners alone: trips, duels, growth."),
+    "decisions": ("rmfs.solvers.decisions.commands", "Decisions as files: solve, check, compare."),
     "experiment": ("rmfs.experiments.commands", "Plan and run experiments; tables and figures."),
 }
 """Module and help of each group of commands; its module is imported when it is called."""

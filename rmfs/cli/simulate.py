@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from rmfs.measure.checker import CheckReport
     from rmfs.simulation.run import Run
+    from rmfs.solvers.decisions.recording import DecisionRecorder
 
 LONGEST = 100
 """Characters of a folder's name that tell what was changed, at most."""
@@ -81,6 +82,14 @@ def run(
         typer.Option(
             help="Folder for the orders and bundles that come, to be replayed (orders.csv, "
             "bundles.csv).",
+            show_default=False,
+        ),
+    ] = None,
+    decisions: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder for every question to an optimiser, as a file that can be solved and "
+            "checked elsewhere (rmfs decisions).",
             show_default=False,
         ),
     ] = None,
@@ -145,8 +154,9 @@ def run(
     streams = None if record is None else StreamRecorder()
     if speed is not None and not live:
         raise InputError("--speed: only with --live")
-    if (checkpoint_every is not None or resume) and (live or record is not None):
-        raise InputError("--checkpoint-every, --resume: not with --live or --record")
+    keeps = record is not None or decisions is not None
+    if (checkpoint_every is not None or resume) and (live or keeps):
+        raise InputError("--checkpoint-every, --resume: not with --live, --record or --decisions")
     with ExitStack() as stack:
         stack.enter_context(terminable())
         watching: dict[str, Any] = {}
@@ -170,6 +180,7 @@ def run(
             watching["driver"] = Checkpoints(file, checkpoint_every)
         if resume:
             watching["resume"] = file
+        keeper = None if decisions is None else kept_decisions(decisions, inputs, seed, set_ or [])
         done = simulated(
             inputs,
             seed=seed,
@@ -179,8 +190,11 @@ def run(
             streams=streams,
             measures=measure or [],
             allow_not_well_formed=allow_not_well_formed,
+            observers=[] if keeper is None else [keeper],
             **watching,
         )
+        if keeper is not None:
+            step(keeper.summary())
         if record is not None and streams is not None:
             step("writing the streams")
             write_streams(streams, done.world.skus, record)
@@ -191,6 +205,16 @@ def run(
     if resume:
         file.unlink(missing_ok=True)
     conclude(target, footprint, report)
+
+
+def kept_decisions(
+    folder: Path, inputs: dict[str, str], seed: int, changes: Sequence[str] = ()
+) -> DecisionRecorder:
+    """Return what writes the questions of a run into a folder."""
+    from rmfs.solvers.decisions.recording import DecisionRecorder
+
+    names = {part: Path(given).stem for part, given in inputs.items()}
+    return DecisionRecorder(folder, {**names, "seed": seed, "set": list(changes)})
 
 
 def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:

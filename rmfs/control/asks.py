@@ -46,6 +46,9 @@ class Answer:
     scale
         What a gap is large or small against, in the unit of the objective, such as the cost of the
         pods called. Default: the objective, which means little where gains and costs cancel out.
+    found
+        The optimiser's own values, of which `solution` is what the controller needs: for who keeps
+        questions and answers. It is not recorded.
 
     Raises
     ------
@@ -65,6 +68,7 @@ class Answer:
     build_s: float = 0.0
     built: float = 0.0
     scale: float = nan
+    found: Any = None
 
     def __post_init__(self) -> None:
         if self.solution is not None and not isinstance(self.solution, Mapping):
@@ -214,8 +218,10 @@ class Call:
             self.applied += 1
 
     def forget(self) -> None:
-        """Let go of the question, which may be large; the sizes stay."""
+        """Let go of question and values, which may be large; sizes and solution stay."""
         self.ask = replace(self.ask, question=None, memo=None)
+        if self.answer is not None:
+            self.answer = replace(self.answer, found=None)
 
 
 class By(NamedTuple, Generic[D]):

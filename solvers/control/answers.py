@@ -39,4 +39,5 @@ def answer(
         build_s=solution.build_s,
         built=solution.built,
         scale=scale,
+        found=solution.values,
     )

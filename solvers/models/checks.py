@@ -82,7 +82,7 @@ def integers(
         whole = raw.dtype.kind == "f" and bool(np.all(np.isfinite(raw) & (raw == np.rint(raw))))
         # An empty list has no kind of its own: NumPy calls it float.
         require(whole or raw.size == 0, field, "must hold whole numbers")
-    checked = raw.astype(np.int64)
+    checked = raw.astype(np.int64, order="C")
     _within(field, checked, low, high)
     checked.setflags(write=False)
     return checked
@@ -120,7 +120,8 @@ def reals(
     """
     raw = _shaped(field, value, shape)
     require(raw.dtype.kind in "iufb" or raw.size == 0, field, "must hold numbers")
-    checked = raw.astype(np.float64)
+    # by rows however it came: the order in memory is the order in which sums are rounded
+    checked = raw.astype(np.float64, order="C")
     require(bool(np.all(np.isfinite(checked))), field, "must be finite")
     _within(field, checked, low, high)
     checked.setflags(write=False)

@@ -1,0 +1,98 @@
+"""How controllers ask: from a question in a run to a file, and from there to the same answer."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.solvers.control.answers import answer
+from rmfs.solvers.decisions.files import Decision, Found
+from rmfs.solvers.decisions.models import family_of, model_data, plain_data, plain_of, plain_values
+from rmfs.solvers.models.pile_on import Pruning
+from rmfs.solvers.models.solution import Limits
+from rmfs.solvers.models.tasks import matching
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rmfs.control.asks import Answer
+
+ASKERS = {
+    "pile-on": "pile_on.question",
+    "planning": "planning.question",
+    "dispatch": "tasks.dispatch",
+    "routes": "tasks.routes",
+    "stocking": "stocking",
+    "placement": "storage.placement",
+    "prices": "storage.prices",
+    "stays": "storage.stays",
+}
+"""Modules of `rmfs.solvers.control` with a `Question` and how it is solved, by name."""
+
+_MATCHING = "matching"
+"""Dispatch that looks at pairs alone: its question is the matching that it makes of the data."""
+
+_MADE: Mapping[str, Callable[[Any], Any]] = {
+    "limits": lambda given: Limits(**given),
+    "pruning": lambda given: Pruning(**given),
+    "waypoint": lambda given: np.array(given, np.int64),
+    "start": lambda given: tuple(map(tuple, given)),
+}
+"""How what goes with a question is made of JSON, where it is no number or text."""
+
+
+def question_of(question: object) -> Decision | None:
+    """Make a file's content of a question in a run; None if no family has it."""
+    data = getattr(question, "data", None)
+    family = family_of(data)
+    if data is None or family is None:
+        return None
+    by = next((name for name in ASKERS if _module(name).Question is type(question)), "")
+    if by == "dispatch" and getattr(question, "method", "") == _MATCHING:
+        return Decision(_MATCHING, plain_data(_MATCHING, data.pairs), asked={"by": _MATCHING})
+    asked: dict[str, Any] = {}
+    if by:
+        others = [one.name for one in fields(question) if one.name != "data"]  # type: ignore[arg-type]
+        asked = {"by": by, **{name: plain_of(getattr(question, name)) for name in others}}
+    return Decision(family, plain_data(family, data), asked=asked)
+
+
+def asked_again(decision: Decision, where: str = "") -> Found:
+    """Answer a question as it was answered in the run.
+
+    Raises
+    ------
+    InputError
+        If it was asked by nobody known here, or what went with it is not right.
+    """
+    name, data = where or decision.name, model_data(decision, where)
+    by = decision.asked.get("by")
+    if by == _MATCHING:
+        found = matching.solve(data)
+        return found_of(decision.family, answer(found, None if found.values is None else {}))
+    if by not in ASKERS:
+        raise InputError(f"{name}: asked.by: names none of {', '.join([*ASKERS, _MATCHING])}")
+    module = _module(by)
+    rest = {key: value for key, value in decision.asked.items() if key != "by"}
+    try:
+        made = {key: _MADE[key](value) if key in _MADE else value for key, value in rest.items()}
+        question = module.Question(data=data, **made)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name}: asked: {error}") from None
+    return found_of(decision.family, module.solve(question))
+
+
+def found_of(family: str, given: Answer) -> Found:
+    """Make an answer's content of what an optimiser returned in a run."""
+    by = {"backend": given.backend, "status": given.status, "work": given.work}
+    by |= {"wall_s": given.wall_s, "build_s": given.build_s, "built": given.built}
+    values = None if given.found is None else plain_values(family, given.found)
+    return Found(values, given.objective, given.bound, by)
+
+
+def _module(name: str) -> Any:
+    return import_module(f"rmfs.solvers.control.{ASKERS[name]}")

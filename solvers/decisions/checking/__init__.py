@@ -1,0 +1,52 @@
+"""Answers verified from the plain fields of a question, without the models.
+
+A module per family states the rules of the problem anew, with loops where the models have arrays,
+and recomputes the value. Nothing here imports `rmfs.solvers.models` or `rmfs.solvers.control`.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from math import isfinite, isnan
+from typing import TYPE_CHECKING
+
+from rmfs.solvers.decisions.checking.wrong import WrongError as WrongError
+
+if TYPE_CHECKING:
+    from rmfs.solvers.decisions.files import Decision, Found
+
+TOLERANCE = 1e-6
+"""How far, relative to the value, a stated objective may be off, and a bound beyond it."""
+
+
+def check(decision: Decision, found: Found) -> float:
+    """Verify an answer and recompute its value.
+
+    Parameters
+    ----------
+    decision
+        The question.
+    found
+        The answer.
+
+    Returns
+    -------
+    Its value.
+
+    Raises
+    ------
+    WrongError
+        If a rule is broken, the stated objective is another one, or the stated bound is beyond it.
+    """
+    if found.values is None:
+        raise WrongError("values: there are none")
+    module = import_module(f"rmfs.solvers.decisions.checking.{decision.family}")
+    value: float = module.value(decision.data, found.values)
+    if not isfinite(value):
+        raise WrongError("what is not allowed is used: the value is infinite")
+    slack = TOLERANCE * max(1.0, abs(value))
+    if not isnan(found.objective) and abs(found.objective - value) > slack:
+        raise WrongError(f"objective: {found.objective!r} is stated, the values give {value!r}")
+    if not isnan(found.bound) and (found.bound - value) * decision.sign > slack:
+        raise WrongError(f"bound: {found.bound!r} is beyond the value {value!r}")
+    return value

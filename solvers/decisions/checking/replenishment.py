@@ -1,0 +1,42 @@
+"""Bundles to pods, and these pods to stations."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import fsum, isfinite
+from typing import TYPE_CHECKING
+
+from rmfs.solvers.decisions.checking.wrong import require, within
+
+if TYPE_CHECKING:
+    from rmfs.solvers.decisions.schema import Plain
+
+
+def value(data: Plain, values: Plain) -> float:
+    """Add up trips and the cost of what is left, less the worth of what is stored."""
+    pod, station = values["pod"].tolist(), values["station"].tolist()
+    within("pod", pod, -1, len(data["pod_space"]))
+    within("station", station, -1, len(data["station_space"]))
+    parts: list[float] = []
+    in_pod = [Fraction(0)] * len(data["pod_space"])
+    at = [Fraction(0)] * len(data["station_space"])
+    for bundle, one in enumerate(pod):
+        if one < 0:
+            parts.append(float(data["leave_s"][bundle]))
+            require(isfinite(parts[-1]), f"pod[{bundle}]: the bundle must be stored")
+            continue
+        parts.append(-float(data["worth_s"][bundle, one]))
+        require(isfinite(parts[-1]), f"pod[{bundle}]: {one} is not allowed")
+        require(station[one] >= 0, f"station[{one}]: the pod gets a bundle and is not brought")
+        space = Fraction(float(data["space"][bundle]))
+        in_pod[one] += space
+        at[station[one]] += space
+    for name, used, most in (("pod", in_pod, "pod_space"), ("station", at, "station_space")):
+        for number, full in enumerate(used):
+            limit = float(data[most][number])
+            require(full <= limit, f"{name} {number}: {float(full)} do not fit into {limit}")
+    for one, to in enumerate(station):
+        if to >= 0:
+            parts.append(float(data["trip_s"][one, to]))
+            require(isfinite(parts[-1]), f"station[{one}]: {to} is not allowed")
+    return fsum(parts)

@@ -1,0 +1,32 @@
+"""Stays of pods in zones of places."""
+
+from __future__ import annotations
+
+from math import fsum, inf
+from typing import TYPE_CHECKING
+
+from rmfs.solvers.decisions.checking.wrong import require, within
+
+if TYPE_CHECKING:
+    from rmfs.solvers.decisions.schema import Plain
+
+
+def value(data: Plain, values: Plain) -> float:
+    """Add up the robot time of all stays; a place that is left at an instant is free at it."""
+    zone = values["zone"].tolist()
+    capacity = data["capacity"].tolist()
+    within("zone", zone, 0, len(capacity))
+    parts = []
+    # ends before begins of the same instant
+    changes = []
+    for stay, at in enumerate(zone):
+        cost = float(data["cost_s"][stay, at])
+        require(cost < inf, f"zone[{stay}]: {at} is not allowed")
+        parts.append(cost)
+        changes.append((float(data["begin_s"][stay]), 1, at))
+        changes.append((float(data["end_s"][stay]), -1, at))
+    there = [0] * len(capacity)
+    for time, change, at in sorted(changes, key=lambda one: one[:2]):
+        there[at] += change
+        require(there[at] <= capacity[at], f"zone: {at} has no place left at {time} s")
+    return fsum(parts)

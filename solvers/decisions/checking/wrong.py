@@ -1,0 +1,32 @@
+"""What is wrong with an answer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+
+class WrongError(ValueError):
+    """An answer breaks a rule; the message says which, and where."""
+
+
+def require(condition: object, problem: str) -> None:
+    """Raise a `WrongError` unless a condition holds."""
+    if not condition:
+        raise WrongError(problem)
+
+
+def within(name: str, values: Iterable[int], low: int, end: int) -> None:
+    """Require that every number lies within [low, end)."""
+    for place, value in enumerate(values):
+        require(low <= value < end, f"{name}[{place}]: {value} is not within {low} and {end - 1}")
+
+
+def once(name: str, values: Iterable[int]) -> None:
+    """Require that no number comes twice."""
+    seen: set[int] = set()
+    for value in values:
+        require(value not in seen, f"{name}: {value} comes twice")
+        seen.add(value)

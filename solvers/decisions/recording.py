@@ -1,0 +1,86 @@
+"""Every question of a run as a file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.control.asks import Outcome
+from rmfs.measure.provenance import commit, version
+from rmfs.observer import Observer
+from rmfs.solvers.decisions.asking import found_of, question_of
+from rmfs.solvers.decisions.files import Decision, write
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from rmfs.control.asks import Call
+
+
+class DecisionRecorder(Observer):
+    """Writes each question, with its answer in the run, when the answer has come.
+
+    Parameters
+    ----------
+    folder
+        Where to; made if it is not there.
+    run
+        What tells the run from others: layout, scenario, controllers, seed, ...
+
+    Attributes
+    ----------
+    written
+        Files written, those that were there already not counted.
+    strange
+        Questions of no family of ours: those of optimisers of a user's own.
+    """
+
+    def __init__(self, folder: Path, run: Mapping[str, Any]) -> None:
+        self._folder = folder
+        self._run = {"rmfs": {"version": version(), **commit()}, **run}
+        self._open: dict[int, Call] = {}
+        self.written = 0
+        self.strange = 0
+
+    def optimiser_asked(self, call: Call) -> None:
+        """Remember the question: its answer may never come."""
+        self._open[call.number] = call
+
+    def optimiser_answered(self, call: Call) -> None:
+        """Write it."""
+        self._open.pop(call.number, None)
+        self._write(call)
+
+    def run_ended(self, time_s: float) -> None:
+        """Write those whose answer has not taken effect."""
+        for call in self._open.values():
+            self._write(call)
+        self._open.clear()
+
+    def summary(self) -> str:
+        """Say in one line what was written."""
+        told = f"{self.written} questions written to {self._folder}"
+        return f"{told}; {self.strange} of other families left out" if self.strange else told
+
+    def _write(self, call: Call) -> None:
+        question = question_of(call.ask.question)
+        if question is None:
+            self.strange += 1
+            return
+        told = {
+            "number": call.number,
+            "time_s": call.requested_us / 1e6,
+            "problem": str(call.problem),
+            "controller": type(call.controller).__name__,
+            "state": call.state,
+            "outcome": str(call.outcome),
+            "applied": call.applied,
+            "stale": call.stale,
+        }
+        recorded = None
+        if call.answer is not None and call.outcome is not Outcome.WAITING:
+            recorded = found_of(question.family, call.answer)
+        whole = Decision(
+            question.family, question.data, {**self._run, **told}, question.asked, recorded
+        )
+        self.written += write(whole, self._folder)

@@ -1,0 +1,405 @@
+"""What the questions and answers of each family consist of (`rmfs-decision/1`).
+
+This is the format, and it stands alone: nothing here imports a model, so that who checks an answer
+trusts none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+Plain = dict[str, Any]
+"""The fields of a question or an answer by name: NumPy arrays, numbers, texts, lists of lists."""
+
+Kind = Literal["whole", "real", "cost", "worth", "ms", "cost_ms", "space", "flag", "lists", "text"]
+"""What the entries of a field are; see `KINDS`."""
+
+KINDS: Mapping[Kind, str] = {
+    "whole": "a whole number",
+    "real": "a finite number",
+    "cost": 'a number, or "inf": not allowed, or without limit',
+    "worth": 'a number, or "-inf": not allowed',
+    "ms": "a number of seconds in whole milliseconds",
+    "cost_ms": 'a number of seconds in whole milliseconds, or "inf"',
+    "space": "a number of space units in whole sixteenths",
+    "flag": "0 or 1",
+    "lists": "lists of whole numbers, which may differ in length",
+    "text": "one of the texts listed",
+}
+"""The kinds of entries, in words."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """One field.
+
+    Attributes
+    ----------
+    name
+        Its name; a dot leads into a part, as in `weights.travel`.
+    kind
+        What its entries are.
+    shape
+        A letter per dimension; empty for a single value. For `lists`, how many there are.
+    optional
+        Whether it may be left out.
+    meaning
+        In words, with the unit.
+    texts
+        What a text may be.
+    """
+
+    name: str
+    kind: Kind
+    shape: str = ""
+    optional: bool = False
+    meaning: str = ""
+    texts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Schema:
+    """One family of questions.
+
+    Attributes
+    ----------
+    data, values
+        Fields of a question, and of an answer.
+    derived
+        Sizes that no field of the question has for a dimension.
+    maximise
+        Whether more is better.
+    """
+
+    data: tuple[Field, ...]
+    values: tuple[Field, ...]
+    derived: Mapping[str, Callable[[Plain], int]]
+    maximise: bool = False
+
+
+def fields_of(text: str) -> tuple[Field, ...]:
+    """Read fields from lines `name | kind | shape | meaning`; a name with `?` is optional."""
+    found = []
+    for line in text.strip().splitlines():
+        name, kind, shape, meaning = (part.strip() for part in line.split("|"))
+        texts: tuple[str, ...] = ()
+        if kind.startswith("text "):
+            kind, _, listed = kind.partition(" ")
+            texts = tuple(listed.split("/"))
+        found.append(
+            Field(name.rstrip("?"), cast("Kind", kind), shape, name.endswith("?"), meaning, texts)
+        )
+    return tuple(found)
+
+
+def _orders(data: Plain) -> int:
+    return int(data["line_order"][-1]) + 1 if len(data["line_order"]) else 0
+
+
+def _robots(data: Plain) -> int:
+    return 0 if data.get("fetch") is None else len(data["fetch"])
+
+
+_WEIGHTS = """
+weights.travel     | real |     | per unit of travel of a called pod and of a robot to it
+weights.visit      | real |     | per called pod besides
+weights.empty_slot | real |     | per slot that stays empty
+weights.complete   | real |     | reward per order covered in full
+weights.unit       | real |     | reward per unit of such an order
+weights.prospects  | flag |     | whether orders without a slot that could be filled count, too
+weights.open_unit  | real |     | per unit of open demand that no pod covers
+weights.open_line  | real |     | per open line of an order placed now (variant `later`)
+weights.line       | real |     | reward per line covered
+weights.part       | real |     | per slot that an order takes beyond its first
+"""
+
+_VARIANTS = "whole/later/split-stations/split-time/split-both"
+
+SCHEMAS: Mapping[str, Schema] = {
+    "pile_on": Schema(
+        fields_of(
+            f"""
+slots        | whole | S   | free order slots
+line_order   | whole | L   | order of each line, sorted, from 0 without gaps
+line_sku     | whole | L   | its SKU, increasing within an order
+line_units   | whole | L   | its units
+stock        | whole | P K | unreserved units per pod and SKU
+travel       | real  | P S | cost of bringing a pod to a station
+available    | flag  | P   | whether a pod may be called
+inbound      | whole | P   | station that a pod is on its way to, or -1
+open_units   | whole | S K | units that orders already there still need
+fetch?       | real  | R P | cost for a robot to reach a pod; absent: robots are not decided
+robot_pod?   | whole | R   | pod that a robot is bound to, or -1
+worth?       | real  | O   | extra reward for giving an order its first slot
+may_call?    | flag  | S   | whether pods may be called to a station
+variant      | text {_VARIANTS} | | how orders may be covered
+{_WEIGHTS.strip()}
+"""
+        ),
+        fields_of(
+            """
+slot         | flag  | O S | whether an order takes a slot at a station
+line_station | whole | L   | station whose pods cover a line now, or -1
+pod_station  | whole | P   | station that a pod is called to, or -1
+pod_robot    | whole | P   | robot that fetches it, or -1
+prospect     | whole | O   | station whose pods could fill an order without a slot, or -1
+"""
+        ),
+        {"O": _orders, "R": _robots},
+    ),
+    "planning": Schema(
+        fields_of(
+            """
+slots         | whole | S   | order slots, 1 or more
+coming        | whole | F   | pods under way; those of a station in the order in which they come
+coming_to     | whole | F   | station of each
+order_station | whole | O   | station at which an order is open, or -1 if it waits
+order_until   | whole | O   | last visit under way with units bound for an open order, or -1
+order_worth   | real  | O   | worth of closing an order, s
+line_order    | whole | L   | order of each line
+line_sku      | whole | L   | its SKU
+line_units    | whole | L   | its units
+line_worth    | real  | L   | worth of serving it, s
+stock         | whole | P K | units to spare per pod and SKU
+cost          | cost  | P S | cost of a new visit of a pod, s
+visits        | whole |     | new visits per station at most
+decay         | real  |     | factor from one visit to the next, in (0, 1]
+"""
+        ),
+        fields_of(
+            """
+pods          | lists | S   | pods of the new visits of each station, in their order
+order_station | whole | O   | station of each order, -1 if it goes on waiting
+line_visit    | whole | L   | visit that serves a line, those under way counted, or -1
+"""
+        ),
+        {},
+    ),
+    "sequencing": Schema(
+        fields_of(
+            """
+needs    | flag  | O K | whether an order needs a SKU
+holds    | flag  | P K | whether a pod holds it
+capacity | whole |     | orders open at a time
+opened   | flag  | O   | whether an order is open before the first visit
+"""
+        ),
+        fields_of(
+            """
+pods  | whole | T | the visiting pods in turn
+start | whole | O | visit during which an order is opened; -1 for those open before
+"""
+        ),
+        {},
+    ),
+    "rack_allocation": Schema(
+        fields_of(
+            """
+units | whole | O K | units of a SKU that an order asks for
+stock | whole | P K | units of a SKU on a pod
+slots | whole | S   | orders that a station takes
+"""
+        ),
+        fields_of(
+            """
+order_station | whole | O | station of an order, or -1
+pod_station   | whole | P | station of a pod, or -1
+"""
+        ),
+        {},
+    ),
+    "placement": Schema(
+        fields_of(
+            """
+travel_s | cost | P L | time from where a pod is to a place, s
+access_s | real | L   | way of a later visit to that place, both ways, s
+visits   | real | P   | expected visits of a pod before it is moved again
+"""
+        ),
+        fields_of("place | whole | P | place of each pod"),
+        {},
+    ),
+    "stays": Schema(
+        fields_of(
+            """
+begin_s  | real  | N   | when a stay begins, s
+end_s    | real  | N   | when it ends, s
+cost_s   | cost  | N Z | robot time of a stay in a zone, s
+capacity | whole | Z   | places of a zone
+"""
+        ),
+        fields_of("zone | whole | N | zone of each stay"),
+        {},
+    ),
+    "zones": Schema(
+        fields_of(
+            """
+visit_s        | real | I J | robot time of a visit to a pod of a class from a zone, s
+rate_per_h     | real | I   | visits of a pod of a class, 1/h
+pods           | real | I   | pods of a class
+places         | real | J   | places of a zone
+congestion_s_h | real | J   | delay of a visit per visit per hour to the same zone, s h
+"""
+        ),
+        fields_of(
+            """
+standing    | real | I J | pods of a class in a zone
+price_per_h | real | J   | robot time that one more place would save, s/h; not checked
+"""
+        ),
+        {},
+    ),
+    "matching": Schema(
+        fields_of(
+            """
+travel_s | cost | R T | time a robot needs to a task, s
+leave_s  | cost | T   | cost of leaving a task, s; "inf" where it must be done
+"""
+        ),
+        fields_of("robot | whole | T | robot of each task, or -1"),
+        {},
+    ),
+    "balance": Schema(
+        fields_of(
+            """
+arrive_s    | cost  | R T | time until a robot is at the station with the pod of a task, s
+leave_s     | cost  | T   | cost of leaving a task, s; "inf" where it must be done
+due_s       | cost  | T   | when a task should be there, s; "inf" without a due time
+station     | whole | T   | station of a task
+queue       | whole | S   | pods at a station or on their way to it
+service_s   | real  | S   | time a pod keeps it, s
+room        | whole | S   | robots that may be sent to it now
+late_weight | real  |     | seconds of travel that a second of lateness is worth
+"""
+        ),
+        fields_of("robot | whole | T | robot of each task, or -1"),
+        {},
+    ),
+    "sequence": Schema(
+        fields_of(
+            """
+ready_s     | ms      | R   | when a robot can begin, s
+carrying    | flag    | R   | whether it carries a pod
+reach_s     | cost_ms | R T | empty drive to the pod of a task, s
+stow_s      | cost_ms | R L | drive with its pod to a place, s
+fetch_s     | cost_ms | L T | empty drive from a place to the pod of a task, s
+bring_s     | ms      | T   | lift and drive to the station, s
+service_s   | ms      | T   | time at the station, s
+store_s     | cost_ms | T L | drive from the station to a place, s
+earliest_s  | ms      | T   | earliest time at the station, s
+latest_s    | cost_ms | T   | latest, s
+due_s       | cost_ms | T   | when it should be there, s
+skip_s      | cost_ms | T   | cost of leaving a task, s; "inf" where it must be done
+late_weight | whole   |     | seconds of driving that a second of lateness is worth
+"""
+        ),
+        fields_of(
+            """
+tasks       | lists | R | tasks of a robot, in their order
+place       | whole | T | place where the pod of a task is stored, or -1 if it is left
+robot_place | whole | R | place where the pod that a robot carries is stored first, or -1
+"""
+        ),
+        {},
+    ),
+    "replenishment": Schema(
+        fields_of(
+            """
+worth_s       | worth | B P | robot time saved by storing a bundle in a pod, s
+leave_s       | cost  | B   | cost of leaving a bundle, s; "inf" where it must be stored
+space         | space | B   | space of a bundle
+pod_space     | space | P   | free space of a pod
+trip_s        | cost  | P S | robot time of bringing a pod to a station, s
+station_space | space | S   | free space of a station
+"""
+        ),
+        fields_of(
+            """
+pod     | whole | B | pod of a bundle, or -1
+station | whole | P | station of a pod, or -1
+"""
+        ),
+        {},
+    ),
+    "run_bound": Schema(
+        fields_of(
+            """
+duration_s                 | real  |   | length of the window, s
+robots                     | whole |   | robots
+picking.unit_transfer_s    | real  | S | time a unit keeps the station, s
+picking.unit_pick_s        | real  | S | time a unit keeps the robot, s
+picking.changeover_s       | real  | S | least time from one robot to the next, s
+picking.inbound_s          | real  | S | least way in, s
+picking.outbound_s         | real  | S | least way out, s
+picking.order_slots        | whole | S | order slots
+refill.bundle_transfer_s   | real  | Q | time a bundle keeps station and robot, s
+refill.inbound_s           | real  | Q | least way in, s
+refill.outbound_s          | real  | Q | least way out, s
+refill.bundle_units        | whole |   | most units in a bundle
+refill.bundles_per_visit   | whole |   | most bundles in a visit
+stock.pod_units            | whole | P | most units of a pod at the beginning
+stock.largest_pod_units    | whole |   | most units of a pod at any time
+orders.units               | cost  |   | most units asked for
+orders.largest_order_units | cost  |   | most units in an order
+orders.lone_units          | cost  |   | most units of orders served whole from one visit
+orders.join_visits         | flag  |   | whether orders may join a running visit
+"""
+        ),
+        fields_of(
+            """
+units         | real | S | units picked
+visits        | real | S | visits
+lone_units    | real | S | units of orders served whole from one visit
+bundles       | real | Q | bundles stored
+refill_visits | real | Q | visits
+"""
+        ),
+        {},
+        maximise=True,
+    ),
+}
+"""The families by name."""
+
+
+def sizes(schema: Schema, data: Plain) -> dict[str, int]:
+    """Return the size of every dimension of a question.
+
+    Parameters
+    ----------
+    schema
+        Its family.
+    data
+        Its fields.
+    """
+    found = {letter: count(data) for letter, count in schema.derived.items()}
+    for field in schema.data:
+        value = data.get(field.name)
+        if value is not None and field.shape:
+            found.update(zip(field.shape.split(), np.shape(value), strict=True))
+    return found
+
+
+def described(family: str) -> str:
+    """Return the fields of a family as a table for the documentation.
+
+    Parameters
+    ----------
+    family
+        Its name.
+    """
+    schema = SCHEMAS[family]
+    lines = ["| field | entries | shape | meaning |", "|---|---|---|---|"]
+    for part, fields in (("data", schema.data), ("values", schema.values)):
+        for field in fields:
+            kind = "/".join(field.texts) if field.texts else field.kind
+            shape = f"({', '.join(field.shape.split())})" if field.shape else ""
+            optional = ", may be absent" if field.optional else ""
+            name = f"`{part}.{field.name}`"
+            lines.append(f"| {name} | {kind} | {shape} | {field.meaning}{optional} |")
+    return "\n".join(lines)

@@ -1,0 +1,138 @@
+"""Questions answered by our own models: method, limit of work, seed."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, Literal
+
+from rmfs.errors import InputError
+from rmfs.solvers.decisions.asking import asked_again
+from rmfs.solvers.decisions.checking import check
+from rmfs.solvers.decisions.files import Found
+from rmfs.solvers.decisions.models import model_data, model_values, plain_values
+from rmfs.solvers.models import families
+from rmfs.solvers.models.checks import ModelError
+from rmfs.solvers.models.solution import NO_LIMITS, Limits
+
+if TYPE_CHECKING:
+    from rmfs.solvers.decisions.files import Decision
+
+AS_ASKED = "asked"
+"""Method that answers a question as the controller had it answered in the run."""
+
+_COUNTED: dict[str, Literal["nodes", "iterations"]] = {
+    "highs": "nodes",
+    "lns": "iterations",
+    "beam": "iterations",
+    "hadgs": "iterations",
+}
+"""Field of `Limits` in which a method counts its work; the others count deterministic seconds."""
+
+
+def methods(family: str) -> tuple[str, ...]:
+    """Return who can answer the questions of a family; the first is who does by default."""
+    solve = families.family(family).solve
+    return (solve.default, *(name for name in solve.names() if name != solve.default))
+
+
+def rule(family: str) -> str:
+    """Return the quick heuristic of a family; empty if there is none."""
+    return families.family(family).solve.rule
+
+
+def limits_of(method: str, work: float | None) -> Limits:
+    """Turn a limit of work into what a method counts.
+
+    Parameters
+    ----------
+    method
+        Who solves.
+    work
+        Deterministic seconds; nodes of HiGHS; steps of local searches. None: no limit.
+    """
+    if work is None:
+        return NO_LIMITS
+    field = _COUNTED.get(method)
+    if field is None:
+        return Limits(deterministic_s=work)
+    return Limits(**{field: max(1, int(work))})
+
+
+def solve(
+    decision: Decision,
+    method: str = "",
+    *,
+    work: float | None = None,
+    seed: int = 0,
+    start: Found | None = None,
+    where: str = "",
+) -> Found:
+    """Answer a question, and check the answer.
+
+    Parameters
+    ----------
+    decision
+        The question.
+    method
+        Who answers: one of the family's methods, or `asked`. Default: `asked` if a controller of
+        ours has asked and nothing else is given, the family's default otherwise.
+    work
+        Limit of work in the unit of the method. Default: none.
+    seed
+        Seed of the method. Default 0.
+    start
+        Answer to begin from. Default: none.
+    where
+        What the question is called in errors. Default: its name.
+
+    Raises
+    ------
+    InputError
+        If there is no such method, or the question is not one the model accepts.
+    """
+    name = where or decision.name
+    plain = work is None and seed == 0 and start is None
+    if not method:
+        method = AS_ASKED if decision.asked.get("by") and plain else methods(decision.family)[0]
+    began = perf_counter()
+    if method == AS_ASKED:
+        found = asked_again(decision, name)
+        by = {**found.by, "method": method}
+        answer = Found(found.values, found.objective, found.bound, by)
+    else:
+        answer = _by_model(decision, method, work, seed, start, name)
+    by = {**answer.by, "total_s": perf_counter() - began}
+    if answer.values is not None:
+        check(decision, answer)
+    return Found(answer.values, answer.objective, answer.bound, by)
+
+
+def _by_model(
+    decision: Decision, method: str, work: float | None, seed: int, start: Found | None, name: str
+) -> Found:
+    known = methods(decision.family)
+    if method not in known:
+        raise InputError(
+            f"method {method}: not one of {decision.family}; valid: {', '.join(known)}, {AS_ASKED}"
+        )
+    data, limits = model_data(decision, name), limits_of(method, work)
+    first: Any = None
+    if start is not None and start.values is not None:
+        first = model_values(decision, start.values)
+    try:
+        solve = families.family(decision.family).solve
+        found = solve(data, method, limits, seed=seed, start=first)
+    except ModelError as error:
+        raise InputError(f"{name}: {error}") from None
+    by = {
+        "method": method,
+        "seed": seed,
+        "work_limit": work,
+        "backend": found.backend,
+        "status": found.status.value,
+        "work": found.work,
+        "wall_s": found.wall_s,
+        "build_s": found.build_s,
+    }
+    values = None if found.values is None else plain_values(decision.family, found.values)
+    return Found(values, found.objective, found.bound, by)

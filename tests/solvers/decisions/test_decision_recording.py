@@ -1,0 +1,132 @@
+"""Questions written in a run: solved from their files they give the recorded answers."""
+
+from __future__ import annotations
+
+from math import isfinite, isnan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rmfs
+from rmfs.errors import InputError
+from rmfs.solvers.decisions.asking import asked_again
+from rmfs.solvers.decisions.checking import check
+from rmfs.solvers.decisions.files import Decision, read
+from rmfs.solvers.decisions.recording import DecisionRecorder
+
+SETS = {
+    "pile-on": "pile_on",
+    "pile-on-split": "pile_on",
+    "pile-on-dispatch": "pile_on",
+    "m1g": "pile_on",
+    "hadgs": "pile_on",
+    "planning": "planning",
+    "psa-placement": "placement",
+    "psa-prices": "zones",
+    "psa-stays": "stays",
+    "ta-matching": "matching",
+    "ta-balance": "balance",
+    "ta-routes": "sequence",
+    "stocking": "replenishment",
+}
+"""A shipped set of controllers, and the family that it asks."""
+
+SMALLER: dict[str, Any] = {
+    "layout.robots": 6,
+    "layout.pick_stations.east": 2,
+    "layout.replenishment_stations.west": 2,
+    "layout.horizontal_aisles": 4,
+    "scenario.warmup_s": 0,
+    "scenario.skus.count": 200,
+    "scenario.replenishment.resume_below_share": 0.8,
+    "scenario.replenishment.pause_above_share": 0.9,
+}
+
+
+def recorded(controllers: str, duration_s: float, folder: Path, **more: Any) -> list[Decision]:
+    """Simulate half of the default floor and read what was written."""
+    keeper = DecisionRecorder(folder, {"controllers": controllers, "seed": 0})
+    given = SMALLER | {"scenario.duration_s": duration_s}
+    if controllers == "stocking":
+        given |= {"controllers.rps.work_s": 0.003, "controllers.rps.bundles": 10}
+    rmfs.simulate(controllers=controllers, set=given, observers=[keeper], **more)
+    found = [read(path) for path in sorted(folder.glob("*.json.gz"))]
+    assert keeper.written == len(found) > 0
+    return found
+
+
+def same(one: Any, other: Any) -> bool:
+    return bool(np.all(one == other)) if isinstance(one, np.ndarray) else bool(one == other)
+
+
+def assert_answers_come_again(questions: list[Decision], family: str) -> None:
+    assert family in {question.family for question in questions}
+    for question in questions:
+        kept = question.recorded
+        assert kept is not None
+        again = asked_again(question)
+        assert again.objective == kept.objective
+        assert again.bound == kept.bound if isfinite(again.bound) else isnan(kept.bound)
+        assert again.by["work"] == kept.by["work"]
+        if kept.values is None:
+            assert again.values is None
+            continue
+        assert again.values is not None
+        assert all(same(again.values[name], value) for name, value in kept.values.items())
+        check(question, kept)
+
+
+@pytest.mark.parametrize("controllers", SETS)
+def test_recorded_questions_give_the_recorded_answers(controllers: str, tmp_path: Path) -> None:
+    seconds = {"psa-prices": 400, "stocking": 20}.get(controllers, 60)
+    questions = recorded(controllers, seconds, tmp_path)
+    told = questions[0].provenance
+    assert told["controllers"] == controllers
+    assert set(told) >= {"rmfs", "seed", "time_s", "problem", "controller", "state", "number"}
+    assert_answers_come_again(questions[:25], SETS[controllers])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("controllers", SETS)
+def test_five_hundred_recorded_questions_of_each(controllers: str, tmp_path: Path) -> None:
+    seconds, found = 3600.0, 0
+    for seed in range(60):
+        questions = recorded(controllers, seconds, tmp_path / str(seed), seed=seed)
+        assert_answers_come_again(questions[: 500 - found], SETS[controllers])
+        found += len(questions)
+        if found >= 500:
+            return
+    pytest.fail(f"only {found} questions")
+
+
+def test_recording_changes_nothing(tmp_path: Path) -> None:
+    given = SMALLER | {"scenario.duration_s": 120.0}
+    plain = rmfs.simulate(controllers="pile-on", set=given)
+    keeper = DecisionRecorder(tmp_path, {})
+    kept = rmfs.simulate(controllers="pile-on", set=given, observers=[keeper])
+    column = "distance_per_unit_m"
+    assert plain.footprint[column] == kept.footprint[column]
+    assert plain.footprint["optimiser_calls"] == kept.footprint["optimiser_calls"] > 0
+
+
+def test_questions_whose_answers_come_too_late_are_written_at_the_end(tmp_path: Path) -> None:
+    questions = recorded("pile-on", 60.0, tmp_path, pacing="fixed=1000")
+    assert [one.provenance["applied"] for one in questions] == [0] * len(questions)
+    assert_answers_come_again(questions, "pile_on")
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        ({"by": "oracle"}, "asked.by: names none of pile-on, planning"),
+        ({"by": "planning", "speed": 3}, "asked: "),
+        ({"by": "planning", "limits": {"seconds": 3}}, "asked: "),
+        ({}, "asked.by: names none"),
+    ],
+)
+def test_wrong_ways_of_asking_are_refused(asked: dict[str, Any], told: str, tmp_path: Path) -> None:
+    question = recorded("planning", 30.0, tmp_path)[0]
+    with pytest.raises(InputError, match=told):
+        asked_again(Decision(question.family, question.data, asked=asked))
