@@ -95,8 +95,7 @@ class OrderTopUp(_TopUp):
 class BundleTopUp(_TopUp):
     """Says when the next bundle of a constant backlog is to be made.
 
-    All loads are in space units. (RAWSim-O adds a number of units to a load in space units when it
-    compares a new bundle with its limit.)
+    All loads are in space units.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rmfs.scenario import OrderDraft, Scenario, SkuSet
 
 PAST_ORDERS = 5000
-"""So many are remembered (as many as RAWSim-O makes up)."""
+"""So many are remembered."""
 
 _PAST = (1000,)  # below the stream of contents: far from the numbers of orders in the run
 _PLENTY = 2**40

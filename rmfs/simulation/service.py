@@ -37,9 +37,8 @@ class PickService:
     """The picker of one station.
 
     A unit leaves its pod, and its request is fulfilled, when its pick starts. An order whose last
-    unit is picked leaves its slot when the station is done with that unit. (RAWSim-O loses up to
-    one tick of 0.4 s per completed order there.) A pod with requests of queued orders only waits
-    for a slot if one is about to be free, then it is let go.
+    unit is picked leaves its slot when the station is done with that unit. A pod with requests of
+    queued orders only waits for a slot if one is about to be free, then it is let go.
     """
 
     def __init__(

@@ -41,8 +41,7 @@ class RandomParameters(Parameters):
 class RandomExchange(MethodManagement[RandomParameters]):
     """Installs an alternative drawn from a list after each period, all equally likely.
 
-    It may be the one that is there already. (In RAWSim-O the list is fixed: four rules of PSA, with
-    default parameters.)
+    It may be the one that is there already.
     """
 
     parameters_model = RandomParameters

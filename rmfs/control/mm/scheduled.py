@@ -58,8 +58,7 @@ class ScheduledParameters(Parameters):
 class Scheduled(MethodManagement[ScheduledParameters]):
     """Exchanges controllers of any problem at given times.
 
-    Rules of one entry are installed together; a parameter that is not given has its default. (In
-    RAWSim-O only PSA can be exchanged, for one of four rules, always with default parameters.)
+    Rules of one entry are installed together; a parameter that is not given has its default.
     """
 
     parameters_model = ScheduledParameters

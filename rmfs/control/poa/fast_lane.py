@@ -40,8 +40,8 @@ class _Visit:
 class FastLane:
     """Assigns orders of the backlog to the station where their pod stands.
 
-    The order with the lowest rank comes first; stations in their order. Unlike in RAWSim-O, units
-    that orders assigned before are to get from the pod are not counted twice.
+    The order with the lowest rank comes first; stations in their order. Units that orders assigned
+    before are to get from the pod are not counted twice.
 
     Parameters
     ----------

@@ -39,10 +39,8 @@ class Filling(PickOrderAssignment[P]):
     """Assigns orders to free slots, one after the other.
 
     The fast lane, for rules that have it, comes first. The slot that is kept for it at stations
-    with more than one is free for nothing else.
-
-    Difference from RAWSim-O, where this is a defect: stock can serve an order if it is there and
-    no order at a station waits for it, not if it ever was there.
+    with more than one is free for nothing else. Stock can serve an order if it is there and no
+    order at a station waits for it.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:

@@ -37,8 +37,7 @@ class Foresight(Filling[ForesightParameters]):
 
     Ties: the second score, then the station with most free slots, then the order that arrived
     first, then the station with the lowest number. Scores of matches count an available unit for
-    one order only, which RAWSim-O does not; the two bonuses look at each pod by itself, whatever
-    else is wanted of it.
+    one order only; the two bonuses look at each pod by itself, whatever else is wanted of it.
     """
 
     parameters_model = ForesightParameters

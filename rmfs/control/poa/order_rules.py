@@ -33,11 +33,7 @@ class OrderRuleParameters(FastLaneParameters):
 
 
 class OrderRule(Filling[OrderRuleParameters]):
-    """Chooses an order, then a station for it.
-
-    Difference from RAWSim-O (rule "Default"), where this is a defect: the slot kept for the fast
-    lane stays free also at the station that is taken again.
-    """
+    """Chooses an order, then a station for it."""
 
     parameters_model = OrderRuleParameters
 

@@ -28,14 +28,9 @@ class PodMatch(BestPair[PodMatchParameters]):
     """Matches orders with pods that come anyway, for a high pile-on.
 
     The score of a pair of order and station is the number of its units that are available on pods
-    inbound to the station. The pair with the highest score is assigned, until no slot is free.
-    Ties: the tie-breaker, then the order that arrived first, then the station with the lowest
-    number.
-
-    Differences from RAWSim-O, where these are defects: an available unit is counted for one order
-    only (units that open requests of the station wait for are left out, those of orders assigned
-    a moment ago included); the stock an order needs is compared with the stock there is, not with
-    all that ever was; `late_first` prefers late orders, not orders in time.
+    inbound to the station; an available unit counts for one order only. The pair with the highest
+    score is assigned, until no slot is free. Ties: the tie-breaker, then the order that arrived
+    first, then the station with the lowest number.
     """
 
     parameters_model = PodMatchParameters

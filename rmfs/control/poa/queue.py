@@ -62,15 +62,10 @@ class Queue(PickOrderAssignment[QueueParameters]):
     3. Each station takes an order of its pool that stock can serve, if a slot is free besides the
        one kept for the fast lane; then each another, and so on.
 
-    Then pools are filled up, until nothing is left to do. Full ties: the order that arrived first,
-    then the station with the lowest number. It is also asked when a pod reaches the head of a
-    queue, so that a pod fetched for the pool finds its orders on slots.
-
-    Differences from RAWSim-O, where these are defects: matches with inbound pods give points only
-    for pods that have the SKU; an order is compared with the pool when it is to join the pool, with
-    the orders on slots when it is to get a slot, and by the share of its lines in common, not
-    all-or-nothing; only stations that are switched on have a pool; an available unit counts for
-    one order only.
+    Then pools are filled up, until nothing is left to do. Only stations that are switched on have a
+    pool; an available unit counts for one order only. Full ties: the order that arrived first, then
+    the station with the lowest number. It is also asked when a pod reaches the head of a queue, so
+    that a pod fetched for the pool finds its orders on slots.
     """
 
     parameters_model = QueueParameters

@@ -41,7 +41,7 @@ class RollingParameters(Parameters):
     period_s: float = pydantic.Field(1.0, gt=0)
     """Least simulated time between two calls of the planner."""
     runs_granted: int = pydantic.Field(4, ge=1)
-    """Straight runs of its plan that a robot may be granted at once; RAWSim-O: 1."""
+    """Straight runs of its plan that a robot may be granted at once."""
     patience_s: float = pydantic.Field(30.0, ge=0)
     """How long a robot stands still before it hops to a random neighbour."""
 

@@ -161,7 +161,7 @@ class PickCandidates(Candidates):
 
         Orders are gone through as they were assigned, then as they were queued, and each takes what
         it needs of the pod's available units if all is there. Orders without open requests count
-        for nothing (in RAWSim-O for one on every pod, which changes no comparison).
+        for nothing.
         """
         if self._completed is None:
             self._completed = self._find_completed()

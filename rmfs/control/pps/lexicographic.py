@@ -72,9 +72,6 @@ class Lexicographic(PodSelection[LexicographicParameters]):
     """Takes the pod that is best by the first criterion, then by the second, and so on.
 
     Full ties: the pod, or the station, with the lowest number.
-
-    Differences from RAWSim-O: with `completable_boost`, the boost is what the completed orders are
-    worth, once; requests of queued orders count only as far as they would be bound.
     """
 
     parameters_model = LexicographicParameters

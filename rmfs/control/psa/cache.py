@@ -33,10 +33,6 @@ class Cache(PodStorageAssignment[CachePlaceParameters]):
     cache; else outside all caches; else in another cache. A pod that is not worth it gets a place
     outside all caches; else in any. Of these, the place nearest to the station; ties: the lowest
     waypoint.
-
-    Difference from RAWSim-O: scores are always kept; there they are 0 unless monitoring is switched
-    on, and only the free share counts. The mean is weighted, not the weighted sum halved, which is
-    the same for the default weights.
     """
 
     parameters_model = CachePlaceParameters

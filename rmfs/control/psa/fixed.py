@@ -20,8 +20,7 @@ class Fixed(PodStorageAssignment[NoParameters]):
 
     Where that place is not empty, the nearest empty place by travel time is taken for the time
     being: another rule (repositioning, or a predecessor) may have stored a pod there, and a robot
-    may rest there in the rare case that no pod is left to rest beneath. (RAWSim-O forbids such
-    places for resting, and this rule to follow another one.)
+    may rest there in the rare case that no pod is left to rest beneath.
     """
 
     def __init__(self, parameters: NoParameters, view: View, rng: np.random.Generator) -> None:

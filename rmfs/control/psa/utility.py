@@ -20,9 +20,6 @@ class Utility(PodStorageAssignment[RankParameters]):
 
     Of the empty places seen in the search outward from the target rank, the one with the least
     travel time is taken; ties: the lowest waypoint.
-
-    Differences from RAWSim-O, where these are defects: the target rank is looked at once; the
-    search ends if no place is empty; the rule needs no monitoring to be switched on.
     """
 
     parameters_model = RankParameters

@@ -86,8 +86,7 @@ Q = TypeVar("Q", bound=Pauses)
 class Pausing(Repositioning[Q]):
     """A rule that pauses after a move (per robot) and after a search that found none (for all).
 
-    When a pause ends for which a robot was turned away, TA is asked again. (RAWSim-O stores the
-    second pause, but never looks at it.)
+    When a pause ends for which a robot was turned away, TA is asked again.
     """
 
     def __init__(self, parameters: Q, view: View, rng: np.random.Generator) -> None:

@@ -59,9 +59,6 @@ class Cache(Pausing[CacheMoveParameters]):
     empty, to the one nearest to a replenishment station. A move into a cache comes before a move
     out of one. Moves are measured by Manhattan distance; ties: the lowest pod, then station, then
     waypoint.
-
-    Differences from RAWSim-O: the tier is that of the robot that asks, not of the first that ever
-    asked; nearness to a pick station comes before the length of the move out.
     """
 
     parameters_model = CacheMoveParameters

@@ -40,10 +40,6 @@ class CacheDropOff(Pausing[CacheDropOffParameters]):
     lowest score is moved out; if nothing can be done there, the next cache. Within a step, stations
     come in this order as well; then pods by score, in a drop-off zone the highest first. Nothing is
     moved into a drop-off zone. A pod goes to the nearest place; ties: the lowest number.
-
-    Differences from RAWSim-O, where these are defects: pods are moved into a cache only if they are
-    worth it, so that there is an end to moving when the caches are as they should be (there, some
-    move is always found); keeping to the robot's tier works.
     """
 
     parameters_model = CacheDropOffParameters

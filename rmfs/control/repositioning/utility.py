@@ -32,9 +32,6 @@ class Utility(Pausing[UtilityParameters]):
     the lowest waypoint). A pod is moved only if its rank comes nearer to the target; if not, the
     pod with the next largest distance is looked at, up to eight. Ties: the pod with the lowest
     number.
-
-    Difference from RAWSim-O: the pause after a search without result takes effect, and no pod is
-    moved that would not stand better.
     """
 
     parameters_model = UtilityParameters

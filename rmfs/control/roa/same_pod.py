@@ -50,16 +50,11 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
     chosen by the station rule, by default the nearest in a straight line from where the pod is now,
     also while it is carried; ties: the station with the lowest number.
 
-    A batch larger than every station is split: as much of it as fits goes to an empty station
-    (RAWSim-O would wait for ever).
+    A batch larger than every station is split: as much of it as fits goes to an empty station.
 
     If batches are broken, a bundle goes to the station to which the last bundle of its pod was
     sent; if that has no room or is switched off, to the one nearest to it; if there was none, by
     the station rule. Bundles that fit nowhere wait, those after them do not.
-
-    Differences from RAWSim-O, where these are defects: a station switched off is not used again
-    in broken batches, nor are bundles mixed up there when one before them was passed over;
-    `same_tier` has an effect, and also holds for broken batches.
     """
 
     parameters_model = SamePodParameters

@@ -30,7 +30,7 @@ class Buffered(ReplenishmentPodSelection[P]):
     """Promises bundles one by one and releases a pod's bundles together.
 
     What a rule that was exchanged has held back is released in the same way. The time-out is an
-    event of its own; RAWSim-O looks at it whenever something else happens.
+    event of its own.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:

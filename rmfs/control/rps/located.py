@@ -35,9 +35,6 @@ class Nearest(Located[BufferParameters]):
     Pods on another tier come after all on the station's, and pods carried by robots, measured from
     where the robot is, after all that are stored. Ties: the pod with the lowest number. It works
     with an ROA rule that does not wait for the pod (`random`).
-
-    Difference from RAWSim-O: beside ROA same-pod both would wait for ever there; here such a pair
-    is refused when the controllers are read.
     """
 
     parameters_model = BufferParameters
@@ -69,9 +66,6 @@ class Reactive(Located[ReactiveParameters]):
     Stored pods on the station's tier come first; next those that are carried or on another tier,
     then those that are both. Among equals any, or the emptiest, ties by number. It works with an
     ROA rule that does not wait for the pod (`random`).
-
-    Difference from RAWSim-O: beside ROA same-pod both would wait for ever there; here such a pair
-    is refused when the controllers are read.
     """
 
     parameters_model = ReactiveParameters

@@ -44,13 +44,11 @@ class TurnoverPodParameters(TurnoverParameters):
 class Turnover(Buffered[TurnoverPodParameters]):
     """Takes a pod of the class of the bundle's SKU, and so brings fast SKUs close to pickers.
 
-    Classes are made by units ordered (`rmfs.control.trackers.turnover`). If no pod of the class has
-    room, the next slower class is tried, the next faster, the second slower, and so on. Within a
-    class the last pod is taken again while it has room and until a station serves it; then the
-    emptiest, ties by number, or any. All pods are candidates, wherever they are.
-
-    Differences from RAWSim-O: the fastest pods, not the slowest, are of the class with the nearest
-    places; stock at time zero is not placed by this rule, so that all rules start from the same.
+    Classes are made by units ordered (`rmfs.control.trackers.turnover`); the fastest pods are of
+    the class with the nearest places. If no pod of the class has room, the next slower class is
+    tried, the next faster, the second slower, and so on. Within a class the last pod is taken again
+    while it has room and until a station serves it; then the emptiest, ties by number, or any. All
+    pods are candidates, wherever they are.
     """
 
     parameters_model = TurnoverPodParameters

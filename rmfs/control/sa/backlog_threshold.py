@@ -45,12 +45,8 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
     All are on at the start. For each kind by itself, and after each pause: if more work waits than
     the threshold, and the active stations are used enough, the first one that is off is switched
     on; if it is the other way round, the last one that is on is switched off; if both or neither,
-    none. First and last are by activation number, ties by number. What waits in RPS's buffers
-    counts.
-
-    Differences from RAWSim-O: the used share of slots is no integer division (which gives 0 unless
-    all are full, so that pick stations are switched off one by one); the last active station of a
-    kind stays on.
+    none. The last active station of a kind stays on. First and last are by activation number, ties
+    by number. What waits in RPS's buffers counts.
     """
 
     parameters_model = BacklogThresholdParameters

@@ -31,7 +31,7 @@ class ConstantRatio(StationActivation[ConstantRatioParameters]):
 
     On are floor(active share x stations), of them floor(pick share x these) pick stations, those
     with the lowest activation numbers; ties: the lowest number. At least one of each kind is on, as
-    far as there is one (in RAWSim-O it may be none).
+    far as there is one.
     """
 
     parameters_model = ConstantRatioParameters

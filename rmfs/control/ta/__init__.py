@@ -58,7 +58,7 @@ class TaskAllocation(Controller[P]):
 
     Each decision is applied before the next. A robot left without task is asked about again when
     the next trigger happens. Robots at rest are to be given work as soon as there is some: rules
-    subscribe to the events of `WORK`. (In RAWSim-O they ask every 5 s.)
+    subscribe to the events of `WORK`.
     """
 
     problem = Problem.TA

@@ -52,14 +52,10 @@ class Balanced(Crews[BalancedParameters]):
 
     Every `period_s`, if other stations have work than before, the robots are divided anew: by
     weight, times the share of the kind's stations that have work; within a kind in turn, stations
-    far from the middle of the tier first; what exceeds the limit goes to any station below it.
-    Then robots are moved, nearest first. If no station had work, new work is not kept waiting for
-    the end of the period. The share of the robots by the weight of repositioning,
-    rounded down, gets no station.
-
-    Differences from RAWSim-O: the robot that asks does not count towards its station's limit; idle
-    robots are asked again when there is new work, not every 5 s; if all stations are searched, a
-    carried pod is tried at all of them before it is parked, not at the first only.
+    far from the middle of the tier first; what exceeds the limit goes to any station below it. Then
+    robots are moved, nearest first. If no station had work, new work is not kept waiting for the
+    end of the period. The share of the robots by the weight of repositioning, rounded down, gets no
+    station. The robot that asks does not count towards its station's limit.
     """
 
     parameters_model = BalancedParameters

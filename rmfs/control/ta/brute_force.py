@@ -50,12 +50,9 @@ class BruteForce(Solo[BruteForceParameters]):
     Without work, pods are parked at the nearest place. Ties: the carried pod, then the station,
     then the pod with the lowest number.
 
-    It chooses pods and places itself, so PPS and PSA must be dummies. Fetching the other pod is a
-    task prepared ahead; if somebody else has taken the pod by then, the robot looks anew.
-
-    Differences from RAWSim-O: bundles go into the pods RPS chose, and a pod that is carried can be
-    used for them; a pod serves all it can at a station, not one request per task; the wait counts
-    robots under way, not those near the station, where the standard robot is never counted.
+    It chooses pods and places itself, so PPS and PSA must be dummies; bundles go into the pods RPS
+    chose. The wait counts robots under way. Fetching the other pod is a task prepared ahead; if
+    somebody else has taken the pod by then, the robot looks anew.
     """
 
     parameters_model = BruteForceParameters

@@ -25,10 +25,6 @@ class ConstantRatio(Crews[ConstantRatioParameters]):
     active, or have work left: one that was switched off finishes what it has. Every `period_s`, if
     other stations count than before, robots are moved, nearest first. Every robot works for its
     station only: it goes on with its pod as long as the pod can serve an open request there.
-
-    Differences from RAWSim-O, where these are defects: there the pod is parked even if there is
-    more to do for it at the station, and the task just given is cancelled; robots leave a station
-    that is switched off, whatever is left there.
     """
 
     parameters_model = ConstantRatioParameters

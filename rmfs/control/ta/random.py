@@ -48,9 +48,6 @@ class RandomTasks(Solo[RandomTasksParameters]):
     A robot is a picker or a replenisher, at first by the share of pick stations, and changes now
     and then. It chooses pods itself, so PPS must be a dummy (whose parameters say what is bound on
     the way); PSA chooses where pods are parked.
-
-    Differences from RAWSim-O, where these are defects: a robot that finds no pod to move looks for
-    work, instead of staying without task; the two switches without effect are not there.
     """
 
     parameters_model = RandomTasksParameters

@@ -60,9 +60,6 @@ class Swarm(Solo[SwarmParameters]):
     without stimulus become 1. If more than the rest share of the stations attract nobody, by e
     stations, rest is drawn with the weight e^3 / (stations - rest share of the stations)^3. A robot
     stays matched with its station as long as it carries a pod.
-
-    Difference from RAWSim-O: robots at rest draw again when there is new work. What is bound to
-    pods on their way, PPS says; there it is nothing.
     """
 
     parameters_model = SwarmParameters

@@ -19,10 +19,7 @@ if TYPE_CHECKING:
 
 
 class Frequency(Tracker):
-    """Units ordered of each SKU, in the past orders and since time zero.
-
-    RAWSim-O too starts from made-up orders, 5000 of them, and counts on.
-    """
+    """Units ordered of each SKU, in the past orders and since time zero."""
 
     def __init__(self, view: View) -> None:
         super().__init__(view)

@@ -76,9 +76,7 @@ class PodScores(Tracker):
 
     *Utility* is the number of units on a pod that orders want (`DemandOnPods` of all orders not yet
     picked); *speed* is the sum over its units of the popularity of their SKU. Both are given as
-    shares of the best pod's. RAWSim-O keeps these scores only if the monitoring of
-    "well-sortedness" is switched on, and has 0 for all pods otherwise; here they are kept whenever
-    a rule asks.
+    shares of the best pod's. They are kept as soon as a rule asks.
     """
 
     hears = DemandOnPods.hears

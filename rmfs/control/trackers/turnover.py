@@ -61,9 +61,6 @@ class TurnoverClasses(Tracker):
     Units are counted since the last classing, at first since the past orders. Pods and SKUs are
     classed when a rule first asks for the tracker, and anew when period or orders are reached and
     somebody looks; places keep their class.
-
-    Difference from RAWSim-O, where this is a defect: there pods are sorted the slowest first, so
-    that the pods with the slowest SKUs get the nearest places.
     """
 
     def __init__(self, view: View, parameters: TurnoverParameters) -> None:

@@ -20,9 +20,7 @@ def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) ->
     `unit_transfer_s` and K is `unit_pick_s`. After the last the robot leaves when K is over, the
     next one stands there at least a change c later, and its first pick begins when T is over too.
     So a visit lasts at least (p - 1) max(T, K) + max(T, K + c), which is linear in p: the mean
-    pile-on gives the bound for the mean. (RAWSim-O's formula has the mean pile-on of the whole run,
-    a robot that drives in from standstill, and the slowest robot; its result is no bound where
-    stations or robots differ.)
+    pile-on gives the bound for the mean.
 
     Parameters
     ----------

@@ -80,8 +80,7 @@ class _Constant:
 class _InSteps:
     """Steps with the given mean over a cycle.
 
-    Each weight counts with the length of its own step. (RAWSim-O multiplies it by the length of the
-    step before: there the first step counts nothing and the last is left out.)
+    Each weight counts with the length of its own step.
     """
 
     def __init__(self, config: Steps, mean_per_h: float, gone_s: float) -> None:

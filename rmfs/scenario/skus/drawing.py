@@ -58,8 +58,7 @@ def draw_affinity(config: GeneratedAffinity, seed: int, count: int) -> Affinity:
     """Draw pairs of SKUs; the weight of a pair is sqrt(2) less the distance of its SKUs.
 
     Each SKU is a random point in the unit square, so that two SKUs that go well with a third go
-    well with each other. (In RAWSim-O's published set ItemGen-100-100-10000 the SKUs are points
-    too, but the weights are the distances themselves.) A weight counts in both directions.
+    well with each other. A weight counts in both directions.
 
     Parameters
     ----------
