@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rmfs.measure.columns import Column as Column
     from rmfs.measure.folder import RunFolder as RunFolder
     from rmfs.measure.folder import load_run as load_run
-    from rmfs.simulation.run import Run as Run
+    from rmfs.simulation.result import Run as Run
     from rmfs.simulation.run import Simulation as Simulation
     from rmfs.simulation.run import simulate as simulate
 
@@ -22,7 +22,7 @@ _PLACES = {
     "Study": "rmfs.experiments.study",
     "experiment": "rmfs.experiments.study",
     "load_run": "rmfs.measure.folder",
-    "Run": "rmfs.simulation.run",
+    "Run": "rmfs.simulation.result",
     "Simulation": "rmfs.simulation.run",
     "simulate": "rmfs.simulation.run",
 }

@@ -22,7 +22,7 @@ from rmfs.simulation.run import simulate
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rmfs.simulation.run import Run
+    from rmfs.simulation.result import Run
 
 
 def execute(job: Job) -> Outcome:

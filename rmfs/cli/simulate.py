@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from rmfs.measure.checker import CheckReport
-    from rmfs.simulation.run import Run
+    from rmfs.simulation.result import Run
     from rmfs.solvers.decisions.recording import DecisionRecorder
 
 LONGEST = 100

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from rmfs.control.travel import Travel
-    from rmfs.scenario import OrderDraft
+    from rmfs.scenario import OrderContent
     from rmfs.world import World
     from rmfs.world.robots import Robot
 
@@ -62,7 +62,7 @@ class View:
         world: World,
         travel: Travel,
         end_s: float = inf,
-        draw_past_orders: Callable[[], Sequence[OrderDraft]] = tuple,
+        draw_past_orders: Callable[[], Sequence[OrderContent]] = tuple,
         time_of_day_s: float = 0.0,
     ) -> None:
         self._world = world
@@ -100,7 +100,7 @@ class View:
         return self._world.orders_created
 
     @cached_property
-    def past_orders(self) -> Sequence[OrderDraft]:
+    def past_orders(self) -> Sequence[OrderContent]:
         """Orders from before the run, to learn from (`rmfs.simulation.past`)."""
         return self._draw_past_orders()
 

@@ -4,7 +4,7 @@ Nothing here knows of pods' places, stations or robots: a scenario says what is 
 world is what answers.
 """
 
-from rmfs.scenario.bundles import BundleDraft as BundleDraft
+from rmfs.scenario.bundles import BundleContent as BundleContent
 from rmfs.scenario.bundles import BundleSource as BundleSource
 from rmfs.scenario.intake import BundleArrival as BundleArrival
 from rmfs.scenario.intake import ExportedStream as ExportedStream
@@ -19,7 +19,7 @@ from rmfs.scenario.loading import asked_of_layout as asked_of_layout
 from rmfs.scenario.loading import load as load
 from rmfs.scenario.loading import load_with_notes as load_with_notes
 from rmfs.scenario.loading import named_files as named_files
-from rmfs.scenario.orders import OrderDraft as OrderDraft
+from rmfs.scenario.orders import OrderContent as OrderContent
 from rmfs.scenario.orders import OrderSource as OrderSource
 from rmfs.scenario.parameters import Scenario as Scenario
 from rmfs.scenario.skus import SkuSet as SkuSet

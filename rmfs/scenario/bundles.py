@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.skus import SkuSet
 
 
-class BundleDraft(NamedTuple):
+class BundleContent(NamedTuple):
     """A bundle before it exists: so many units of one SKU, and the space units they take."""
 
     sku: int
@@ -43,16 +43,16 @@ class BundleSource:
         self._space_per_unit: list[float] = skus.space_per_unit.tolist()
         self._return_share = return_share
 
-    def draw(self, ordinal: int) -> BundleDraft:
+    def draw(self, ordinal: int) -> BundleContent:
         """Draw the bundle of an ordinal, 0 or greater."""
         uniform = self._substreams.at(ordinal)
         sku = self._pick(uniform())
         if self._return_share and uniform() < self._return_share:
-            return BundleDraft(sku, 1, self._space_per_unit[sku])
+            return BundleContent(sku, 1, self._space_per_unit[sku])
         return self._bundles[sku]
 
 
-def bundle_of_each(skus: SkuSet) -> list[BundleDraft]:
+def bundle_of_each(skus: SkuSet) -> list[BundleContent]:
     """Return the bundle of every SKU, in the order of the SKUs."""
     columns = (skus.bundle_units.tolist(), skus.bundle_space.tolist())
-    return [BundleDraft(sku, *rest) for sku, rest in enumerate(zip(*columns, strict=True))]
+    return [BundleContent(sku, *rest) for sku, rest in enumerate(zip(*columns, strict=True))]

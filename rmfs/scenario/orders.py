@@ -23,7 +23,7 @@ DRAWS_PER_LINE = 32
 """Draws by popularity for one line before the SKUs that qualify are looked up."""
 
 
-class OrderDraft(NamedTuple):
+class OrderContent(NamedTuple):
     """An order before it exists.
 
     Attributes
@@ -91,7 +91,7 @@ class OrderSource:
         self._affinity_share = 0.0 if skus.affinity is None else skus.affinity.share
         self._by_affinity = None if skus.affinity is None else skus.affinity.samplers(len(skus))
 
-    def draw(self, ordinal: int, uncommitted: NDArray[np.int64]) -> OrderDraft | None:
+    def draw(self, ordinal: int, uncommitted: NDArray[np.int64]) -> OrderContent | None:
         """Draw the order of an ordinal from the stock there is.
 
         Parameters
@@ -104,7 +104,7 @@ class OrderSource:
 
         Returns
         -------
-        OrderDraft or None
+        OrderContent or None
             None if some line finds no SKU of which enough is uncommitted.
         """
         uniform = self._substreams.at(ordinal)
@@ -136,7 +136,7 @@ class OrderSource:
                     return None
                 sku = found
             chosen.append(sku)
-        return OrderDraft(tuple(chosen), tuple(units), due_offset_s, redraws)
+        return OrderContent(tuple(chosen), tuple(units), due_offset_s, redraws)
 
     def _related(self, lines: int, uniform: Callable[[], float]) -> list[bool]:
         """Which lines are drawn by affinity to the line before."""

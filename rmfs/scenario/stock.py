@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rmfs.scenario.bundles import BundleDraft
+    from rmfs.scenario.bundles import BundleContent
     from rmfs.scenario.skus import SkuSet
 
-    ChoosePod = Callable[[BundleDraft, NDArray[np.float64]], int]
-    Place = Callable[[BundleDraft, NDArray[np.float64]], int | None]
+    ChoosePod = Callable[[BundleContent, NDArray[np.float64]], int]
+    Place = Callable[[BundleContent, NDArray[np.float64]], int | None]
 
 POD_DRAWS = 32
 """Pods tried for one bundle before those with room are looked up."""
@@ -121,7 +121,7 @@ def _into_random_pods(seed: int) -> Place:
     # a stream of its own, so that the same SKUs are stored whatever rule places them
     uniform = _uniform_numbers(seed, 1)
 
-    def place(bundle: BundleDraft, free: NDArray[np.float64]) -> int | None:
+    def place(bundle: BundleContent, free: NDArray[np.float64]) -> int | None:
         for _ in range(POD_DRAWS):
             pod = int(next(uniform) * len(free))
             if free.item(pod) >= bundle.space:
@@ -135,7 +135,7 @@ def _into_random_pods(seed: int) -> Place:
 def _where_possible(choose: ChoosePod) -> Place:
     """Return the rule that asks `choose` if there is room at all."""
 
-    def place(bundle: BundleDraft, free: NDArray[np.float64]) -> int | None:
+    def place(bundle: BundleContent, free: NDArray[np.float64]) -> int | None:
         return choose(bundle, free) if free.max() >= bundle.space else None
 
     return place

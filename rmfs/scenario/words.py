@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rmfs.random import Stream
 from rmfs.scenario.categorical import Categorical
-from rmfs.scenario.orders import OrderDraft
+from rmfs.scenario.orders import OrderContent
 from rmfs.scenario.substreams import Substreams
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class WordSource:
         self._due = config.due.sampler()
         self._substreams = Substreams(seed, Stream.ORDER_CONTENTS, path)
 
-    def draw(self, ordinal: int) -> OrderDraft:
+    def draw(self, ordinal: int) -> OrderContent:
         """Draw the order of an ordinal, 0 or greater."""
         uniform = self._substreams.at(ordinal)
         words = self._alphabet.words
@@ -51,4 +51,4 @@ class WordSource:
         for letter in word:
             sku = self._alphabet.sku(letter, self._colour(uniform()))
             lines[sku] = lines.get(sku, 0) + self._units(uniform())
-        return OrderDraft(tuple(lines), tuple(lines.values()), due_offset_s, redraws=0)
+        return OrderContent(tuple(lines), tuple(lines.values()), due_offset_s, redraws=0)

@@ -2,5 +2,5 @@
 
 from rmfs.simulation.kernel import Kernel as Kernel
 from rmfs.simulation.kernel import StalledError as StalledError
-from rmfs.simulation.run import Run as Run
+from rmfs.simulation.result import Run as Run
 from rmfs.simulation.run import simulate as simulate

@@ -12,7 +12,7 @@ from rmfs.scenario.skus.letters import read_alphabet
 from rmfs.scenario.words import WordSource
 
 if TYPE_CHECKING:
-    from rmfs.scenario import OrderDraft, Scenario, SkuSet
+    from rmfs.scenario import OrderContent, Scenario, SkuSet
 
 PAST_ORDERS = 5000
 """So many are remembered."""
@@ -21,7 +21,7 @@ _PAST = (1000,)  # below the stream of contents: far from the numbers of orders 
 _PLENTY = 2**40
 
 
-def past_orders(scenario: Scenario, skus: SkuSet, seed: int) -> list[OrderDraft]:
+def past_orders(scenario: Scenario, skus: SkuSet, seed: int) -> list[OrderContent]:
     """Draw orders as the scenario draws them, had every SKU been in stock.
 
     Parameters
@@ -30,16 +30,16 @@ def past_orders(scenario: Scenario, skus: SkuSet, seed: int) -> list[OrderDraft]
         The run's seed; they come from substreams of their own, so that drawing them changes
         nothing else.
     """
-    drafts: list[OrderDraft | None]
+    contents: list[OrderContent | None]
     if isinstance(scenario.orders, WordOrders):
         assert isinstance(scenario.skus, LetterSkus)
         words = WordSource(scenario.orders, read_alphabet(scenario.skus), seed, _PAST)
-        drafts = [words.draw(ordinal) for ordinal in range(PAST_ORDERS)]
+        contents = [words.draw(ordinal) for ordinal in range(PAST_ORDERS)]
     else:
         source = OrderSource(scenario.orders, skus, seed, scenario.name, _PAST)
         stock = np.full(len(skus), _PLENTY)
-        drafts = [source.draw(ordinal, stock) for ordinal in range(PAST_ORDERS)]
-    return [draft for draft in drafts if draft is not None]
+        contents = [source.draw(ordinal, stock) for ordinal in range(PAST_ORDERS)]
+    return [content for content in contents if content is not None]
 
 
 class PastOrders:
@@ -48,6 +48,6 @@ class PastOrders:
     def __init__(self, scenario: Scenario, skus: SkuSet, seed: int) -> None:
         self._scenario, self._skus, self._seed = scenario, skus, seed
 
-    def __call__(self) -> list[OrderDraft]:
+    def __call__(self) -> list[OrderContent]:
         """Draw them; see `past_orders`."""
         return past_orders(self._scenario, self._skus, self._seed)

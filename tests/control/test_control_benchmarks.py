@@ -21,7 +21,7 @@ from rmfs.control.psa.random import RandomPlace
 from rmfs.control.rps.buffered import BufferParameters
 from rmfs.control.rps.correlative import Correlative
 from rmfs.control.view import View
-from rmfs.scenario import OrderDraft
+from rmfs.scenario import OrderContent
 
 pytestmark = pytest.mark.benchmark
 
@@ -142,8 +142,10 @@ def test_rps(benchmark, situation, rule) -> None:
 def test_rps_correlative_after_long(benchmark, situation) -> None:
     """5000 orders of 20 lines have been counted: 2 million pairs."""
     rng = np.random.default_rng(0)
-    drafts = [OrderDraft(tuple(s), (), 0.0, 0) for s in rng.integers(0, SKUS, (5000, 20)).tolist()]
-    view = View(situation.world, situation.view.travel, draw_past_orders=lambda: drafts)
+    contents = [
+        OrderContent(tuple(s), (), 0.0, 0) for s in rng.integers(0, SKUS, (5000, 20)).tolist()
+    ]
+    view = View(situation.world, situation.view.travel, draw_past_orders=lambda: contents)
     controller = Correlative(BufferParameters(), view, situation.rng)
     assert benchmark(controller.choose, situation.bundle(sku=5)) >= 0
 

@@ -9,11 +9,11 @@ from rmfs import layout, scenario
 from rmfs.control.problems import Trigger
 from rmfs.control.trackers.frequency import Frequency, PairFrequency
 from rmfs.control.view import View
-from rmfs.scenario import OrderDraft
+from rmfs.scenario import OrderContent
 from rmfs.simulation.kernel import Kernel
 from rmfs.simulation.past import PAST_ORDERS
 
-PAST = (OrderDraft((0, 1), (2, 1), 0.0, 0), OrderDraft((1,), (1,), 0.0, 0))
+PAST = (OrderContent((0, 1), (2, 1), 0.0, 0), OrderContent((1,), (1,), 0.0, 0))
 
 
 @pytest.fixture

@@ -17,7 +17,7 @@ from rmfs.scenario.clock import nearest_us
 from rmfs.simulation import arrivals
 
 if TYPE_CHECKING:
-    from rmfs.simulation.run import Run
+    from rmfs.simulation.result import Run
     from rmfs.world.orders import Order
 
 pytestmark = pytest.mark.skipif(

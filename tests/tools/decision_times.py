@@ -28,7 +28,7 @@ from rmfs.observer import Observer
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rmfs.simulation.run import Run
+    from rmfs.simulation.result import Run
 
 PAGE = Path("docs") / "decision-times.md"
 LAYOUT = {"pod_capacity": 500.0, "replenishment_station_capacity": 1000.0}

@@ -14,7 +14,7 @@ import rmfs
 from rmfs.errors import InputError
 from rmfs.measure import load_run, write_run
 from rmfs.measure.dictionary import TABLES
-from rmfs.simulation.run import Run
+from rmfs.simulation.result import Run
 from rmfs.traffic import Piece
 from rmfs.view import scene
 from rmfs.view.container import unpack

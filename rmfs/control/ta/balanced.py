@@ -10,7 +10,7 @@ import pydantic
 
 from rmfs.control.decisions import Reposition, TaskDecision
 from rmfs.control.ta.balance import deal, split
-from rmfs.control.ta.crews import CrewParameters, Crews, NotNegative
+from rmfs.control.ta.station_teams import NotNegative, StationTeams, TeamParameters
 from rmfs.control.ta.stations import by_kind, keeper_of, near_by
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 
-class BalancedParameters(CrewParameters):
+class BalancedParameters(TeamParameters):
     """Parameters of TA balanced."""
 
     pick_weight: NotNegative = 2.0
@@ -41,7 +41,7 @@ class BalancedParameters(CrewParameters):
     """Whether robots without work move idle pods, as far as repositioning finds a move."""
 
 
-class Balanced(Crews[BalancedParameters]):
+class Balanced(StationTeams[BalancedParameters]):
     """Divides robots over the stations that have work, and lets each work for its station only.
 
     A robot that carries a pod goes on with it as long as the pod can serve an open request of the

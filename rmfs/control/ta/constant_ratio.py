@@ -7,18 +7,18 @@ from typing import Annotated
 import pydantic
 
 from rmfs.control.ta.balance import deal
-from rmfs.control.ta.crews import CrewParameters, Crews
+from rmfs.control.ta.station_teams import StationTeams, TeamParameters
 from rmfs.control.ta.stations import by_kind
 
 
-class ConstantRatioParameters(CrewParameters):
+class ConstantRatioParameters(TeamParameters):
     """Parameters of TA constant-ratio."""
 
     pick_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.75
     """Share of the robots that work for pick stations, rounded down."""
 
 
-class ConstantRatio(Crews[ConstantRatioParameters]):
+class ConstantRatio(StationTeams[ConstantRatioParameters]):
     """Gives a fixed part of the robots to pick stations and the others to replenishment stations.
 
     Within a kind in turn, stations far from the middle of the tier first. Stations count that are

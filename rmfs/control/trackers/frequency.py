@@ -24,8 +24,8 @@ class Frequency(Tracker):
     def __init__(self, view: View) -> None:
         super().__init__(view)
         self._before = np.zeros(len(view.skus), np.int64)
-        for draft in view.past_orders:
-            for sku, units in zip(draft.skus, draft.units, strict=True):
+        for content in view.past_orders:
+            for sku, units in zip(content.skus, content.units, strict=True):
                 self._before[sku] += units
 
     @property
@@ -48,8 +48,8 @@ class PairFrequency(Tracker):
     def __init__(self, view: View) -> None:
         super().__init__(view)
         self._orders: dict[int, dict[int, int]] = {}
-        for draft in view.past_orders:
-            self._count(draft.skus)
+        for content in view.past_orders:
+            self._count(content.skus)
         for order in view.orders:
             self._count(line.sku for line in order.lines)
 

@@ -12,7 +12,8 @@ from rmfs.demonstrator.server.hub import Hub
 from rmfs.demonstrator.server.journal import Journal
 from rmfs.demonstrator.server.real import check_floor
 from rmfs.errors import InputError
-from rmfs.simulation.run import Run, simulate
+from rmfs.simulation.result import Run
+from rmfs.simulation.run import simulate
 from rmfs.traffic import TIME_WINDOWS
 
 if TYPE_CHECKING:

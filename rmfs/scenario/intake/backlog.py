@@ -76,13 +76,13 @@ class BacklogOrders:
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_orders, state.stored_space)
         if not self._rest.ends(now_us) or not wanted:
             return None
-        draft = self._contents(self._drawn, state)
+        content = self._contents(self._drawn, state)
         self._drawn += 1
-        if draft is None:
+        if content is None:
             self._top_up.failed(now_us / US_PER_S)
             self._rest.block(now_us, self._top_up.blocked_until_s)
             return None
-        return OrderArrival.of(draft, now_us)
+        return OrderArrival.of(content, now_us)
 
 
 class BacklogBundles:
@@ -123,10 +123,10 @@ class BacklogBundles:
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_bundles, load)
         if not self._rest.ends(now_us) or not wanted:
             return None
-        draft = self._source.draw(self._drawn)
+        content = self._source.draw(self._drawn)
         self._drawn += 1
-        if not self._top_up.accepts(load, draft.space):
+        if not self._top_up.accepts(load, content.space):
             self._top_up.failed(now_us / US_PER_S)
             self._rest.block(now_us, self._top_up.blocked_until_s)
             return None
-        return BundleArrival(now_us, *draft)
+        return BundleArrival(now_us, *content)

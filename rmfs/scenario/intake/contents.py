@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rmfs.scenario.intake.state import State
-    from rmfs.scenario.orders import OrderDraft
+    from rmfs.scenario.orders import OrderContent
     from rmfs.scenario.parameters import Scenario
     from rmfs.scenario.skus import SkuSet
 
-    Contents = Callable[[int, State], OrderDraft | None]
+    Contents = Callable[[int, State], OrderContent | None]
 
 # numbers below the stream of contents: orders that are counted apart do not shift the others
 REGULAR: tuple[int, ...] = ()
@@ -67,15 +67,15 @@ def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...])
     return partial(_whatever_stock, source, unlimited)
 
 
-def _words(words: WordSource, ordinal: int, _state: State) -> OrderDraft | None:
+def _words(words: WordSource, ordinal: int, _state: State) -> OrderContent | None:
     return words.draw(ordinal)
 
 
-def _in_stock(source: OrderSource, ordinal: int, state: State) -> OrderDraft | None:
+def _in_stock(source: OrderSource, ordinal: int, state: State) -> OrderContent | None:
     return source.draw(ordinal, state.uncommitted)
 
 
 def _whatever_stock(
     source: OrderSource, unlimited: NDArray[np.int64], ordinal: int, _state: State
-) -> OrderDraft | None:
+) -> OrderContent | None:
     return source.draw(ordinal, unlimited)

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from rmfs.scenario.intake.state import State
-    from rmfs.scenario.orders import OrderDraft
+    from rmfs.scenario.orders import OrderContent
 
 
 class OrderArrival(NamedTuple):
@@ -35,10 +35,10 @@ class OrderArrival(NamedTuple):
     redraws: int
 
     @classmethod
-    def of(cls, draft: OrderDraft, time_us: int) -> OrderArrival:
+    def of(cls, content: OrderContent, time_us: int) -> OrderArrival:
         """Let a drawn order come at a time."""
-        due_us = time_us + nearest_us(draft.due_offset_s)
-        return cls(time_us, draft.skus, draft.units, due_us, draft.redraws)
+        due_us = time_us + nearest_us(content.due_offset_s)
+        return cls(time_us, content.skus, content.units, due_us, content.redraws)
 
     @property
     def due_s(self) -> float:

@@ -111,9 +111,9 @@ def _drawn(draw: Contents) -> Callable[[Candidate, State], OrderArrival]:
 
 
 def _of_candidate(draw: Contents, candidate: Candidate, state: State) -> OrderArrival:
-    draft = draw(candidate.ordinal, state)
-    assert draft is not None
-    return OrderArrival.of(draft, candidate.time_us)
+    content = draw(candidate.ordinal, state)
+    assert content is not None
+    return OrderArrival.of(content, candidate.time_us)
 
 
 def _from_stream(
@@ -131,8 +131,8 @@ def _from_stream(
 
 
 def _in_batch(draw: Contents, ordinal: int, now_us: int, state: State) -> OrderArrival | None:
-    draft = draw(ordinal, state)
-    return None if draft is None else OrderArrival.of(draft, now_us)
+    content = draw(ordinal, state)
+    return None if content is None else OrderArrival.of(content, now_us)
 
 
 def _record(recorder: StreamRecorder, order: OrderArrival) -> None:

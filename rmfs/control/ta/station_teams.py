@@ -1,4 +1,4 @@
-"""Crews: TA rules by which every robot works for one station, and is moved to another in time."""
+"""Station teams: TA rules by which every robot works for one station, moved to another in time."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ if TYPE_CHECKING:
 NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 
 
-class CrewParameters(Parameters):
+class TeamParameters(Parameters):
     """Parameters of rules by which robots belong to stations."""
 
     period_s: NotNegative = 30.0
-    """Seconds between re-balancings of the crews; 0 for never."""
+    """Seconds between re-balancings of the teams; 0 for never."""
     rest: RestRule = "middle"
     """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
     `random`."""
 
 
-P = TypeVar("P", bound=CrewParameters)
+P = TypeVar("P", bound=TeamParameters)
 
 
-class Crews(TaskAllocation[P]):
+class StationTeams(TaskAllocation[P]):
     """Gives each robot work of its station.
 
     A robot that carries a pod goes on with it as long as the pod can serve the robot's station,

@@ -1,0 +1,198 @@
+"""`Run`: what a simulation leaves behind when it has come to its end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rmfs import measure
+from rmfs.errors import InputError
+from rmfs.measure.checker import Slow, check
+from rmfs.measure.dictionary import TABLES
+from rmfs.measure.ended import EndedRun
+from rmfs.measure.folder import fill, reserved
+from rmfs.measure.footprints import footprint
+from rmfs.measure.results import Results
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    from rmfs.control.choices import Choice
+    from rmfs.control.settings import ControllerSettings
+    from rmfs.layout.model import Layout
+    from rmfs.measure import EventLog, Recorder, RunFolder
+    from rmfs.measure.base import Measure
+    from rmfs.measure.checker import CheckReport
+    from rmfs.scenario import Scenario
+    from rmfs.simulation.disturbances import DisturbanceSource
+    from rmfs.simulation.inputs import Overrides
+    from rmfs.simulation.pacing import PacingSettings
+    from rmfs.simulation.statistics import DecisionStatistics
+    from rmfs.traffic import Traffic
+    from rmfs.world import World
+
+
+@dataclass(repr=False, eq=False)
+class Run(Results):
+    """A run that has ended.
+
+    Sent to another process, it takes its tables and its trace along and leaves behind what can
+    only be used here: `world`, `traffic`, `recorder` and `disturbances`.
+
+    Attributes
+    ----------
+    layout, scenario, controllers
+        What was simulated, after overrides.
+    names
+        Layout, scenario and controllers as the user named them; behind the controllers stands
+        what was exchanged by hand.
+    overrides
+        As pairs of path and value: those given, and what a scenario of RAWSim-O asks of the layout.
+    notes
+        Per part, what an import of RAWSim-O's file left out or does differently.
+    pacing, pacing_settings
+        The pacing as it was given, and with all its parameters.
+    warmup_s, duration_s, end_s
+        Simulated first and not measured; measured; both together.
+    wall_s
+        Wall time of the simulation, without loading.
+    world, traffic
+        Their last state.
+    statistics
+        Per decision problem, how often its controller was asked and how long it took.
+    recorder
+        What was written down.
+    measures
+        What makes the footprint of it.
+    disturbances
+        What went wrong.
+    events
+        What happened; only if the run was asked to record its trace.
+    interventions
+        Controllers exchanged by hand, and when (s); `names` tells of them, too.
+    """
+
+    layout: Layout
+    scenario: Scenario
+    controllers: ControllerSettings
+    names: tuple[str, str, str]
+    overrides: Overrides
+    notes: dict[str, list[str]]
+    seed: int
+    pacing: str
+    pacing_settings: PacingSettings
+    warmup_s: float
+    duration_s: float
+    end_s: float
+    wall_s: float
+    world: World
+    traffic: Traffic
+    statistics: list[DecisionStatistics]
+    recorder: Recorder
+    measures: Sequence[Measure]
+    disturbances: DisturbanceSource
+    events: EventLog | None = None
+    interventions: Sequence[tuple[float, Choice]] = ()
+
+    _report: CheckReport | None = None
+    _sent: _Sent | None = None
+
+    @cached_property
+    def footprint(self) -> pd.Series[Any]:
+        """Measures of the whole run; one row of `footprint.csv`."""
+        row: pd.Series[Any] = self.table("footprint").iloc[0]
+        return row
+
+    @property
+    def series(self) -> pd.DataFrame:
+        """Measures minute by minute."""
+        return self.table("series")
+
+    @property
+    def decisions(self) -> pd.DataFrame:
+        """Measures per decision problem."""
+        return self.table("decisions")
+
+    def table(self, name: str) -> pd.DataFrame:
+        """Return a table by name; see `Results.table`."""
+        if name not in TABLES:
+            raise InputError(f"{name}: no such table; valid: {', '.join(TABLES)}")
+        if self._sent is not None:
+            return self._sent.tables[name]
+        if name == "footprint":
+            return self._footprint
+        return self._ended.tables[name]
+
+    def check(self) -> CheckReport:
+        """Have the independent checker prove the motion safe; `collisions` tells of it then."""
+        until_us = round(self.end_s * 1e6)
+        slow = [Slow(*one) for one in self.slow_robots]
+        self._require_trace()
+        self._report = check(self.layout, self.trace, until_us=until_us, slow=slow)
+        for known in ("footprint", "_footprint", "_ended"):
+            self.__dict__.pop(known, None)
+        return self._report
+
+    def save(self, path: str | Path, *, force: bool = False) -> RunFolder:
+        """Write a run folder, with the trace if there is one; see `Results.save`."""
+        has_trace = self.events is not None
+        with reserved(Path(path), force=force) as folder:
+            fill(folder, self, report=self._report, trace=has_trace, tables=self._tables())
+        return measure.load_run(Path(path))
+
+    @property
+    def trace(self) -> dict[str, NDArray[Any]]:
+        """Every piece of motion; only if the run was asked to record it."""
+        return self.traffic.trace() if self._sent is None else self._sent.trace
+
+    @property
+    def slow_robots(self) -> list[tuple[int, int, int, float]]:
+        """When which robots were slow: robot, from when to when (us), share of the top speed."""
+        return self.disturbances.slow if self._sent is None else self._sent.slow_robots
+
+    def _tables(self) -> dict[str, pd.DataFrame]:
+        return {name: self.table(name) for name in TABLES}
+
+    @cached_property
+    def _footprint(self) -> pd.DataFrame:
+        return footprint(self._ended, self.measures)
+
+    @cached_property
+    def _ended(self) -> EndedRun:
+        return EndedRun(self, self._report)
+
+    def _in_folder(self, path: Path) -> RunFolder:
+        self._require_trace()
+        return self.save(path)
+
+    def _require_trace(self) -> None:
+        if self.events is None:
+            raise InputError("the run has recorded no trace; simulate it with trace=True")
+
+    def __getstate__(self) -> dict[str, Any]:
+        trace = {} if self.events is None else self.trace
+        kept = {key: value for key, value in self.__dict__.items() if key not in _STAYS}
+        return {**kept, "_sent": _Sent(self._tables(), trace, self.slow_robots)}
+
+    def __getattr__(self, name: str) -> Any:
+        if name in _STAYS:
+            raise AttributeError(f"{name} was left behind when the run was sent to this process")
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+
+@dataclass(frozen=True)
+class _Sent:
+    """What a run takes along to another process in place of what it was made from."""
+
+    tables: dict[str, pd.DataFrame]
+    trace: dict[str, NDArray[Any]]
+    slow_robots: list[tuple[int, int, int, float]]
+
+
+_STAYS = frozenset(("world", "traffic", "recorder", "disturbances", "_ended", "_footprint"))
+"""What of a run cannot travel."""
