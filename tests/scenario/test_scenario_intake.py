@@ -31,9 +31,9 @@ def test_a_backlog_of_orders_is_topped_up_from_stock(skus: SkuSet):
     come = list(intake_now(intake, 0, state))
     source = OrderSource(given.orders, skus, 1)
     plenty = np.full(len(skus), 10**6)
-    drafts = [source.draw(k, plenty) for k in range(50)]
-    assert [(order.skus, order.units) for order in come] == [(d.skus, d.units) for d in drafts]
-    assert [order.due_s for order in come] == [draft.due_offset_s for draft in drafts]
+    contents = [source.draw(k, plenty) for k in range(50)]
+    assert [(order.skus, order.units) for order in come] == [(d.skus, d.units) for d in contents]
+    assert [order.due_s for order in come] == [content.due_offset_s for content in contents]
     assert intake.next_us == NEVER_US
     state.waiting_orders -= 3
     assert len(list(intake_now(intake, 7 * US_PER_S, state))) == 3

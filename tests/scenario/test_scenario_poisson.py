@@ -183,9 +183,9 @@ def test_contents_are_those_of_the_backlog_with_plenty_in_stock(skus: SkuSet):
     source = OrderSource(given.orders, skus, 2)
     plenty = np.full(len(skus), 10**6)
     for k, order in enumerate(orders(skus, orders_per_h=20)):
-        draft = source.draw(k, plenty)
-        assert (order.skus, order.units, order.redraws) == (draft.skus, draft.units, 0)
-        assert order.due_us - order.time_us == draft.due_offset_s * 1e6
+        content = source.draw(k, plenty)
+        assert (order.skus, order.units, order.redraws) == (content.skus, content.units, 0)
+        assert order.due_us - order.time_us == content.due_offset_s * 1e6
 
 
 def test_stock_does_not_matter(skus: SkuSet):
