@@ -40,6 +40,14 @@ class MotionCounts(TravelTimes, Protocol):
         """Passages of each edge that was used."""
         ...
 
+    def energy(self) -> dict[str, NDArray[Any]]:
+        """Energy drawn and charged by each robot; only if the scenario counts it."""
+        ...
+
+    def used_j(self, robot: int) -> float:
+        """Energy drawn by a robot since time zero; only if the scenario counts it."""
+        ...
+
     def counters(self) -> dict[str, float]:
         """Counts of path planning, and its wall time."""
         ...

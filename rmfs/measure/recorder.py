@@ -11,6 +11,7 @@ from math import nan
 from typing import TYPE_CHECKING
 
 from rmfs.control.solutions import to_text
+from rmfs.measure.energy import EnergyLog
 from rmfs.measure.log import Log
 from rmfs.observer import Observer
 from rmfs.world import tasks
@@ -76,6 +77,8 @@ class Recorder(Observer):
         Stations switched on or off.
     samples
         Every minute: time, and the fleet's totals of distance and times since the last reset.
+    energy
+        What robots draw.
     """
 
     def __init__(self) -> None:
@@ -111,6 +114,7 @@ class Recorder(Observer):
         self.by_rule: dict[str, int] = {}
         self.switches = Log(time_s="f8", station="i2", active="?")
         self.samples: list[tuple[float, dict[str, float]]] = []
+        self.energy = EnergyLog()
         self.stored_space_start = 0.0
         self.motion: dict[str, NDArray[Any]] = {}
         self.heat: dict[str, NDArray[Any]] = {}
@@ -130,6 +134,8 @@ class Recorder(Observer):
         """Keep hold of the world and the traffic."""
         self.layout, self.world, self.traffic = run.layout, run.world, run.traffic
         self._disturbances = run.disturbances
+        if run.scenario.energy is not None:
+            self.energy.begin(run.traffic, run.layout.robots)
         visits = [kind.part("task", VisitTask).kind for kind in run.layout.other_kinds]
         self._task_number = {kind: number for number, kind in enumerate([*TASKS, *visits])}
         self.stored_space_start = run.world.inventory.stored_space
@@ -146,6 +152,7 @@ class Recorder(Observer):
         self.end_s = time_s
         if not self.samples or self.samples[-1][0] < time_s:
             self.sampled(time_s)
+        self.energy.ended()
         self.motion = self.traffic.motion()
         self.heat = self.traffic.heat()
         self.trips = self.traffic.trips()
@@ -167,6 +174,7 @@ class Recorder(Observer):
         """Add up the robots' motion."""
         totals = {name: float(values.sum()) for name, values in self.traffic.motion().items()}
         self.samples.append((time_s, totals))
+        self.energy.sampled()
 
     def order_created(self, order: Order) -> None:
         """Follow the order."""
@@ -189,6 +197,7 @@ class Recorder(Observer):
     ) -> None:
         """Write the unit down."""
         self.units.add(time_s, order.index, sku, pod, robot, station, late_bound)
+        self.energy.picked(order.index, station)
 
     def line_picked(self, time_s: float, order: Order, sku: int, units: int) -> None:
         """Write the line down."""
@@ -211,6 +220,7 @@ class Recorder(Observer):
         """Write the visit down."""
         since = self._at_station.pop(station)[0]
         self.visits.add(station, pod, robot, since, time_s)
+        self.energy.left(station, robot)
 
     def station_busy(self, station: int, from_s: float, to_s: float) -> None:
         """Write the work down."""

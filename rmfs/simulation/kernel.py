@@ -21,6 +21,7 @@ from rmfs.simulation.deciding import Deciding
 from rmfs.simulation.decision import Decision
 from rmfs.simulation.dispatch import Dispatch
 from rmfs.simulation.disturbances import DisturbanceSource
+from rmfs.simulation.energy import PodMasses, model_of
 from rmfs.simulation.events import Events
 from rmfs.simulation.late_binding import LateBinding
 from rmfs.simulation.optimisers import OptimiserGateway
@@ -183,7 +184,8 @@ class Kernel:
         self.disturbances = DisturbanceSource(
             layout, scenario.disturbances, seed, agenda=agenda, fleet=fleet
         )
-        events.tell([late_binding, *visits.controllers, *observers, Triggers(due)])
+        masses = _count_energy(scenario, world, fleet)
+        events.tell([*masses, late_binding, *visits.controllers, *observers, Triggers(due)])
         self._due = due
         self._end_us = us_at(self.end_s)
         self._moved_us = 0
@@ -399,6 +401,16 @@ class Kernel:
             )
         self.events.sampled(self.world.now_s)
         self._sample_again(number + 1)
+
+
+def _count_energy(scenario: Scenario, world: World, fleet: Traffic) -> list[Observer]:
+    """Let traffic count energy, if that is wanted; returns who keeps it informed."""
+    given = scenario.energy
+    if given is None:
+        return []
+    masses = PodMasses(given, world, fleet)
+    fleet.count_energy(model_of(given), masses.all_kg())
+    return [masses]
 
 
 def _traffic_handlers(dispatch: Dispatch) -> list[Callable[[int, int], None] | None]:

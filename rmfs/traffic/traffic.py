@@ -297,6 +297,70 @@ class Traffic:
         """
         return self._core.motion()
 
+    def count_energy(
+        self,
+        model: Sequence[float],
+        pods_kg: Sequence[float],
+        *,
+        initial_j: Sequence[float] | None = None,
+        battery: tuple[float, float] | None = None,
+        power_w: Sequence[float] = (),
+    ) -> None:
+        """Count energy from now on.
+
+        Parameters
+        ----------
+        model
+            Eleven numbers in the order of `Model` in src/energy.rs: kg of a robot, rolling
+            resistance per weight, share that turning parts add to inertia, efficiency of the drive,
+            share of the work of braking that comes back, torque against turning per weight (m),
+            radius of gyration (m), height (m) and efficiency of a lift, W without and with a pod.
+        pods_kg
+            Mass of each pod with its stock, shape (P,).
+        initial_j
+            What is in each battery, shape (R,). Default: 0.
+        battery
+            Capacity (J), and the share of it from which the power of a charger falls.
+        power_w
+            What each waypoint gives to a robot that stands there, shape (N,). Default: nothing.
+        """
+        level = [0.0] * self._layout.robots if initial_j is None else list(initial_j)
+        self._core.count_energy(list(model), list(pods_kg), battery, list(power_w), level)
+
+    def energy(self) -> dict[str, NDArray[Any]]:
+        """Energy per robot, up to now, each of shape (R,).
+
+        Since the last reset, in J: `drive_j`, `turn_j`, `lift_j`, `standby_j`, less
+        `recuperated_j` make `used_j`; `charged_j`, and `charging_s`. Since time zero: `initial_j`
+        + `ever_charged_j` - `ever_used_j` = `level_j`.
+
+        Raises
+        ------
+        ValueError
+            If energy is not counted.
+        """
+        return self._core.energy()
+
+    def used_j(self, robot: int) -> float:
+        """Energy drawn by a robot since time zero, J."""
+        return self._core.used(robot)
+
+    def level_j(self, robot: int) -> float:
+        """Energy in the battery of a robot, J."""
+        return self._core.level(robot)
+
+    def set_pod_mass(self, pod: int, kg: float) -> None:
+        """Say what a pod weighs with its stock from now on."""
+        self._core.set_pod_mass(pod, kg)
+
+    def set_power(self, waypoint: int, watts: float) -> None:
+        """Let a waypoint give another power to a robot that stands there."""
+        self._core.set_power(waypoint, watts)
+
+    def exchange_battery(self, robot: int, level_j: float) -> None:
+        """Give a robot that stands still another battery; the difference counts as charged."""
+        self._core.exchange_battery(robot, level_j)
+
     def heat(self) -> dict[str, NDArray[Any]]:
         """Count visits and standing time of robots that are not idle, since the last reset.
 
@@ -323,7 +387,7 @@ class Traffic:
 
         `robot`, `kind` (`TripKind`), `t0_us`, `t1_us` (a trip to a station ends at its queue
         zone), `from_wp`, `to_wp`, `loaded`, `distance_m`, `unhindered_s` (lower bound of the
-        time from rest to rest).
+        time from rest to rest), `energy_j` (0 if energy is not counted).
         """
         return self._core.trips()
 

@@ -84,6 +84,7 @@ class FakeTraffic:
             "to_wp": np.array([3, 4, 5]),
             "loaded": np.array([False, True, True]),
             "distance_m": np.array([3.0, 4.0, 5.0]),
+            "energy_j": np.zeros(3),
             "unhindered_s": np.array([10.0, 15.0, 20.0]),
         }
 
@@ -189,8 +190,15 @@ class Skus:
 
 def simulation(place, traffic):
     """What a recorder asks of a simulation: two disturbances last from begin to end."""
+    scenario = SimpleNamespace(energy=None)
     disturbances = SimpleNamespace(within=lambda start_s, end_s: (2, end_s - start_s))
-    return SimpleNamespace(layout=layout(), world=place, traffic=traffic, disturbances=disturbances)
+    return SimpleNamespace(
+        layout=layout(),
+        scenario=scenario,
+        world=place,
+        traffic=traffic,
+        disturbances=disturbances,
+    )
 
 
 def recorded() -> Recorder:

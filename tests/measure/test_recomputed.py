@@ -9,6 +9,7 @@ import pytest
 from rmfs.measure import load_run, write_run
 from rmfs.measure.columns import TEXT
 from rmfs.measure.dictionary import TABLES
+from rmfs.measure.measures.energy import Energy
 from rmfs.simulation.run import simulate
 
 WARMUP_S, DURATION_S = 300.0, 1500.0
@@ -46,6 +47,10 @@ NOT_IN_TABLES = {
     **dict.fromkeys(("plans", "plan_failures", "replans", "expansions"), "counted by traffic"),
     **dict.fromkeys(("order_redraws", "orders_short"), "counted when an order is drawn, or comes"),
     **dict.fromkeys(("disturbances", "disturbed_s"), "tests/simulation/test_disturbances.py"),
+    **dict.fromkeys(
+        (column.name for column in Energy.columns),
+        "empty here; tests/simulation/test_energy_use.py",
+    ),
     **dict.fromkeys(("planning_wall_s", "wall_s", "peak_rss_mb"), "of the machine, measured once"),
 }
 """Numbers of the footprint that no table tells again, and why."""

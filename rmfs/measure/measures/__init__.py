@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from rmfs.measure.measures.decisions import Decisions, Optimisers
 from rmfs.measure.measures.disturbances import Disturbances
+from rmfs.measure.measures.energy import Energy
 from rmfs.measure.measures.heading import Heading
 from rmfs.measure.measures.motion import Motion, RobotTime
 from rmfs.measure.measures.orders import Backlog, OrderTimes
@@ -34,6 +35,7 @@ SHIPPED: tuple[type[Measure], ...] = (
     Planning,
     Safety,
     Disturbances,
+    Energy,
     Decisions,
     Optimisers,
     Speed,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rmfs.measure.columns import FLAG, INTEGER, REAL, TEXT, Column
+from rmfs.measure.energy import WH
 from rmfs.measure.tables.tidy import tidy
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ TRIPS = (
         "s",
         "Lower bound of the time without other robots (for a station: to its queue zone)",
     ),
+    Column("energy_wh", REAL, "Wh", "Drawn on the way; empty where energy is not counted"),
 )
 
 _PURPOSES = {
@@ -84,6 +86,7 @@ def trips(logs: Logs) -> pd.DataFrame:
             "loaded": told["loaded"],
             "distance_m": told["distance_m"],
             "unhindered_s": told["unhindered_s"],
+            "energy_wh": told["energy_j"] / WH if logs.recorder.energy.final else np.nan,
         },
     )
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.measure.columns import INTEGER, REAL, Column
+from rmfs.measure.energy import WH
 from rmfs.measure.tables.tidy import tidy
 
 if TYPE_CHECKING:
@@ -29,6 +30,12 @@ ORDERS = (
     Column("throughput_time_s", REAL, "s", "completed_s - assigned_s"),
     Column("lateness_s", REAL, "s", "completed_s - due_s; negative if early"),
     Column("pods", INTEGER, "pods", "Pods from which units were picked for it so far"),
+    Column(
+        "energy_wh",
+        REAL,
+        "Wh",
+        "Drawn by robots for its units so far (docs/energy.md); empty where energy is not counted",
+    ),
 )
 
 
@@ -40,6 +47,10 @@ def orders(logs: Logs) -> pd.DataFrame:
     frame["throughput_time_s"] = frame["completed_s"] - frame["assigned_s"]
     frame["lateness_s"] = frame["completed_s"] - frame["due_s"]
     frame["pods"] = _pods(logs, frame["order"])
+    energy = logs.recorder.energy
+    frame["energy_wh"] = (
+        frame["order"].map(energy.per_order).fillna(0.0) / WH if energy.final else np.nan
+    )
     return tidy("orders", ORDERS, frame)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rmfs.measure.columns import INTEGER, REAL, Column
+from rmfs.measure.energy import WH
 from rmfs.measure.recorder import TASKS
 from rmfs.measure.steps import Steps
 from rmfs.measure.tables.logs import count
@@ -49,6 +50,23 @@ ROBOTS = (
     Column("pods_lifted", INTEGER, "lifts", "Pods lifted"),
     Column("units_picked", INTEGER, "units", "Units picked from pods it brought"),
     Column("bundles_stored", INTEGER, "bundles", "Bundles stored in pods it brought"),
+    *(
+        Column(name, REAL, unit, f"{meaning}; empty where energy is not counted")
+        for name, unit, meaning in (
+            ("energy_wh", "Wh", "Drawn, less what braking gave back"),
+            ("charged_wh", "Wh", "Taken up at chargers"),
+            ("charging_s", "s", "Time at chargers"),
+            ("level_wh", "Wh", "In its battery at the end"),
+        )
+    ),
+)
+
+
+_ENERGY = (
+    ("energy_wh", "used_j", WH),
+    ("charged_wh", "charged_j", WH),
+    ("charging_s", "charging_s", 1.0),
+    ("level_wh", "level_j", WH),
 )
 
 
@@ -73,6 +91,9 @@ def robots(logs: Logs) -> pd.DataFrame:
     columns["pods_lifted"] = count(logs.lifts_now["robot"], number)
     columns["units_picked"] = count(logs.units_now["robot"], number)
     columns["bundles_stored"] = count(logs.stored_now["robot"], number)
+    energy = logs.recorder.energy.final
+    for name, counted, divisor in _ENERGY:
+        columns[name] = energy[counted] / divisor if energy else np.nan
     return tidy("robots", ROBOTS, columns)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rmfs.measure.columns import INTEGER, REAL, Column
+from rmfs.measure.energy import WH
 from rmfs.measure.recorder import TASKS
 from rmfs.measure.steps import Steps, counts
 from rmfs.measure.tables.robots import STATES, with_task
@@ -64,6 +65,14 @@ SERIES = (
             "queueing": "in queue zones (overlaps with the others)",
         }.items()
     ),
+    Column("energy_wh", REAL, "Wh", "Drawn in the interval; empty where energy is not counted"),
+    Column("charged_wh", REAL, "Wh", "Charged in the interval; empty where energy is not counted"),
+    Column(
+        "level_mean_wh",
+        REAL,
+        "Wh",
+        "Mean of what is in the batteries, at the end; empty where energy is not counted",
+    ),
 )
 
 
@@ -95,6 +104,11 @@ def series(logs: Logs) -> pd.DataFrame:
         columns[f"robots_task_{task}"] = with_task(logs, task).at(ends)
     for state in STATES:
         columns[f"robots_{state}"] = driven[f"{state}_s"] / length
+    energy = logs.recorder.energy
+    counted = bool(energy.samples)
+    columns["energy_wh"] = energy.per_interval_wh(0) if counted else np.nan
+    columns["charged_wh"] = energy.per_interval_wh(1) if counted else np.nan
+    columns["level_mean_wh"] = [level / WH for *_, level in energy.samples] if counted else np.nan
     return tidy("series", SERIES, columns)
 
 

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from rmfs.scenario.parameters.demand import BacklogDemand, Demand
 from rmfs.scenario.parameters.disturbances import Disturbances
+from rmfs.scenario.parameters.energy import Energy
 from rmfs.scenario.parameters.orders import AnyOrders, Orders, WordOrders, not_above_skus
 from rmfs.scenario.parameters.replenishment import BacklogReplenishment, Replenishment
 from rmfs.scenario.parameters.skus import GeneratedSkus, LetterSkus, Skus
@@ -40,6 +41,9 @@ class Scenario(Block):
     replenishment: Replenishment = Field(BacklogReplenishment(), description="when bundles arrive")
 
     disturbances: Disturbances = Field(Disturbances(), description="what goes wrong in the run")
+    energy: Energy | None = Field(
+        None, description="what robots draw from their batteries; default: not counted"
+    )
 
     @pydantic.field_validator("orders", "demand", "replenishment", mode="before")
     @classmethod

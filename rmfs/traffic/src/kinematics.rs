@@ -122,6 +122,13 @@ impl Profile {
         self.accelerating_for + self.cruising_for + self.braking_for
     }
 
+    /// Metres of the first `distance` metres in which the robot accelerates, cruises and brakes.
+    pub fn phases_until(&self, distance: f64) -> [f64; 3] {
+        let accelerating = distance.min(self.accelerating_over);
+        let braking = (distance - (self.length - self.braking_over)).max(0.0);
+        [accelerating, (distance - accelerating - braking).max(0.0), braking]
+    }
+
     /// Seconds until `distance` metres are covered (`0 <= distance <= length`).
     pub fn time_at(&self, distance: f64) -> f64 {
         if distance >= self.length {

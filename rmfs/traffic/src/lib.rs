@@ -3,6 +3,7 @@
 pub mod backward;
 pub mod buckets;
 pub mod costs;
+pub mod energy;
 pub mod fleet;
 pub mod heat;
 pub mod kinematics;

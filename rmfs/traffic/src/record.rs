@@ -2,12 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::energy::{Done, Energy};
 use crate::heat::Heat;
 use crate::kinematics::Kind;
 use crate::log::Log;
 use crate::network::{NONE, Network};
 use crate::search::Move;
-use crate::units::{Us, floor_us};
+use crate::units::{MicroTurn, Us, floor_us, turn_between};
 
 /// Kinds of pieces of motion in the trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -90,6 +91,9 @@ pub struct Trip {
     pub loaded: bool,
     pub distance: f64,
     pub unhindered: Us,
+    /// J drawn, less what braking gave back, to a station as far as its head; 0 if energy is not
+    /// counted.
+    pub energy: f64,
 }
 
 /// What a trip is for.
@@ -109,6 +113,8 @@ pub struct Record {
     pub heat: Heat,
     pub trips: Log<Trip>,
     pub trace: Option<Log<Row>>,
+    /// What the motion draws, if that is counted.
+    pub energy: Option<Box<Energy>>,
     /// When totals, heat and trips begin.
     pub since: Us,
     /// Until when each robot's motion is recorded.
@@ -123,6 +129,7 @@ impl Record {
             heat: Heat::new(network),
             trips: Log::default(),
             trace: with_trace.then(Log::default),
+            energy: None,
             since: 0,
             recorded: vec![0; robots],
         }
@@ -137,6 +144,11 @@ impl Record {
         }
         self.heat.reset();
         self.trips.clear();
+    }
+
+    /// J drawn by the robot as far as recorded; 0 if energy is not counted.
+    pub fn used(&self, robot: u32) -> f64 {
+        self.energy.as_ref().map_or(0.0, |energy| energy.used(robot))
     }
 
     /// Until when the robot's motion is recorded.
@@ -167,6 +179,9 @@ impl Record {
         if let Standing::Waiting(purpose) | Standing::Served(purpose) = why {
             self.heat.wait(node, purpose, pod.is_some(), end - start);
         }
+        if let Some(energy) = &mut self.energy {
+            energy.stood(robot, start, end, node, pod);
+        }
         self.push(Row {
             robot,
             start,
@@ -192,6 +207,10 @@ impl Record {
     ) {
         let start = self.recorded[robot as usize];
         self.totals[robot as usize].transferring += end - start;
+        if let Some(energy) = &mut self.energy {
+            let done = if piece == Piece::Lift { Done::Lift(1.0) } else { Done::Time };
+            energy.moved(robot, start, end, Some(pod), done);
+        }
         self.push(Row {
             robot,
             start,
@@ -233,7 +252,16 @@ impl Record {
         if loaded {
             totals.loaded_distance += length;
         }
+        let profile = self.energy.is_some().then(|| kind.run(length));
         for row in move_rows(network, kind, robot, step, pod) {
+            if let Some(energy) = &mut self.energy {
+                let done = match row.piece {
+                    Piece::Turn => Done::Turn(kind, angle(network, step), 1.0),
+                    Piece::Run => Done::Run(kind, profile.as_ref().expect("made above"), length),
+                    _ => Done::Time,
+                };
+                energy.moved(robot, row.start, row.end, pod, done);
+            }
             let totals = &mut self.totals[robot as usize];
             let time = row.end - row.start;
             match row.piece {
@@ -251,6 +279,14 @@ impl Record {
             trace.push(row);
         }
     }
+}
+
+/// By how much the robot turns before a move.
+pub fn angle(network: &Network, step: &Move) -> MicroTurn {
+    turn_between(
+        network.headings[step.heading_before as usize],
+        network.headings[step.heading as usize],
+    )
 }
 
 fn pod_id(pod: Option<u32>) -> i32 {

@@ -7,6 +7,7 @@
 mod blocked;
 mod closing;
 mod disturbed;
+mod energy;
 mod improve;
 mod late;
 mod planning;
@@ -107,6 +108,7 @@ struct Leg {
     start: Us,
     unhindered: Us,
     distance_before: f64,
+    energy_before: f64,
     /// When the robot reached the queue zone of the station it drives to.
     zone_entered: Option<Us>,
 }

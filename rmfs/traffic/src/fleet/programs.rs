@@ -105,6 +105,10 @@ impl Fleet {
             }
             Step::Drive(_) | Step::Station(_) => unreachable!("a transfer ended"),
         }
+        if let Some(leg) = &mut self.legs[robot as usize] {
+            // planned while the robot lifted its pod: it begins now
+            leg.energy_before = self.record.used(robot);
+        }
         let state = &mut self.robots[robot as usize];
         if state.moves.is_empty() {
             self.begin(robot);
@@ -198,6 +202,7 @@ impl Fleet {
             loaded: state.pod.is_some(),
             distance: self.record.totals[robot as usize].distance - leg.distance_before,
             unhindered: leg.unhindered,
+            energy: self.record.used(robot) - leg.energy_before,
         });
     }
 }

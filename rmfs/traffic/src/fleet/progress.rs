@@ -136,6 +136,7 @@ impl Fleet {
         let in_progress: Vec<Totals> =
             (0..self.robots.len()).map(|r| self.in_progress(r)).collect();
         self.record.reset(self.now, &in_progress);
+        self.reset_energy();
         self.counters = Counters::default();
         self.pathfinder.expansions = 0;
     }

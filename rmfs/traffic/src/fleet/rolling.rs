@@ -401,6 +401,7 @@ impl Fleet {
             start: ready,
             unhindered,
             distance_before: self.record.totals[robot as usize].distance,
+            energy_before: self.record.used(robot),
             zone_entered: None,
         });
     }

@@ -4,6 +4,7 @@ use numpy::{Element, IntoPyArray};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::energy::{Energy, Spent};
 use crate::heat::{Heat, Passages};
 use crate::log::Log;
 use crate::network::Network;
@@ -50,6 +51,29 @@ pub(super) fn motion<'py>(py: Python<'py>, totals: &[Totals]) -> Table<'py> {
     Ok(columns.dict)
 }
 
+/// Energy, a row per robot: since the last reset, and since time zero.
+pub(super) fn energy<'py>(py: Python<'py>, energy: &Energy, spent: &[Spent]) -> Table<'py> {
+    let model = &energy.model;
+    let rows: Vec<(u32, Spent, &Spent)> = (0..)
+        .zip(spent)
+        .map(|(robot, now)| (robot, energy.since_reset(robot as usize, now), now))
+        .collect();
+    let columns = Columns::of(py, &rows)
+        .column("drive_j", |row| row.1.drive)?
+        .column("turn_j", |row| row.1.turn)?
+        .column("lift_j", |row| row.1.lift)?
+        .column("recuperated_j", |row| row.1.recuperated)?
+        .column("standby_j", |row| row.1.standby(model))?
+        .column("used_j", |row| row.1.used(model))?
+        .column("charged_j", |row| row.1.charged)?
+        .column("charging_s", |row| seconds(row.1.charging))?
+        .column("initial_j", |row| energy.initial[row.0 as usize])?
+        .column("ever_used_j", |row| row.2.used(model))?
+        .column("ever_charged_j", |row| row.2.charged)?
+        .column("level_j", |row| energy.level_of(row.0, row.2))?;
+    Ok(columns.dict)
+}
+
 /// Visits and standing time: per waypoint, and per waypoint and purpose (each station, then storing
 /// pods, then neither), the latter row by row in one dimension.
 pub(super) fn heat<'py>(py: Python<'py>, heat: &Heat) -> Table<'py> {
@@ -84,7 +108,8 @@ pub(super) fn trips<'py>(py: Python<'py>, trips: &Log<Trip>) -> Table<'py> {
         .column("to_wp", |trip| trip.to)?
         .column("loaded", |trip| trip.loaded)?
         .column("distance_m", |trip| trip.distance)?
-        .column("unhindered_s", |trip| seconds(trip.unhindered))?;
+        .column("unhindered_s", |trip| seconds(trip.unhindered))?
+        .column("energy_j", |trip| trip.energy)?;
     Ok(columns.dict)
 }
 

@@ -1,0 +1,72 @@
+"""Energy of a run: traffic is told what robots and pods weigh, and what they draw."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.observer import Observer
+
+if TYPE_CHECKING:
+    from rmfs.scenario.parameters import Energy
+    from rmfs.traffic import Traffic
+    from rmfs.world import World
+    from rmfs.world.orders import Bundle, Order
+
+
+def model_of(given: Energy) -> list[float]:
+    """Return the numbers of a scenario in the order in which traffic takes them."""
+    return [
+        given.robot_kg,
+        given.rolling_resistance,
+        given.inertia_share,
+        given.drive_efficiency,
+        given.recuperation_share,
+        given.turning_resistance_m,
+        given.gyration_m,
+        given.lift_m,
+        given.lift_efficiency,
+        given.standby_w,
+        given.standby_loaded_w,
+    ]
+
+
+class PodMasses(Observer):
+    """Keeps traffic informed of what each pod weighs: itself and what is on it.
+
+    Parameters
+    ----------
+    given
+        The masses.
+    fleet
+        Told of each change.
+    """
+
+    def __init__(self, given: Energy, world: World, fleet: Traffic) -> None:
+        self._empty_kg, self._kg_per_space = given.pod_kg, given.goods_kg_per_space
+        self._used = world.inventory.used
+        self._fleet = fleet
+
+    def all_kg(self) -> list[float]:
+        """Mass of every pod, shape (P,)."""
+        masses: list[float] = (self._empty_kg + self._kg_per_space * self._used).tolist()
+        return masses
+
+    def unit_picked(
+        self,
+        time_s: float,
+        order: Order,
+        sku: int,
+        pod: int,
+        robot: int,
+        station: int,
+        late_bound: bool,
+    ) -> None:
+        """A pod is lighter by a unit."""
+        self._weigh(pod)
+
+    def bundle_stored(self, bundle: Bundle, robot: int) -> None:
+        """A pod is heavier by a bundle."""
+        self._weigh(bundle.pod)
+
+    def _weigh(self, pod: int) -> None:
+        self._fleet.set_pod_mass(pod, self._empty_kg + self._kg_per_space * float(self._used[pod]))
