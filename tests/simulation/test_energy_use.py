@@ -45,7 +45,8 @@ def test_orders_share_what_their_visits_cost(run):
     ever = run.recorder.energy.final["ever_used_j"].sum() / 3600
     assert 0.5 * ever < drawn <= ever  # replenishment has the rest
     orders = run.table("orders")
-    assert (orders["energy_wh"][orders["completed_s"].notna()] > 0).all()
+    done = orders[orders["completed_s"] < run.end_s - 60]  # visits end, and are shared, a bit later
+    assert (done["energy_wh"] > 0).all()
 
 
 def test_pods_weigh_what_is_on_them():
