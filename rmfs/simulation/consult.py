@@ -118,14 +118,14 @@ class OutsideConsult(PhaseConsult):
         return self._asked(question, lambda: super(OutsideConsult, self).place_for(robot))
 
     def may_move(self) -> bool:
-        """Say that it may: who decides outside may have one."""
-        return True
+        """Whether repositioning may: who decides outside may have one."""
+        return Problem.REPOSITIONING in self._outside.problems or super().may_move()
 
     def move_for(self, robot: Robot) -> Move | None:
         """Ask for a pod to move, unless repositioning would not answer now."""
         rule: Repositioning[Any] = self._controllers.consulted(Problem.REPOSITIONING)
         question = Question(Problem.REPOSITIONING, "move", robot.index)
-        if self._outside.is_new and not rule.is_ready(robot):
+        if not self._outside.knows(question) and not rule.is_ready(robot):
             return None
         move: Move | None = self._outside.answer_to(
             question, lambda: super(OutsideConsult, self).move_for(robot)

@@ -163,6 +163,7 @@ class DecisionPhase:
             self.do_outside()
             raise Awaits(Question(Problem.TA, "turn"))
         self._visits.give()
+        outside.taken = 0  # all that was answered in this attempt is asked again, in its order
         self._start_prepared()
         outside.drop_taken()
         rule = self._controllers[Problem.TA]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import random
 from functools import cache
 from typing import Any
 
@@ -187,6 +188,25 @@ def test_every_candidate_is_possible(problem: str) -> None:
         else:
             decision.decline()
         chosen += 1
+    assert run.ended
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_rule_that_asks_about_several_robots_gets_all_answers(seed: int) -> None:
+    """Also if some are none, and the rule goes through its robots again after each of them."""
+    run = rmfs.Simulation(
+        "small", "small", seed=5, set={"scenario.duration_s": 240}, outside=["pps"]
+    )
+    draw, asked = random.Random(seed), 0
+    while (decision := run.step()) is not None:
+        candidates = decision.candidates
+        row = draw.randrange(len(candidates) + 1) if len(candidates) else 0
+        if row < len(candidates):
+            decision.answer(candidates[row])
+        else:
+            decision.decline()
+        asked += 1
+        assert asked < 200
     assert run.ended
 
 

@@ -1,0 +1,167 @@
+"""Candidates as numbers for policies: a row per answer, scaled, and the best of them first.
+
+`rmfs.control.candidates` lists what could be answered, in seconds, units and metres. Here the
+columns that say how good an answer is (no names of robots, pods or places) are divided by a scale,
+so that 1 is a usual value, and cut off at `LIMIT`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from rmfs.control.candidates import MEANINGS
+from rmfs.control.problems import Problem
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.candidates import Candidates
+    from rmfs.control.view import View
+
+LIMIT = 10.0
+"""No feature is greater, or less than the negative of it."""
+
+KINDS: dict[Problem, tuple[str, ...]] = {
+    Problem.POA: ("poa",),
+    Problem.ROA: ("roa",),
+    Problem.RPS: ("rps",),
+    Problem.SA: ("sa",),
+    Problem.MM: ("mm",),
+    Problem.TA: ("ta",),
+    Problem.PPS: ("pick pod", "replenishment pod", "next station"),
+    Problem.PSA: ("place",),
+    Problem.REPOSITIONING: ("move",),
+}
+"""The kinds of question of each problem; a problem decided in turns has one of its own name."""
+
+COLUMNS: dict[str, tuple[str, ...]] = {
+    "poa": (
+        *("lines", "units", "inbound_units", "in_stock", "age_s", "due_in_s", "free_slots"),
+        "orders_at_station",
+    ),
+    "roa": ("space", "free_space", "bundles", "age_s"),
+    "rps": ("space", "free_space"),
+    "sa": ("active", "robots"),
+    "mm": (),
+    "ta": ("work", "store", "move", "rest", "away_s", "units", "robots"),
+    "pick pod": ("units", "orders", "reach_s", "bring_s"),
+    "replenishment pod": ("bundles", "reach_s", "bring_s"),
+    "next station": ("away_s", "units", "robots"),
+    "place": ("away_s", "back_s"),
+    "move": ("distance_m", "reach_s"),
+}
+"""The features of each kind of question, by the names of columns of candidates."""
+
+_KIND_OF_TASK = ("work", "store", "move", "rest")
+
+SCALES: dict[str, float] = {
+    "lines": 5.0,
+    "units": 10.0,
+    "inbound_units": 5.0,
+    "in_stock": 1.0,
+    "age_s": 1800.0,
+    "due_in_s": 1800.0,
+    "free_slots": 5.0,
+    "orders_at_station": 10.0,
+    "space": 20.0,
+    "free_space": 100.0,
+    "bundles": 5.0,
+    "active": 1.0,
+    "robots": 5.0,
+    "work": 1.0,
+    "store": 1.0,
+    "move": 1.0,
+    "rest": 1.0,
+    "away_s": 30.0,
+    "back_s": 30.0,
+    "reach_s": 30.0,
+    "bring_s": 30.0,
+    "orders": 3.0,
+    "distance_m": 30.0,
+}
+"""What each feature is divided by, in the unit of its column."""
+
+OWN_MEANINGS: dict[str, tuple[str, str]] = {
+    "orders_at_station": ("orders", "orders open at the station"),
+    "work": ("", "1 if the robot would work for the station"),
+    "store": ("", "1 if it would store its pod"),
+    "move": ("", "1 if it would move an idle pod"),
+    "rest": ("", "1 if it would rest"),
+}
+"""Unit and meaning of features that are no columns of candidates."""
+
+RANKINGS: dict[str, dict[str, float]] = {
+    "poa": {"in_stock": 1000.0, "inbound_units": 30.0, "age_s": 0.01, "due_in_s": -0.01},
+    "roa": {"age_s": 1.0, "bundles": -1.0},
+    "rps": {"free_space": 1.0},
+    "sa": {"active": -1.0},
+    "mm": {},
+    "ta": {"work": 1000.0, "store": 500.0, "rest": -1000.0, "away_s": -1.0},
+    "pick pod": {"orders": 60.0, "units": 15.0, "reach_s": -1.0, "bring_s": -1.0},
+    "replenishment pod": {"bundles": 15.0, "reach_s": -1.0, "bring_s": -1.0},
+    "next station": {"units": 5.0, "away_s": -1.0},
+    "place": {"away_s": -1.0, "back_s": -1.0},
+    "move": {"distance_m": -1.0, "reach_s": -1.0},
+}
+"""By which weighted sum of their columns (not scaled) the k best candidates are found."""
+
+
+class Feature(NamedTuple):
+    """What one number of a candidate is: the column divided by its scale."""
+
+    name: str
+    unit: str
+    scale: float
+    meaning: str
+
+
+def features_of(kinds: Iterable[str]) -> tuple[Feature, ...]:
+    """Return the features of candidates of some kinds of question, each once."""
+    names = dict.fromkeys(name for kind in kinds for name in COLUMNS[kind])
+    told = {**{name: tuple(one) for name, one in MEANINGS.items()}, **OWN_MEANINGS}
+    return tuple(Feature(name, told[name][0], SCALES[name], told[name][1]) for name in names)
+
+
+def numbers(candidates: Candidates, kind: str, view: View) -> dict[str, NDArray[np.float64]]:
+    """Return the columns of candidates that are features, not scaled, each of shape (C,)."""
+    columns = dict(candidates.columns)
+    if kind == "ta":
+        task = columns["kind"]
+        columns |= {name: task == number for number, name in enumerate(_KIND_OF_TASK)}
+    elif kind == "poa":
+        orders = np.array([len(station.orders) for station in view.pick_stations], np.float64)
+        columns["orders_at_station"] = orders[columns["station"]]
+    return {name: np.asarray(columns[name], np.float64) for name in COLUMNS[kind]}
+
+
+def matrix(columns: Mapping[str, NDArray[np.float64]], names: Sequence[str]) -> NDArray[np.float64]:
+    """Return the scaled features of C candidates, shape (C, F); zero where there is no column."""
+    count = len(next(iter(columns.values()))) if columns else 0
+    found = np.zeros((count, len(names)))
+    for place, name in enumerate(names):
+        if name in columns:
+            found[:, place] = columns[name] / SCALES[name]
+    return np.clip(np.nan_to_num(found, posinf=LIMIT, neginf=-LIMIT), -LIMIT, LIMIT)
+
+
+def best_rows(
+    columns: Mapping[str, NDArray[np.float64]], weights: Mapping[str, float], k: int
+) -> NDArray[np.intp]:
+    """Return the rows of the k best candidates by a weighted sum, the best first.
+
+    Of equals the earlier row comes first.
+    """
+    count = len(next(iter(columns.values()))) if columns else 0
+    score = np.zeros(count)
+    for name, weight in weights.items():
+        score -= weight * np.nan_to_num(columns[name], posinf=1e9, neginf=-1e9)
+    if count > 4 * k:
+        # the k-th best score bounds those that are sorted; equals of it are kept
+        bound = np.partition(score, k - 1)[k - 1]
+        few = np.flatnonzero(score <= bound)
+        return few[np.argsort(score[few], kind="stable")][:k]
+    return np.argsort(score, kind="stable")[:k]

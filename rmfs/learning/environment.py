@@ -1,0 +1,295 @@
+"""`rmfs/Decision-v0`: decisions of a warehouse as a Gymnasium environment."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+
+from rmfs.control.features import LIMIT
+from rmfs.control.problems import Problem
+from rmfs.errors import InputError
+from rmfs.learning.episode import Episodes
+from rmfs.learning.observing import Observing, Options, is_same
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.settings import ControllerSettings
+    from rmfs.layout.model import Layout
+    from rmfs.learning.episode import Episode
+    from rmfs.learning.rewards import Wanted
+    from rmfs.scenario import Scenario
+
+Observation = dict[str, "NDArray[Any]"]
+
+LARGEST_SEED = 2**31 - 1
+
+
+class DecisionEnv(gymnasium.Env[Any, np.int64]):
+    """One episode is one run; one step is one decision of the chosen problems.
+
+    Actions: 0 to k - 1 choose the k best candidates in the order of their ranking; k declines (it
+    ends a turn, or says that there is nothing to choose); with `rule`, k + 1 does what the rule
+    does that is installed for the problem. Questions with one possible action are not asked. An
+    action that is not possible counts as declining, and `info["invalid"]` says so.
+
+    Observations are a dictionary: `global`, shape (G,), `candidates`, shape (k, F), and
+    `action_mask`; or, flat, one vector of the first two after each other. What the numbers are is
+    told by `observing.global_features` and `observing.features`.
+
+    An episode ends with the run: the warehouse would go on, so it is `truncated`, and
+    `info["footprint"]` has what was measured. Time passes between decisions, more or less:
+    `info["elapsed_s"]` says how much passed, and rewards are amounts of that time.
+
+    Parameters
+    ----------
+    layout, scenario, controllers, set
+        As for `rmfs.Simulation`. The controllers decide all other problems.
+    problems
+        What the agent decides, such as `["ta", "pps"]`.
+    candidates
+        How many are offered (k).
+    rankings
+        Weights by kind of question and column, by which the best candidates are found; in place of
+        those of `rmfs.control.features.RANKINGS`.
+    reward
+        A name, weights by name, or a class of one's own (`rmfs.learning.rewards`).
+    observation
+        `dict` or `flat`.
+    rule
+        Whether the rule installed is one of the actions. A rule takes for granted that what it says
+        is done: follow it throughout, or take it as one more piece of advice.
+    footprint
+        Whether `info` has the footprint at the end; it takes some milliseconds.
+    render_mode
+        `rgb_array` or nothing.
+
+    Raises
+    ------
+    InputError
+        If something given is wrong; names what and says what would be valid.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012
+
+    def __init__(
+        self,
+        layout: str | Path | Layout = "small",
+        scenario: str | Path | Scenario = "small",
+        controllers: str | Path | ControllerSettings = "default",
+        *,
+        problems: Sequence[str] = ("pps",),
+        set: Mapping[str, Any] | None = None,
+        candidates: int = 8,
+        rankings: Mapping[str, Mapping[str, float]] | None = None,
+        reward: Wanted = "units",
+        observation: Literal["dict", "flat"] = "dict",
+        rule: bool = False,
+        footprint: bool = True,
+        render_mode: str | None = None,
+    ) -> None:
+        if observation not in ("dict", "flat"):
+            raise InputError(f"observation {observation}: valid: dict, flat")
+        self.observing = Observing(problems, candidates, rankings)
+        self.episodes = Episodes(
+            layout, scenario, controllers, problems=problems, reward=reward, set=set
+        )
+        self.render_mode = render_mode
+        self._flat = observation == "flat"
+        self._with_rule = rule
+        self._with_footprint = footprint
+        self._run: Episode | None = None
+        self._options: Options | None = None
+        self._advice: tuple[Any] | None = None
+        self._may_move = False
+        self.decline = candidates
+        self.actions = candidates + 1 + rule
+        self.action_space = spaces.Discrete(self.actions)
+        self.observation_space = self._space()
+
+    @property
+    def run(self) -> Episode:
+        """The run of the present episode.
+
+        Raises
+        ------
+        RuntimeError
+            Before the first `reset`.
+        """
+        if self._run is None:
+            raise RuntimeError("reset the environment first")
+        return self._run
+
+    @property
+    def options(self) -> Options | None:
+        """The question and its best candidates; None at the end of the run."""
+        return self._options
+
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Return which actions are possible, shape (actions,), as MaskablePPO wants them."""
+        mask = np.ones(self.actions, np.bool_)
+        mask[: self.decline + 1] = self._mask()
+        if self._options is None:
+            mask[self.decline + 1 :] = False
+        return mask
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """Begin a run: that of the seed, or of a seed drawn from the one given before."""
+        super().reset(seed=seed)
+        if seed is None:
+            seed = int(self.np_random.integers(LARGEST_SEED))
+        self._run = self.episodes.begin(seed)
+        moves = self._run.controller_set[Problem.REPOSITIONING]
+        self._may_move = not moves.never or "repositioning" in self._run.phase.outside.problems
+        begun_s = self._run.now_s
+        self._go_on()
+        self._run.reward.take()
+        return self._observation(), self._info(begun_s)
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Take a decision, and simulate up to the next one."""
+        run, options = self.run, self._options
+        if options is None:
+            raise RuntimeError("the run has ended: reset the environment")
+        before_s = run.now_s
+        invalid = not self._take(options, int(action))
+        self._go_on()
+        info = self._info(before_s)
+        if invalid:
+            info["invalid"] = True
+        return self._observation(), run.reward.take(), False, self._options is None, info
+
+    def render(self) -> Any:
+        """Draw the warehouse as it is, shape (height, width, 3)."""
+        if self.render_mode != "rgb_array":
+            return None
+        from rmfs.learning.rendering import picture
+
+        return picture(self.run)
+
+    def advised(self) -> int:
+        """Return the action that does what the rule installed says (only with `rule`).
+
+        It is the candidate the rule would choose if that is among the best; else the action of the
+        rule itself.
+        """
+        options = self._options
+        if options is None or not self._with_rule:
+            raise RuntimeError("there is no rule to be asked: make the environment with rule=True")
+        advice = self._advised(options)
+        if advice is None:
+            return self.decline
+        for action, row in enumerate(options.rows):
+            if is_same(options.decision.candidates[int(row)], advice):
+                return action
+        return self.decline + 1
+
+    # --- inside ---------------------------------------------------------------------------------
+
+    def _space(self) -> spaces.Space[Any]:
+        observing = self.observing
+        count, features = observing.k, len(observing.features)
+        whole = len(observing.global_features)
+        if self._flat:
+            return spaces.Box(-LIMIT, LIMIT, (whole + count * features,), np.float32)
+        return spaces.Dict(
+            {
+                "global": spaces.Box(-LIMIT, LIMIT, (whole,), np.float32),
+                "candidates": spaces.Box(-LIMIT, LIMIT, (count, features), np.float32),
+                "action_mask": spaces.MultiBinary(self.actions),
+            }
+        )
+
+    def _go_on(self) -> None:
+        """Simulate to the next question that leaves a choice."""
+        run, observing = self.run, self.observing
+        while (decision := run.step()) is not None:
+            self._advice = None
+            options = observing.options(decision, may_move=self._may_move)
+            if not options.is_forced:
+                break
+            if self._with_rule and not len(options.rows):
+                # the rule may have something to say that is not among the candidates
+                self._advice = (decision.advice(),)
+                if self._advice[0] is not None:
+                    break
+            self._apply(options, None if options.mask[self.decline] else options.rows[0])
+        else:
+            self._options = None
+            return
+        self._options = options
+
+    def _take(self, options: Options, action: int) -> bool:
+        """Do what an action says; false if it is not possible."""
+        if action == self.decline + 1 and self._with_rule:
+            advice = self._advised(options)
+            if advice is None:
+                options.decision.decline()
+            else:
+                options.decision.answer(advice)
+            return True
+        possible = 0 <= action <= self.decline and bool(options.mask[action])
+        if possible and action < self.decline:
+            self._apply(options, options.rows[action])
+        elif options.mask[self.decline]:
+            self._apply(options, None)
+        else:
+            self._apply(options, options.rows[0])
+        return possible
+
+    def _apply(self, options: Options, row: np.intp | None) -> None:
+        decision = options.decision
+        if row is None:
+            decision.decline()
+        else:
+            decision.answer(decision.candidates[int(row)])
+
+    def _advised(self, options: Options) -> Any:
+        if self._advice is None:
+            self._advice = (options.decision.advice(),)
+        return self._advice[0]
+
+    def _mask(self) -> NDArray[np.int8]:
+        if self._options is not None:
+            return self._options.mask
+        mask = np.zeros(self.decline + 1, np.int8)
+        mask[self.decline] = 1
+        return mask
+
+    def _observation(self) -> Any:
+        observing, options = self.observing, self._options
+        decision = None if options is None else options.decision
+        whole = observing.globals_of(self.run.view, decision)
+        if options is None:
+            found = np.zeros((observing.k, len(observing.features)), np.float32)
+        else:
+            found = options.features
+        if self._flat:
+            return np.concatenate([whole, found.ravel()])
+        return {
+            "global": whole,
+            "candidates": found,
+            "action_mask": self.action_masks().astype(np.int8),
+        }
+
+    def _info(self, since_s: float) -> dict[str, Any]:
+        run, options = self.run, self._options
+        info: dict[str, Any] = {
+            "action_mask": self.action_masks(),
+            "elapsed_s": run.now_s - since_s,
+            "now_s": run.now_s,
+        }
+        if options is not None:
+            info["problem"] = str(options.decision.problem)
+            info["kind"] = options.decision.kind
+        elif self._with_footprint:
+            info["footprint"] = run.result().footprint
+        return info

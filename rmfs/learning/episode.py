@@ -1,0 +1,94 @@
+"""Episodes: simulations with a reward, made quickly one after the other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs import layout as layouts
+from rmfs.learning.rewards import Reward, observers_of, reward_of
+from rmfs.simulation.inputs import as_overrides, load_inputs, name_of
+from rmfs.simulation.run import Simulation
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from rmfs.control.settings import ControllerSettings
+    from rmfs.layout.model import Layout
+    from rmfs.learning.rewards import Wanted
+    from rmfs.scenario import Scenario
+
+
+class Episode(Simulation):
+    """A simulation that knows its reward, also when it is copied.
+
+    Parameters
+    ----------
+    reward
+        What observes the run and says what its decisions are worth.
+    arguments
+        As for `rmfs.Simulation`.
+    """
+
+    def __init__(self, *arguments: Any, reward: Reward, **named: Any) -> None:
+        self.reward = reward
+        super().__init__(*arguments, observers=observers_of(reward), **named)
+
+
+class Episodes:
+    """Makes episodes of one warehouse: files are read, and the layout is checked, once.
+
+    A seed that comes again gives a copy of the run as it was before its first event.
+
+    Parameters
+    ----------
+    layout, scenario, controllers, set
+        As for `rmfs.Simulation`.
+    problems
+        Decided outside.
+    reward
+        See `rmfs.learning.rewards.reward_of`.
+    """
+
+    KEPT = 8
+    """Runs that are kept as they were before their first event."""
+
+    def __init__(
+        self,
+        layout: str | Path | Layout,
+        scenario: str | Path | Scenario,
+        controllers: str | Path | ControllerSettings,
+        *,
+        problems: Sequence[str],
+        reward: Wanted,
+        set: Mapping[str, Any] | None = None,
+    ) -> None:
+        inputs = load_inputs(layout, scenario, controllers, as_overrides(set or {}))
+        self._names = name_of(layout), name_of(scenario), name_of(controllers)
+        layouts.refuse(inputs.layout, self._names[0], allow_not_well_formed=False)
+        self.layout = inputs.layout
+        self._inputs = inputs
+        self._problems = tuple(problems)
+        self._reward = reward
+        self._kept: dict[int, Episode] = {}
+        reward_of(reward)  # what is wrong is said now
+
+    def begin(self, seed: int) -> Episode:
+        """Return a run that is to begin."""
+        if seed in self._kept:
+            return self._kept[seed].fork()
+        inputs = self._inputs
+        episode = Episode(
+            inputs.layout,
+            inputs.scenario,
+            inputs.controllers,
+            seed=seed,
+            outside=self._problems,
+            allow_not_well_formed=True,  # it has been checked
+            reward=reward_of(self._reward),
+        )
+        episode.names, episode.inputs = self._names, inputs
+        if len(self._kept) == self.KEPT:
+            del self._kept[next(iter(self._kept))]
+        self._kept[seed] = episode
+        return episode.fork()

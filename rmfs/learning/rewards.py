@@ -1,0 +1,180 @@
+"""Rewards: what has come together since the last decision.
+
+A reward observes the run as a measure does (`rmfs.observer.Observer`) and is copied with it. Time
+passes between decisions, and not always the same: rewards are amounts (units, orders, metres), and
+`info["elapsed_s"]` says how long they took.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.errors import InputError
+from rmfs.observer import Observer
+from rmfs.references import is_reference, resolve
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rmfs.observer import Observed
+    from rmfs.world.orders import Order
+
+    Wanted = str | type["Reward"] | Mapping[str, float]
+    """A name, a class, how a class is named, or weights by name."""
+
+
+class Reward(Observer):
+    """An amount that grows as the run goes on.
+
+    A user's reward overrides the callbacks it needs and adds to `self.amount`. It holds plain data:
+    it is copied and saved with the run. The class is made without arguments.
+
+    Attributes
+    ----------
+    amount
+        What has come together since `take` was called last.
+    """
+
+    amount: float = 0.0
+
+    def take(self) -> float:
+        """Return the amount since the last call, and begin anew."""
+        amount, self.amount = self.amount, 0.0
+        return float(amount)
+
+
+class Units(Reward):
+    """1 for every unit picked."""
+
+    def unit_picked(
+        self,
+        time_s: float,
+        order: Order,
+        sku: int,
+        pod: int,
+        robot: int,
+        station: int,
+        late_bound: bool,
+    ) -> None:
+        """Count it."""
+        self.amount += 1.0
+
+
+class Orders(Reward):
+    """1 for every order completed."""
+
+    def order_completed(self, order: Order) -> None:
+        """Count it."""
+        self.amount += 1.0
+
+
+class Lateness(Reward):
+    """Minus the seconds by which an order was late, when it is completed."""
+
+    def order_completed(self, order: Order) -> None:
+        """Count its seconds."""
+        self.amount -= max(0.0, order.completed_s - order.due_s)
+
+
+class LateOrders(Reward):
+    """-1 for every order completed after its due time."""
+
+    def order_completed(self, order: Order) -> None:
+        """Count it."""
+        self.amount -= order.completed_s > order.due_s
+
+
+class Turnover(Reward):
+    """Minus the seconds from arrival to completion, when an order is completed."""
+
+    def order_completed(self, order: Order) -> None:
+        """Count its seconds."""
+        self.amount -= order.completed_s - order.created_s
+
+
+class Distance(Reward):
+    """Minus the metres that all robots drove."""
+
+    def __init__(self) -> None:
+        self._known_m = 0.0
+
+    def run_started(self, run: Observed) -> None:
+        """Keep hold of what counts motion."""
+        self._traffic = run.traffic
+
+    def warmup_ended(self, time_s: float) -> None:
+        """The count begins anew."""
+        self._catch_up()
+        self._known_m = 0.0
+
+    def take(self) -> float:
+        """Return the metres since the last call."""
+        self._catch_up()
+        return super().take()
+
+    def _catch_up(self) -> None:
+        driven_m = float(self._traffic.motion()["distance_m"].sum())
+        self.amount -= driven_m - self._known_m
+        self._known_m = driven_m
+
+
+class Weighted(Reward):
+    """A weighted sum of rewards.
+
+    Parameters
+    ----------
+    parts
+        Rewards, which observe the run themselves, and their weights.
+    """
+
+    def __init__(self, parts: list[tuple[Reward, float]]) -> None:
+        self.parts = parts
+
+    def take(self) -> float:
+        """Add up what the parts have."""
+        return sum(weight * part.take() for part, weight in self.parts)
+
+
+REWARDS: dict[str, type[Reward]] = {
+    "units": Units,
+    "orders": Orders,
+    "lateness": Lateness,
+    "late-orders": LateOrders,
+    "turnover": Turnover,
+    "distance": Distance,
+}
+"""Rewards by name."""
+
+
+def reward_of(wanted: Wanted) -> Reward:
+    """Make a reward.
+
+    Parameters
+    ----------
+    wanted
+        A name of `REWARDS`; a class derived from `Reward`, or how it is named
+        (`path/to/file.py:Class`); or weights by name, such as `{"units": 1, "distance": 0.01}`.
+
+    Raises
+    ------
+    InputError
+        If there is no such reward.
+    """
+    if isinstance(wanted, (str, type)):
+        return _one(wanted)
+    if not wanted:
+        raise InputError("reward: names no reward")
+    return Weighted([(_one(name), float(weight)) for name, weight in wanted.items()])
+
+
+def observers_of(reward: Reward) -> list[Observer]:
+    """Return what has to observe the run."""
+    return [part for part, _ in reward.parts] if isinstance(reward, Weighted) else [reward]
+
+
+def _one(wanted: str | type[Reward]) -> Reward:
+    if isinstance(wanted, str) and not is_reference(wanted):
+        if wanted not in REWARDS:
+            raise InputError(f"reward {wanted}: valid: {', '.join(REWARDS)}, or path.py:Class")
+        return REWARDS[wanted]()
+    return resolve(wanted, Reward, "reward")()

@@ -1,0 +1,6 @@
+"""Skips these tests where the extra `learning` is not installed."""
+
+import pytest
+
+pytest.importorskip("gymnasium")
+pytest.importorskip("pettingzoo")
