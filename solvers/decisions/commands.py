@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -18,25 +19,15 @@ Files = Annotated[
     list[Path],
     typer.Argument(metavar="FILE...", help="Decision files (rmfs-decision/1), or folders of them."),
 ]
-Work = Annotated[
-    float | None,
-    typer.Option(
-        min=0.0,
-        help="Limit of work: deterministic seconds; nodes of HiGHS; steps of a local search.",
-        show_default=False,
-    ),
-]
+WORK = "Limit of work: deterministic seconds; nodes of HiGHS; steps of a local search."
 Seed = Annotated[int, typer.Option(min=0, help="Seed of the method.")]
 Method = Annotated[
     str,
     typer.Option(
         help="Who answers: a method of the family, or `asked`: as in the run. [default: as in the "
-        "run, if a controller asked and no limit, seed or start is given]",
+        "run, if a controller asked and no limit or seed is given]",
         show_default=False,
     ),
-]
-Out = Annotated[
-    Path, typer.Option(help="Folder of what is written; files are named by their question.")
 ]
 
 
@@ -44,17 +35,36 @@ Out = Annotated[
 def solve(
     files: Files,
     method: Method = "",
-    work: Work = None,
+    work: Annotated[float | None, typer.Option(min=0.0, help=WORK, show_default=False)] = None,
     seed: Seed = 0,
-    out: Out = Path("results/solutions"),
+    with_: Annotated[
+        str,
+        typer.Option(
+            "--with",
+            metavar="SOLVER",
+            help="Instead: highs, scip, gurobi, cplex or cbc, given the exact programme as MPS; or "
+            "a command with {program}, {solution} and {seconds}.",
+            show_default=False,
+        ),
+    ] = "",
+    limit: Annotated[float, typer.Option(min=0.1, help="With --with: seconds it gets.")] = 60.0,
+    out: Annotated[
+        Path, typer.Option(help="Folder of the solution files, named by their questions.")
+    ] = Path("results/solutions"),
 ) -> None:
     """Answer questions; write a solution file for each."""
+    from rmfs.solvers.decisions.exact.external import solve_externally
     from rmfs.solvers.decisions.files import write_solution
     from rmfs.solvers.decisions.solving import solve as answered
 
+    if with_ and (method or work is not None):
+        raise InputError("--with: not with --method or --work, which choose methods of our own")
     for path in expanded(files):
         decision = _read(path)
-        found = answered(decision, method, work=work, seed=seed, where=str(path))
+        if with_:
+            found = solve_externally(decision, with_, limit, str(path))
+        else:
+            found = answered(decision, method, work=work, seed=seed, where=str(path))
         target = out / f"{decision.name}.solution.json"
         write_solution(decision, found, target)
         typer.echo(_line(decision, found))
@@ -79,6 +89,97 @@ def check(
     except WrongError as error:
         raise InputError(f"{solution}: {error}") from None
     typer.echo(f"{decision.name}: allowed, value {value!r}")
+
+
+@app.command()
+def bound(
+    files: Files,
+    work: Annotated[float, typer.Option(min=0.0, help=WORK)] = 1.0,
+) -> None:
+    """Prove bounds: by Lagrangian prices, the relaxation and search; the last line counts."""
+    from rmfs.solvers.decisions.bounding import bounds
+
+    for path in expanded(files):
+        decision = _read(path)
+        found = list(bounds(decision, work, str(path)))
+        for by, value in found:
+            typer.echo(f"{decision.name}: {by}: {value!r}")
+        least = max(
+            (one for _, one in found), key=lambda one: one * decision.sign, default=math.nan
+        )
+        typer.echo(f"{decision.name}: bound {least!r}")
+
+
+@app.command()
+def convert(
+    files: Files,
+    to: Annotated[Literal["mps", "lp"], typer.Option(help="Format of the programme.")] = "mps",
+    solution: Annotated[
+        Path | None,
+        typer.Option(
+            help="The other way: a solver's solution file of the one question named, made a "
+            "solution file of ours.",
+            show_default=False,
+        ),
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder of what is written.")] = Path("results/exact"),
+) -> None:
+    """Write the exact programme for any MIP solver, and what its columns decide; or read back."""
+    from rmfs.solvers.decisions.exact import exact
+    from rmfs.solvers.decisions.exact.reading import answer_of
+    from rmfs.solvers.decisions.exact.writing import write_map, write_program
+    from rmfs.solvers.decisions.files import write_solution
+
+    paths = expanded(files)
+    if solution is not None and len(paths) != 1:
+        raise InputError("--solution: belongs to one question")
+    for path in paths:
+        decision = _read(path)
+        stated = exact(decision, str(path))
+        if solution is not None:
+            found = answer_of(decision, stated, solution, {"file": solution.name})
+            target = out / f"{decision.name}.solution.json"
+            write_solution(decision, found, target)
+            typer.echo(f"{decision.name}: allowed, value {found.objective!r}")
+            typer.echo(target)
+            continue
+        target = out / f"{decision.name}.{to}"
+        write_program(stated, target)
+        write_map(decision, stated, out / f"{decision.name}.map.json")
+        program = stated.program
+        typer.echo(f"{target}: {program.columns} columns, {program.rows} rows")
+
+
+@app.command()
+def profile(
+    files: Files,
+    method: Annotated[
+        list[str] | None,
+        typer.Option(help="Who solves; may be repeated. [default: all methods of the family]"),
+    ] = None,
+    work: Annotated[float, typer.Option(min=0.001, help=f"Largest limit. {WORK}")] = 1.0,
+    seeds: Annotated[int, typer.Option(min=1, help="Seeds of each method, from 0.")] = 1,
+    out: Annotated[Path, typer.Option(help="Table (CSV).")] = Path("results/profile.csv"),
+) -> None:
+    """Time methods under limits that double; write values, gaps and times."""
+    import pandas as pd
+
+    from rmfs.files import write_text
+    from rmfs.solvers.decisions.profiling import points
+    from rmfs.solvers.decisions.ranking import integrals, with_gaps
+    from rmfs.solvers.decisions.solving import methods
+
+    rows = []
+    for path in expanded(files):
+        decision = _read(path)
+        for one in method or methods(decision.family):
+            rows += list(points(decision, one, work, range(seeds)))
+    table = with_gaps(pd.DataFrame(rows))
+    write_text(out, table.to_csv(index=False))
+    told = integrals(table).groupby(["family", "method"])[["over_wall", "over_work"]].mean()
+    typer.echo("mean primal integrals: 0 is perfect, 1 is nothing found")
+    typer.echo(told.round(4).to_string())
+    typer.echo(out)
 
 
 def expanded(files: list[Path]) -> list[Path]:
@@ -112,4 +213,4 @@ def _line(decision: Decision, found: Found) -> str:
     by = found.by
     told = f"{decision.name}: {by.get('backend', '?')}, {by.get('status', '?')}"
     told += f", value {found.objective:.10g}, bound {found.bound:.10g}"
-    return f"{told}, work {by.get('work', 0):g}, {by.get('total_s', 0):.3f} s"
+    return f"{told}, work {by.get('work', math.nan):g}, {by.get('total_s', 0):.3f} s"

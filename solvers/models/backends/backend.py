@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rmfs.solvers.models.backends import highs
 from rmfs.solvers.models.backends.outcome import Outcome
 from rmfs.solvers.models.checks import require
+from rmfs.solvers.models.names import Names
 from rmfs.solvers.models.program import LinearProgram
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
@@ -47,6 +48,8 @@ class Formulation(Generic[V]):
         Reads values off the columns.
     objective, violations
         The model's own.
+    names
+        Says what each column is called, and what it decides: see `Names`.
     """
 
     program: LinearProgram
@@ -54,6 +57,7 @@ class Formulation(Generic[V]):
     decode: Callable[[NDArray[np.float64]], V]
     objective: Callable[[V], float]
     violations: Callable[[V], list[str]]
+    names: Callable[[Names], None] = lambda names: None
 
 
 def solve_by(

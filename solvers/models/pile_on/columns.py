@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rmfs.solvers.models.names import Names
 from rmfs.solvers.models.pile_on.candidates import Candidates
 from rmfs.solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
 from rmfs.solvers.models.pile_on.values import Assignment, complete, uncovered
@@ -149,6 +150,31 @@ def decode(data: PileOn, columns: Columns, x: Floats) -> Assignment:
         pod_robot=_spread(data.pods, columns.fetched[going], columns.robot[going]),
         prospect=_spread(data.orders, *waiting),
     )
+
+
+def name_columns(data: PileOn, columns: Columns, names: Names) -> None:
+    """Name the columns.
+
+    Parameters
+    ----------
+    data
+        The input.
+    columns
+        The columns of the program.
+    names
+        What to fill.
+    """
+    c = columns
+    if c.cover.size and data.variant is not Variant.WHOLE:
+        names.block("cover", c.cover, "line_station[{l}] = {s}", l=c.line, s=c.at[c.place])
+    names.block("call", c.call, "pod_station[{p}] = {s}", p=c.pod, s=c.station)
+    names.block("slot", c.slot, "slot[{o}, {s}] = 1", o=c.order, s=c.at)
+    if c.prospect.size:
+        names.block("prospect", c.prospect, "prospect[{o}] = {s}", o=c.order, s=c.at)
+    names.block("complete", c.complete, o=np.arange(c.complete.size))
+    names.block("started", c.started, o=np.arange(c.started.size))
+    names.block("short", c.short, s=c.short_station, k=c.short_sku)
+    names.block("fetch", c.fetch, "pod_robot[{p}] = {r}", r=c.robot, p=c.fetched)
 
 
 def encode(data: PileOn, columns: Columns, values: Assignment, size: int) -> Floats:

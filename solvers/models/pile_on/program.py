@@ -34,12 +34,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from rmfs.solvers.models.backends.backend import Backend, Formulation, solve_by
 from rmfs.solvers.models.pile_on.candidates import Candidates, everything
-from rmfs.solvers.models.pile_on.columns import Columns, add_columns, decode, encode
+from rmfs.solvers.models.pile_on.columns import Columns, add_columns, decode, encode, name_columns
 from rmfs.solvers.models.pile_on.data import Integers, PileOn
 from rmfs.solvers.models.pile_on.values import Assignment, nothing, objective, violations
 from rmfs.solvers.models.pile_on.variant import Variant
@@ -81,6 +82,7 @@ def formulate(
         lambda x: decode(data, columns, x),
         lambda values: objective(data, values),
         lambda values: violations(data, values),
+        partial(name_columns, data, columns),
     )
 
 

@@ -13,10 +13,11 @@ all or none; an order closes no sooner than its last line; and what is kept fits
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rmfs.solvers.models.names import Names
 from rmfs.solvers.models.planning.values import NONE, Plan
 from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
 
@@ -208,6 +209,20 @@ class Programme:
             for order, lines in enumerate(self._lines_of)
             if not lines and data.order_until[order] >= 0
         )
+
+    def name(self, names: Names) -> None:
+        """Name the columns."""
+        blocks: tuple[tuple[str, str, str, dict[Any, int]], ...] = (
+            ("visit", "svp", "visit {v} of station {s} by pod {p}", self._y),
+            ("serve", "lsv", "line_visit[{l}] = {v}", self._z),
+            ("place", "os", "order_station[{o}] = {s}", self._x),
+            ("close", "osv", "", self._c),
+            ("keep", "osv", "", self._h),
+        )
+        for name, letters, means, columns in blocks:
+            indices = np.array(list(columns), np.int64).reshape(-1, len(letters)).T
+            of = dict(zip(letters, indices, strict=True))
+            names.block(name, list(columns.values()), means, **of)
 
     # --- to a plan and back ---------------------------------------------------------------------
 

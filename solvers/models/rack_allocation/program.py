@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rmfs.solvers.models.backends.backend import Formulation
+from rmfs.solvers.models.names import Names
 from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
 from rmfs.solvers.models.rack_allocation.data import (
     NONE,
@@ -51,6 +52,13 @@ def formulate(data: RackAllocation) -> Formulation[Allocation]:
             order_station[orders], pod_station[pods] = at[: len(orders)], at[len(orders) :]
         return Allocation(order_station, pod_station)
 
+    def name(names: Names) -> None:
+        x, y = np.split(np.arange(len(names.name)), [len(orders) * stations])
+        at = np.arange(stations)
+        x, y = x.reshape(len(orders), stations), y.reshape(len(pods), stations)
+        names.block("order", x, "order_station[{o}] = {s}", o=orders[:, np.newaxis], s=at)
+        names.block("pod", y, "pod_station[{p}] = {s}", p=pods[:, np.newaxis], s=at)
+
     units, stock = _wanted(data, orders, pods)
     program = _program(units, stock, data.slots, _most_wanted(units, data.slots))
     return Formulation(
@@ -59,6 +67,7 @@ def formulate(data: RackAllocation) -> Formulation[Allocation]:
         decode,
         lambda allocation: objective(data, allocation),
         lambda allocation: violations(data, allocation),
+        name,
     )
 
 

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rmfs.solvers.models.backends.backend import Formulation
+from rmfs.solvers.models.names import Names
 from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
 from rmfs.solvers.models.replenishment.data import (
     LEFT,
@@ -179,4 +180,16 @@ def formulate(data: Replenishment, *, whole: bool) -> Formulation[Stocking]:
         lambda x: stocking_of(data, columns, x),
         lambda stocking: objective(data, stocking),
         lambda stocking: violations(data, stocking),
+        lambda names: _name(columns, names),
     )
+
+
+def _name(columns: Columns, names: Names) -> None:
+    pairs, options = len(columns.bundle), len(columns.brought)
+    x, y, w, left = np.split(
+        np.arange(len(names.name)), [pairs, pairs + options, pairs + 2 * options]
+    )
+    names.block("store", x, "pod[{b}] = {p}", b=columns.bundle, p=columns.pod)
+    names.block("bring", y, "station[{p}] = {s}", p=columns.brought, s=columns.station)
+    names.block("load", w, p=columns.brought, s=columns.station)
+    names.block("left", left, "pod[{b}] = -1", b=np.arange(len(left)))

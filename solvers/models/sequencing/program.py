@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rmfs.solvers.models.backends.backend import Formulation
+from rmfs.solvers.models.names import Names
 from rmfs.solvers.models.program import ProgramBuilder
 from rmfs.solvers.models.sequencing.data import (
     Flags,
@@ -81,6 +82,17 @@ class Columns:
         np.minimum.at(earliest, self.order, first)
         start = np.where(self.data.open, -1, np.maximum(start, earliest))
         return merged(VisitSequence(self.pods[visits[:used].argmax(axis=1)], start))
+
+    def name(self, names: Names) -> None:
+        """Name the columns."""
+        visits, orders = self.visit.shape[0], np.arange(self.data.orders)
+        time_, later = np.arange(visits)[:, None], np.arange(-1, visits)[:, None]
+        names.block("visit", self.visit, "pods[{t}] = {p}", t=time_, p=self.pods)
+        names.block("started", self.started, t=later + 1, o=orders)
+        names.block("finished", self.finished, t=later + 1, o=orders)
+        names.block("passing", self.passing, t=time_, o=orders)
+        names.block("room", self.room, t=time_[:, 0])
+        names.block("take", self.take, t=time_, o=self.order, k=self.sku)
 
     def encode(self, plan: VisitSequence) -> NDArray[np.float64]:
         """Make column values of a feasible plan of at most T visits."""
@@ -141,6 +153,7 @@ def formulate(data: Sequencing, visits: int, least: int) -> Formulation[VisitSeq
         columns.decode,
         lambda plan: objective(data, plan),
         lambda plan: violations(data, plan),
+        columns.name,
     )
 
 

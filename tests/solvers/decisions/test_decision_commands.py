@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,10 @@ import pytest
 from decision_samples import sample
 
 from rmfs.cli import main
+from rmfs.solvers.decisions.bounding import bounds
 from rmfs.solvers.decisions.files import write
 from rmfs.solvers.decisions.schema import SCHEMAS, described
+from rmfs.solvers.decisions.solving import solve
 
 
 @pytest.fixture
@@ -86,3 +89,92 @@ def test_a_wrong_solution_ends_in_one_line_and_code_2(
 def test_the_documented_fields_are_those_of_the_format(family: str) -> None:
     page = Path(__file__).parents[3] / "docs" / "decision-format.md"
     assert described(family) in page.read_text("utf-8")
+
+
+STAND_IN = """
+import sys
+import highspy
+program, solution = sys.argv[1:]
+solver = highspy.Highs()
+solver.setOptionValue("output_flag", False)
+solver.readModel(program)
+solver.run()
+values = solver.getSolution().col_value
+names = [solver.getColName(i)[1] for i in range(len(values))]
+with open(solution, "w") as file:
+    for name, value in zip(names, values):
+        print(name, value, file=file)
+"""
+"""A solver of somebody else: reads the MPS, writes names and values."""
+
+
+def test_a_solver_of_somebody_else_is_a_command(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("stand_in.py").write_text(STAND_IN)
+    script = Path("stand_in.py").resolve()
+    command = f"{sys.executable} {script} {{program}} {{solution}}"
+    assert main(["decisions", "solve", str(folder), "--with", command, "--out", "a"]) == 0
+    for question in folder.iterdir():
+        answer = f"a/{question.name.removesuffix('.json.gz')}.solution.json"
+        assert main(["decisions", "check", str(question), answer]) == 0
+        ours = json.loads(Path(answer).read_text())
+        assert main(["decisions", "solve", str(question), "--with", "highs", "--out", "b"]) == 0
+        theirs = json.loads(Path(answer.replace("a/", "b/")).read_text())
+        assert ours["objective"] == pytest.approx(theirs["objective"])
+
+
+FAILING = {
+    "nobody": ("cp-optimizer", "must be one of highs, scip, gurobi, cplex, cbc, or a command"),
+    "missing": ("no-such-solver {program} {solution}", "no-such-solver is not on the path"),
+    "failing": ("false {program} {solution}", "ended with code 1"),
+    "silent": ("true {program} {solution}", "left no solution"),
+    "wrong": ("cp {program} {solution}", "matching-"),
+    "quoted": ('solver "{program} {solution}', "No closing quotation"),
+}
+
+
+@pytest.mark.parametrize("kind", FAILING)
+def test_solvers_that_fail_are_told_in_one_line(
+    kind: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command, told = FAILING[kind]
+    (one, *_) = sorted(folder.glob("matching*"))
+    assert main(["decisions", "solve", str(one), "--with", command]) == 2
+    assert told in complaint(capsys)
+
+
+def test_programmes_are_written_and_solutions_read_back(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (one, *_) = sorted(folder.glob("matching*"))
+    assert main(["decisions", "convert", str(one), "--to", "lp", "--out", "e"]) == 0
+    stem = one.name.removesuffix(".json.gz")
+    assert Path(f"e/{stem}.lp").is_file()
+    assert Path(f"e/{stem}.map.json").is_file()
+    Path("x.sol").write_text("".join(f"leave_t{t} 1\n" for t in range(4)))
+    assert main(["decisions", "convert", str(one), "--solution", "x.sol", "--out", "e"]) == 0
+    assert main(["decisions", "check", str(one), f"e/{stem}.solution.json"]) == 0
+    assert main(["decisions", "convert", str(folder), "--solution", "x.sol"]) == 2
+    assert "--solution: belongs to one question" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("family", SCHEMAS)
+def test_bounds_are_below_what_is_found(family: str) -> None:
+    for seed in range(3):
+        question = sample(family, seed)
+        found = solve(question)
+        if found.values is None:
+            continue
+        proven = list(bounds(question, 0.1))
+        assert proven
+        slack = 1e-6 * max(1.0, abs(found.objective))
+        assert all((value - found.objective) * question.sign <= slack for _, value in proven)
+
+
+def test_bounds_and_profiles_are_printed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["decisions", "bound", str(folder), "--work", "0.1"]) == 0
+    assert "relaxation: " in capsys.readouterr().out
+    assert main(["decisions", "profile", str(folder), "--work", "0.004", "--out", "p.csv"]) == 0
+    assert "mean primal integrals" in capsys.readouterr().out
+    assert "question,family,method,seed" in Path("p.csv").read_text()

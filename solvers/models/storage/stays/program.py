@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rmfs.solvers.models.backends.backend import Formulation
+from rmfs.solvers.models.names import Names
 from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
 from rmfs.solvers.models.storage.stays.data import Stays, objective, violations
 
@@ -104,4 +105,15 @@ def formulate(data: Stays, *, whole: bool) -> Formulation[NDArray[np.int64]]:
         lambda x: zones_of(data, x),
         lambda zone: objective(data, zone),
         lambda zone: violations(data, zone),
+        lambda names: _name(data, names),
     )
+
+
+def _name(data: Stays, names: Names) -> None:
+    stays, zones = data.cost_s.shape
+    x, y = np.split(np.arange(len(names.name)), [stays * zones])
+    stay, zone = np.arange(stays)[:, np.newaxis], np.arange(zones)
+    names.block("stay", x.reshape(stays, zones), "zone[{n}] = {z}", n=stay, z=zone)
+    if y.size:
+        y = y.reshape(zones, -1)
+        names.block("present", y, z=zone[:, np.newaxis], t=np.arange(y.shape[1]))

@@ -1,0 +1,74 @@
+"""Proven bounds of a question, by several ways; the best counts."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from rmfs.solvers.decisions.exact import exact
+from rmfs.solvers.decisions.models import model_data
+from rmfs.solvers.decisions.solving import limits_of, methods, rule
+from rmfs.solvers.models import families, pile_on, planning
+from rmfs.solvers.models.backends import highs
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.solvers.decisions.files import Decision
+
+STEPS = 400
+"""Subgradient steps of Lagrangian bounds."""
+
+_SEARCH = {"pile_on": "cp_sat", "planning": "cp_sat"}
+"""Method whose own bound is used, where it is not the default one."""
+
+_LARGEST = 400_000
+"""Nonzeros of the largest programme whose relaxation is solved by the simplex method."""
+
+
+def bounds(decision: Decision, work: float, where: str = "") -> Iterator[tuple[str, float]]:
+    """Yield bounds with who proves them; those that say nothing are left out.
+
+    Parameters
+    ----------
+    decision
+        The question.
+    work
+        Limit of work of the exact search.
+    where
+        What the question is called in errors. Default: its name.
+    """
+    data, family = model_data(decision, where), decision.family
+    if family == "pile_on":
+        first = pile_on.solve(data, "greedy")
+        yield from _finite("prices", pile_on.bounded(data, first, STEPS).bound)
+    if family == "planning":
+        found = planning.solve(data, "greedy", bound_steps=STEPS)
+        yield from _finite("prices", found.bound)
+    stated = None if family in ("zones", "run_bound") else exact(decision, where)
+    if stated is not None and stated.program.nonzeros <= _LARGEST:
+        yield from _finite("relaxation", highs.relax(stated.program).bound * stated.factor)
+    method = _SEARCH.get(family, methods(family)[0])
+    given = families.family(family).solve
+    start = given(data, rule(family)).values if rule(family) else None
+    found = given(data, method, limits_of(method, work), start=start)
+    yield from _finite(method, found.bound)
+
+
+def best(decision: Decision, work: float, where: str = "") -> tuple[str, float]:
+    """Return the best bound and who proves it; nan and nobody if there is none.
+
+    Parameters
+    ----------
+    decision, work, where
+        As for `bounds`.
+    """
+    found = list(bounds(decision, work, where))
+    if not found:
+        return "", math.nan
+    return max(found, key=lambda one: one[1] * decision.sign)
+
+
+def _finite(name: str, bound: float) -> Iterator[tuple[str, float]]:
+    if math.isfinite(bound):
+        yield name, bound

@@ -1,0 +1,152 @@
+"""Other people's solvers as commands: a programme in, a solution file out.
+
+None is required. A solver is known by a name, if its command is on the path, or given as a command
+with `{program}`, `{solution}` and `{seconds}` in it, which is split like a shell's but run without
+one. What it finds counts only as far as `checking` accepts it.
+"""
+
+from __future__ import annotations
+
+import shlex
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import highspy  # type: ignore[import-untyped]
+
+from rmfs.errors import InputError
+from rmfs.solvers.decisions.exact.formulation import exact
+from rmfs.solvers.decisions.exact.reading import answer_of
+from rmfs.solvers.decisions.exact.writing import write_program
+from rmfs.solvers.decisions.files import Found
+
+if TYPE_CHECKING:
+    from rmfs.solvers.decisions.files import Decision
+
+HIGHS = "highs"
+"""HiGHS as it comes with rmfs, with its own settings but one thread."""
+
+COMMANDS = {
+    "scip": 'scip -q -c "read {program}" -c "set limits time {seconds}" -c optimize '
+    '-c "write solution {solution}" -c quit',
+    "gurobi": "gurobi_cl Threads=1 TimeLimit={seconds} ResultFile={solution} {program}",
+    "cplex": 'cplex -c "read {program}" "set threads 1" "set timelimit {seconds}" optimize '
+    '"write {solution}"',
+    "cbc": "cbc {program} seconds {seconds} solve solution {solution}",
+}
+"""Command of each known solver, as its manual has it."""
+
+_GRACE_S = 30.0
+"""So much longer than it may a command takes before it is ended: reading is not always counted."""
+
+
+def available() -> tuple[str, ...]:
+    """Return the names of the solvers that can be called here."""
+    there = (name for name, command in COMMANDS.items() if shutil.which(command.split()[0]))
+    return HIGHS, *there
+
+
+def solve_externally(decision: Decision, solver: str, seconds: float, where: str = "") -> Found:
+    """Let a solver answer a question by its exact programme.
+
+    Parameters
+    ----------
+    decision
+        The question.
+    solver
+        A name in `COMMANDS`, `highs`, or a command.
+    seconds
+        Wall time that it gets.
+    where
+        What the question is called in errors. Default: its name.
+
+    Returns
+    -------
+    The answer, without a bound: a solution file has none. `by` tells building and solving apart.
+
+    Raises
+    ------
+    InputError
+        If the solver is not there, fails, or leaves no allowed solution.
+    """
+    name = where or decision.name
+    command = COMMANDS.get(solver, solver)
+    if solver != HIGHS:
+        _require_command(solver, command)
+    began = perf_counter()
+    stated = exact(decision, name)
+    with tempfile.TemporaryDirectory(prefix="rmfs-") as folder:
+        program, solution = Path(folder) / "question.mps", Path(folder) / "answer.sol"
+        write_program(stated, program)
+        built_s = perf_counter() - began
+        if solver == HIGHS:
+            _highs(program, solution, seconds)
+        else:
+            _run(solver, command, program, solution, seconds)
+        if not solution.exists():
+            raise InputError(f"{name}: {solver} left no solution")
+        by: dict[str, object] = {
+            "method": f"mps:{solver}",
+            "backend": solver.split()[0],
+            "status": "feasible",
+            "seconds": seconds,
+            "build_s": built_s,
+            "wall_s": perf_counter() - began,
+        }
+        by["total_s"] = by["wall_s"]
+        try:
+            return answer_of(decision, stated, solution, by)
+        except InputError as error:
+            told = str(error).removeprefix(f"{solution}: ")
+            raise InputError(f"{name}: {solver}: {told}") from None
+
+
+def _require_command(solver: str, command: str) -> None:
+    try:
+        words = shlex.split(command)
+    except ValueError as error:
+        raise InputError(f"solver {solver!r}: {error}") from None
+    is_command = all(f"{{{part}}}" in command for part in ("program", "solution"))
+    if not is_command:
+        known = ", ".join((HIGHS, *COMMANDS))
+        raise InputError(
+            f"solver {solver!r}: must be one of {known}, or a command with {{program}}, "
+            "{solution} and {seconds}"
+        )
+    if shutil.which(words[0]) is None:
+        raise InputError(f"solver {solver!r}: {words[0]} is not on the path")
+
+
+def _run(solver: str, command: str, program: Path, solution: Path, seconds: float) -> None:
+    given = {"program": program, "solution": solution, "seconds": f"{seconds:g}"}
+    words = [word.format(**given) for word in shlex.split(command)]
+    try:
+        done = subprocess.run(
+            words,
+            cwd=program.parent,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=seconds + _GRACE_S,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return  # it may have left a solution
+    except OSError as error:
+        raise InputError(f"{solver}: cannot be run ({error.strerror})") from None
+    if done.returncode and not solution.exists():
+        last = (done.stderr or done.stdout).strip().splitlines()[-1:] or ["no message"]
+        raise InputError(f"{solver}: ended with code {done.returncode} ({last[0]})")
+
+
+def _highs(program: Path, solution: Path, seconds: float) -> None:
+    solver = highspy.Highs()
+    for option, value in (("output_flag", False), ("threads", 1), ("time_limit", seconds)):
+        solver.setOptionValue(option, value)
+    solver.readModel(str(program))
+    solver.run()
+    if solver.getInfo().primal_solution_status == highspy.SolutionStatus.kSolutionStatusFeasible:
+        solver.writeSolution(str(solution), 0)

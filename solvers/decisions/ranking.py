@@ -1,0 +1,134 @@
+"""Tables of timed runs: gaps to the best known value, integrals, performance and data profiles."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from rmfs.solvers.decisions.profiling import primal_gap, primal_integral
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+_RUN = ["question", "family", "method", "seed"]
+MAXIMISED = frozenset({"run_bound"})
+
+
+def with_gaps(table: pd.DataFrame, best: Mapping[str, float] | None = None) -> pd.DataFrame:
+    """Add the best value of each question and the primal gap to it.
+
+    Parameters
+    ----------
+    table
+        Rows of `profiling.points`.
+    best
+        Best known value by question. Default, and where it has none: the best of the table.
+    """
+    known = dict(best or {})
+    sign = np.where(table["family"].isin(MAXIMISED), -1.0, 1.0)
+    least = (table["value"] * sign).groupby(table["question"]).min()
+    column = []
+    for question, own, one in zip(
+        table["question"], table["question"].map(least), sign, strict=True
+    ):
+        value = known.get(question, math.nan)
+        better = own if math.isnan(value) else np.fmin(own, value * one)
+        column.append(better * one)
+    gaps = [primal_gap(v, b) for v, b in zip(table["value"], column, strict=True)]
+    return table.assign(best=column, gap=gaps)
+
+
+def integrals(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the primal integral of every run over wall time and over work.
+
+    The end is that of the longest run on the question, over all methods, in seconds; over work it
+    is that of the method's own largest limit, as units differ.
+
+    Parameters
+    ----------
+    table
+        As `with_gaps` returns it.
+    """
+    end_s = table.groupby("question")["wall_s"].max().to_dict()
+    rows = []
+    for key, run in table.groupby(_RUN, sort=False):
+        assert isinstance(key, tuple)
+        question = str(key[0])
+        wall = zip(run["wall_s"], run["gap"], strict=True)
+        work = zip(run["work"], run["gap"], strict=True)
+        most = float(run["work_limit"].max())
+        rows.append(
+            {
+                **dict(zip(_RUN, key, strict=True)),
+                "over_wall": primal_integral(wall, float(end_s[question])),
+                "over_work": primal_integral(work, max(most, float(run["work"].max()))),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def times_to_gap(table: pd.DataFrame, gap: float) -> pd.DataFrame:
+    """Return when each method first is within a gap, by question; inf for never.
+
+    Parameters
+    ----------
+    table
+        As `with_gaps` returns it.
+    gap
+        Primal gap that counts as solved.
+
+    Returns
+    -------
+    A row per question and seed, a column per method.
+    """
+    reached = table["wall_s"].where(table["gap"] <= gap, np.inf)
+    frame = table.assign(reached=reached)
+    return frame.pivot_table(
+        index=["question", "seed"], columns="method", values="reached", aggfunc="min"
+    )
+
+
+def performance(times: pd.DataFrame, ratios: Sequence[float]) -> pd.DataFrame:
+    """Return the performance profile of Dolan and Moré (2002).
+
+    Parameters
+    ----------
+    times
+        As `times_to_gap` returns it; a method that is not there for a question is left out of it.
+    ratios
+        Factors to the quickest method.
+
+    Returns
+    -------
+    Per ratio (index) and method, the share of questions solved within that many times the time of
+    the quickest. Questions nobody has solved count for nobody.
+    """
+    quickest = times.min(axis=1)
+    ratio = times.div(quickest, axis=0).where(np.isfinite(times), np.inf)
+    return _shares(ratio, ratios)
+
+
+def data_profile(times: pd.DataFrame, seconds: Sequence[float]) -> pd.DataFrame:
+    """Return the share of questions that each method has solved after so many seconds.
+
+    Parameters
+    ----------
+    times
+        As `times_to_gap` returns it.
+    seconds
+        Wall times.
+    """
+    return _shares(times, seconds)
+
+
+def _shares(values: pd.DataFrame, limits: Sequence[float]) -> pd.DataFrame:
+    asked = values.notna().sum()
+    rows: list[NDArray[np.float64]] = [
+        (values <= limit * (1 + 1e-12)).sum().to_numpy() / asked.to_numpy() for limit in limits
+    ]
+    return pd.DataFrame(rows, index=list(limits), columns=values.columns)
