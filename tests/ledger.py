@@ -6,6 +6,7 @@ from collections import Counter
 
 import numpy as np
 
+from rmfs.measure.tables.delays import PARTS, by_order
 from rmfs.observer import Observer
 from rmfs.world import verify
 
@@ -54,3 +55,18 @@ class Ledger(Observer):
         for order in self.completed:
             assert all(line.picked_units == line.units for line in order.lines)
             assert order.created_s <= order.assigned_s <= order.completed_s
+
+
+def check_delays(run):
+    """Every line, and every order, is accounted for without remainder."""
+    lines = run.table("delays")
+    parts = [f"{part}_s" for part in PARTS]
+    assert (lines[parts] >= 0).all(axis=None), lines[(lines[parts] < 0).any(axis=1)].T
+    assert np.allclose(lines[parts].sum(axis=1), lines["turnover_s"], rtol=0, atol=1e-9)
+    orders = run.table("orders")
+    completed = orders[orders["completed_s"].notna()].set_index("order")
+    split = by_order(lines)
+    assert list(split.index) == sorted(completed.index)
+    turnover_s = completed.loc[split.index, "turnover_s"]
+    assert np.allclose(split[parts].sum(axis=1), turnover_s, rtol=0, atol=1e-9)
+    assert (lines.groupby("order").size() == completed["lines"].sort_index()).all()

@@ -24,6 +24,7 @@ PICTURES: dict[str, tuple[str, Callable[..., None], str]] = {
     "heat": ("heat", plots.heat, "Where robots drive"),
     "backlog": ("series", plots.backlog, "Backlogs and open orders"),
     "turnover": ("orders", plots.turnover, "Order turnover"),
+    "delays": ("delays", plots.delays, "Where the time of orders goes"),
     "stations": ("stations", plots.stations, "Station utilisation"),
     "robots": ("series", plots.robots, "Robots by state"),
     "pile-on": ("visits", plots.pile_on, "Units per visit"),

@@ -43,7 +43,7 @@ class Recorder(Observer):
     units
         Picked units.
     lines
-        Finished lines.
+        Finished lines, with the robot that brought the last unit, and until when that was handled.
     orders
         Completed orders: `order_row`.
     open_orders
@@ -75,6 +75,8 @@ class Recorder(Observer):
         Per problem whose controller asks optimisers, its decisions without one since the warm-up.
     switches
         Stations switched on or off.
+    early_trips
+        Trips that ended before the measured time.
     samples
         Every minute: time, and the fleet's totals of distance and times since the last reset.
     energy
@@ -91,7 +93,10 @@ class Recorder(Observer):
             **{"time_s": "f8", "order": "i4", "sku": "i4", "pod": "i4"},
             **{"robot": "i2", "station": "i2", "late_bound": "?"},
         )
-        self.lines = Log(time_s="f8", sku="i4", station="i2")
+        self.lines = Log(
+            **{"time_s": "f8", "sku": "i4", "station": "i2"},
+            **{"order": "i4", "robot": "i2", "assigned_s": "f8", "end_s": "f8"},
+        )
         self.orders = Log(
             **{"order": "i4", "station": "i2", "lines": "i4", "units": "i4"},
             **{"created_s": "f8", "due_s": "f8", "assigned_s": "f8", "completed_s": "f8"},
@@ -121,6 +126,9 @@ class Recorder(Observer):
         self.trips: dict[str, NDArray[Any]] = {}
         self.edges: dict[str, NDArray[Any]] = {}
         self.counters: dict[str, float] = {}
+        self.early_trips: dict[str, NDArray[Any]] = {}
+        self._picked_by = -1
+        self._busy_until: dict[int, float] = {}
         self._at_station: dict[int, tuple[float, int, int]] = {}
         self._before = {"order_redraws": 0, "orders_short": 0}
         self._disturbances: Troubles
@@ -143,6 +151,7 @@ class Recorder(Observer):
     def warmup_ended(self, time_s: float) -> None:
         """Begin to measure."""
         self.start_s = time_s
+        self.early_trips = self.traffic.trips()
         self.asked.clear()
         self.by_rule.clear()
         self._before = self._order_counts()
@@ -196,12 +205,16 @@ class Recorder(Observer):
         late_bound: bool,
     ) -> None:
         """Write the unit down."""
+        self._picked_by = robot
         self.units.add(time_s, order.index, sku, pod, robot, station, late_bound)
         self.energy.picked(order.index, station)
 
     def line_picked(self, time_s: float, order: Order, sku: int, units: int) -> None:
         """Write the line down."""
-        self.lines.add(time_s, sku, order.station)
+        station = order.station
+        handled_s = self._busy_until.get(station, time_s)
+        whole = (order.index, self._picked_by, order.assigned_s, handled_s)
+        self.lines.add(time_s, sku, station, *whole)
 
     def bundle_created(self, bundle: Bundle) -> None:
         """Follow the bundle."""
@@ -225,6 +238,7 @@ class Recorder(Observer):
     def station_busy(self, station: int, from_s: float, to_s: float) -> None:
         """Write the work down."""
         self.busy.add(station, from_s, to_s)
+        self._busy_until[station] = to_s
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
         """Write the task down."""

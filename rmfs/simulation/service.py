@@ -90,6 +90,8 @@ class PickService:
         """Start the next pick of a task."""
         agenda, world, events = self._agenda, self._world, self._events
         index = self._station.index
+        if self._finished:
+            self._hand_on()  # the unit before has been transferred at this very instant
         pick = world.pick_unit(task)
         line, order = pick.line, pick.line.order
         self._busy_until_us = agenda.now_us + self._transfer_us
@@ -107,9 +109,17 @@ class PickService:
 
     def _unit_transferred(self) -> None:
         """Hand complete orders on; the station is free for the next unit."""
+        if self._agenda.now_us < self._busy_until_us:
+            return  # the next unit has been begun at this very instant, before this was told
         if not self._finished:
             self.go_on()
             return
+        self._hand_on()
+        # an order that takes the free slot may still be added to the present task
+        self._agenda.when_settled(self.go_on)
+
+    def _hand_on(self) -> None:
+        """Hand on the orders whose last unit has been transferred."""
         for order in self._finished:
             if order.unpicked_units:
                 continue  # lines have joined this part of an order meanwhile
@@ -118,8 +128,6 @@ class PickService:
                 self._events.order_completed(complete)
             self._events.slot_freed(order)
         self._finished.clear()
-        # an order that takes the free slot may still be added to the present task
-        self._agenda.when_settled(self.go_on)
 
 
 class ReplenishmentService:

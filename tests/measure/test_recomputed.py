@@ -110,6 +110,16 @@ def decided(run) -> dict[str, float]:
     }
 
 
+def delayed(run, whole_s: float) -> dict[str, float]:
+    """Shares of the orders' time: each line counts with the reciprocal of the lines of its order."""
+    lines = run.table("delays")
+    weight = 1 / lines.groupby("order")["sku"].transform("size")
+    parts = [name for name in lines if name.split("_")[0] in ("wait", "drive", "queue", "service")]
+    return {
+        f"{part.removesuffix('_s')}_share": (weight * lines[part]).sum() / whole_s for part in parts
+    }
+
+
 def recomputed(run) -> dict[str, float]:
     """Figures from `orders`, `trips` and `stations`, and where these say nothing from others."""
     orders, trips, stations = run.table("orders"), run.table("trips"), run.table("stations")
@@ -176,6 +186,7 @@ def recomputed(run) -> dict[str, float]:
             for task in ("pick", "replenish", "park", "reposition", "rest")
         },
         **spread("order_turnover", turnover),
+        **delayed(run, turnover.sum()),
         **spread("order_throughput_time", done["completed_s"] - done["assigned_s"]),
         **spread("order_lateness", lateness),
         **spread("late_by", lateness[lateness > 0]),

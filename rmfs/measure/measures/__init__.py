@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rmfs.measure.measures.decisions import Decisions, Optimisers
+from rmfs.measure.measures.delays import Delays
 from rmfs.measure.measures.disturbances import Disturbances
 from rmfs.measure.measures.energy import Energy
 from rmfs.measure.measures.heading import Heading
@@ -29,6 +30,7 @@ SHIPPED: tuple[type[Measure], ...] = (
     RobotTime,
     Stations,
     OrderTimes,
+    Delays,
     Backlog,
     Replenishment,
     Inventory,

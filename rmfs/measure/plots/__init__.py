@@ -1,6 +1,7 @@
 """Pictures of runs: one function per picture, each draws into the axes it is given."""
 
 from rmfs.measure.plots.backlog import backlog as backlog
+from rmfs.measure.plots.delays import delays as delays
 from rmfs.measure.plots.heat import heat as heat
 from rmfs.measure.plots.pile_on import pile_on as pile_on
 from rmfs.measure.plots.progression import progression as progression

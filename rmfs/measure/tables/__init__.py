@@ -15,6 +15,8 @@ from rmfs.measure.tables.decisions import DECISIONS as DECISIONS
 from rmfs.measure.tables.decisions import answers as answers
 from rmfs.measure.tables.decisions import controllers as controllers
 from rmfs.measure.tables.decisions import decisions as decisions
+from rmfs.measure.tables.delays import DELAYS as DELAYS
+from rmfs.measure.tables.delays import delays as delays
 from rmfs.measure.tables.handled import BUNDLES as BUNDLES
 from rmfs.measure.tables.handled import PICKS as PICKS
 from rmfs.measure.tables.handled import VISITS as VISITS
@@ -50,6 +52,7 @@ MAKERS = {
     "series": series,
     "stations": stations,
     "orders": orders,
+    "delays": delays,
     "picks": picks,
     "bundles": bundles,
     "visits": visits,
@@ -70,6 +73,7 @@ DECLARED: dict[str, Sequence[Column]] = {
     "series": SERIES,
     "stations": STATIONS,
     "orders": ORDERS,
+    "delays": DELAYS,
     "picks": PICKS,
     "bundles": BUNDLES,
     "visits": VISITS,

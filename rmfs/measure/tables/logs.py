@@ -45,9 +45,14 @@ class Logs:
         return self._since(self.units)
 
     @cached_property
+    def lines(self) -> pd.DataFrame:
+        """Lines finished."""
+        return framed(self.recorder.lines)
+
+    @cached_property
     def lines_now(self) -> pd.DataFrame:
         """Lines finished in the measured time."""
-        return self._since(framed(self.recorder.lines))
+        return self._since(self.lines)
 
     @cached_property
     def orders(self) -> pd.DataFrame:
@@ -78,9 +83,27 @@ class Logs:
         return frame.sort_values(["station", "begin_s"], ignore_index=True)
 
     @cached_property
+    def lifts(self) -> pd.DataFrame:
+        """Pods lifted."""
+        return framed(self.recorder.lifts)
+
+    @cached_property
     def lifts_now(self) -> pd.DataFrame:
         """Pods lifted in the measured time."""
-        return self._since(framed(self.recorder.lifts))
+        return self._since(self.lifts)
+
+    @cached_property
+    def all_trips(self) -> dict[str, NDArray[Any]]:
+        """Trips that ended, those of the warm-up first: robot, kind, times in s."""
+        parts = [one for one in (self.recorder.early_trips, self.recorder.trips) if one]
+        whole = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+        return {
+            "robot": whole["robot"],
+            "kind": whole["kind"],
+            "start_s": whole["t0_us"] / 1e6,
+            "end_s": whole["t1_us"] / 1e6,
+            "unhindered_s": whole["unhindered_s"],
+        }
 
     @cached_property
     def switches(self) -> pd.DataFrame:

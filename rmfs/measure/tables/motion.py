@@ -36,6 +36,13 @@ TRIPS = (
         "s",
         "Lower bound of the time without other robots (for a station: to its queue zone)",
     ),
+    Column(
+        "hindered_s",
+        REAL,
+        "s",
+        "end_s - start_s - unhindered_s: what others cost it; for a station it may be a little "
+        "below 0, since who drives on into the queue does not stop at its border",
+    ),
     Column("energy_wh", REAL, "Wh", "Drawn on the way; empty where energy is not counted"),
 )
 
@@ -86,6 +93,7 @@ def trips(logs: Logs) -> pd.DataFrame:
             "loaded": told["loaded"],
             "distance_m": told["distance_m"],
             "unhindered_s": told["unhindered_s"],
+            "hindered_s": (told["t1_us"] - told["t0_us"]) / 1e6 - told["unhindered_s"],
             "energy_wh": told["energy_j"] / WH if logs.recorder.energy.final else np.nan,
         },
     )

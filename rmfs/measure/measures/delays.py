@@ -1,0 +1,37 @@
+"""Where the time of orders goes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import LESS, NEITHER, REAL, Column
+from rmfs.measure.measures.reckoning import ratio
+from rmfs.measure.tables.delays import PARTS, by_order
+
+if TYPE_CHECKING:
+    from rmfs.measure.ended import EndedRun
+
+_LESS = ("drive_hindered", "queue", "wait_assignment", "wait_pod", "wait_robot", "wait_order")
+
+
+class Delays(Measure):
+    """The time from arrival to completion of orders, split without remainder."""
+
+    columns = tuple(
+        Column(
+            f"{part}_share",
+            REAL,
+            "share",
+            f"Of the turnover of all completed orders, the share {what}; of an order's lines the "
+            "mean, each followed by its last unit; empty if no order was completed",
+            better=LESS if part in _LESS else NEITHER,
+        )
+        for part, what in PARTS.items()
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Add up the parts of all orders."""
+        total = by_order(run.tables["delays"]).sum()
+        whole = float(total["turnover_s"])
+        return {f"{part}_share": ratio(float(total[f"{part}_s"]), whole) for part in PARTS}

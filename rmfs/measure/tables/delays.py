@@ -1,0 +1,219 @@
+"""The table of delays: where the time of every order line went, without remainder.
+
+Between the arrival of an order and its completion lie, for each of its lines, moments that follow
+each other: the order is assigned to a station; a robot gets the task to bring the pod of the last
+unit of the line; it lifts the pod; it enters the queue zone; it stands at the station; the unit has
+been handled; the order is complete. The time between two moments has a name, and all of them add up
+to the turnover of the order. What had happened before the order was assigned (a pod that was on its
+way already) is not the order's time, and counts for nothing.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.measure.columns import INTEGER, REAL, Column
+from rmfs.measure.recorder import TASKS
+from rmfs.measure.steps import covered
+from rmfs.measure.tables.tidy import tidy
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    from rmfs.measure.tables.logs import Logs
+
+    Floats = NDArray[np.float64]
+    Integers = NDArray[np.int64]
+
+PARTS = {
+    "wait_assignment": "waiting for POA to put the order on a station",
+    "wait_pod": "waiting for a pod to be chosen while some robot was at rest",
+    "wait_robot": "waiting for a pod to be chosen while all robots had work",
+    "drive_free": "the robot driving to the pod and with it to the queue zone, as long as that "
+    "takes without others; lifting included",
+    "drive_hindered": "what these drives took longer because of others",
+    "queue": "in the queue zone",
+    "service": "at the station, until the last unit of the line was handled",
+    "wait_order": "waiting at the slot for the other lines of the order",
+}
+"""What the time of an order line is made of, in the order in which it passes."""
+
+DELAYS = (
+    Column("order", INTEGER, "", "Ordinal of arrival of the order"),
+    Column("sku", INTEGER, "", "SKU of the line"),
+    Column("station", INTEGER, "", "Pick station"),
+    Column("robot", INTEGER, "", "Robot that brought the pod of the line's last unit"),
+    Column("completed_s", REAL, "s", "Completion of the order"),
+    Column("turnover_s", REAL, "s", "Time from the order's arrival to its completion"),
+    *(Column(f"{part}_s", REAL, "s", f"Of this, {what}") for part, what in PARTS.items()),
+)
+
+_TO_POD, _TO_STATION = 0, 1
+_PICK, _REST = TASKS.index("pick"), TASKS.index("rest")
+
+
+def delays(logs: Logs) -> pd.DataFrame:
+    """One row per line of the orders completed in the measured time."""
+    lines = _lines(logs)
+    created, completed = lines["created_s"].to_numpy(), lines["completed_s"].to_numpy()
+    robot, picked = lines["robot"].to_numpy(), lines["time_s"].to_numpy()
+    assigned, handled = lines["assigned_s"].to_numpy(), lines["end_s"].to_numpy()
+    moments = _Moments(logs, robot, picked)
+    begun = np.clip(moments.task, assigned, handled)
+    lifted = np.clip(moments.lift, begun, handled)
+    queued = np.clip(moments.queue, lifted, handled)
+    arrived = np.clip(moments.visit, queued, handled)
+    hindered = moments.to_pod.hindered(begun, lifted)
+    hindered += moments.to_station.hindered(lifted, queued)
+    at_rest = _time_at_rest(logs, begun) - _time_at_rest(logs, assigned)
+    at_rest = np.clip(at_rest, 0.0, begun - assigned)
+    return tidy(
+        "delays",
+        DELAYS,
+        {
+            "order": lines["order"],
+            "sku": lines["sku"],
+            "station": lines["station"],
+            "robot": robot,
+            "completed_s": completed,
+            "turnover_s": completed - created,
+            "wait_assignment_s": assigned - created,
+            "wait_pod_s": at_rest,
+            "wait_robot_s": (begun - assigned) - at_rest,
+            "drive_free_s": (queued - begun) - hindered,
+            "drive_hindered_s": hindered,
+            "queue_s": arrived - queued,
+            "service_s": handled - arrived,
+            "wait_order_s": completed - handled,
+        },
+    )
+
+
+def by_order(frame: pd.DataFrame) -> pd.DataFrame:
+    """Return the parts of each order's time, in s: the mean of its lines; they add up alike."""
+    columns = ["turnover_s", *(f"{part}_s" for part in PARTS)]
+    return frame.groupby("order")[columns].mean()
+
+
+def _lines(logs: Logs) -> pd.DataFrame:
+    """Return the lines of orders completed in the measured time, with the orders' times."""
+    orders = logs.orders.set_index("order")[["created_s", "completed_s"]]
+    lines = logs.lines.join(orders, on="order")
+    return lines[lines["completed_s"] >= logs.start_s].reset_index(drop=True)
+
+
+def _time_at_rest(logs: Logs, at_s: Floats) -> Floats:
+    """Return for how long, up to each time, some robot had nothing to do."""
+    tasks, robots = logs.tasks, logs.layout.robots
+    first = np.full(robots, logs.end_s)
+    np.minimum.at(first, tasks["robot"].to_numpy(), tasks["begin_s"].to_numpy())
+    resting = tasks[tasks["kind"] == _REST]
+    begin = np.concatenate([np.zeros(robots), resting["begin_s"].to_numpy()])
+    end = np.concatenate([first, resting["end_s"].to_numpy()])
+    order = np.argsort(begin, kind="stable")
+    begin, end = begin[order], np.maximum.accumulate(end[order])
+    apart = np.flatnonzero(begin[1:] > end[:-1])
+    starts = begin[np.concatenate([[0], apart + 1])]
+    ends = end[np.concatenate([apart, [len(end) - 1]])]
+    return covered(starts, ends, at_s)
+
+
+class _Moments:
+    """What the robot of each line did before it was picked, in s.
+
+    Attributes
+    ----------
+    task
+        When it was told to bring the pod.
+    lift
+        When it lifted the pod; `task` if it carried the pod already.
+    queue
+        When it reached the queue zone; `lift` if it was at the station already.
+    visit
+        When it stood at the station.
+    to_pod, to_station
+        The drives between these.
+    """
+
+    def __init__(self, logs: Logs, robot: Integers, picked: Floats) -> None:
+        tasks = logs.tasks[logs.tasks["kind"] == _PICK]
+        self.task = _last(tasks["robot"], tasks["begin_s"], robot, picked)
+        visits = logs.visits
+        self.visit = _last(visits["robot"], visits["begin_s"], robot, picked)
+        self.visit = np.where(self.visit < self.task, self.task, self.visit)
+        lifts = logs.lifts
+        lift = _last(lifts["robot"], lifts["time_s"], robot, self.visit)
+        self.lift = np.maximum(lift, self.task)
+        trips = logs.all_trips
+        self.to_pod = _Drives(trips, _TO_POD, robot, self.task, self.lift)
+        self.to_station = _Drives(trips, _TO_STATION, robot, self.lift, self.visit)
+        self.queue = np.maximum(self.to_station.end, self.lift)
+
+
+class _Drives:
+    """The last trip of a kind of each robot within a stretch of time.
+
+    Attributes
+    ----------
+    end
+        When it ended; the begin of the stretch where there was none.
+    """
+
+    def __init__(
+        self,
+        trips: dict[str, NDArray[np.float64]],
+        kind: int,
+        robot: Integers,
+        from_s: Floats,
+        to_s: Floats,
+    ) -> None:
+        own = trips["kind"] == kind
+        found = _last_row(trips["robot"][own], trips["end_s"][own], robot, to_s)
+        begin, end, unhindered = (
+            np.append(trips[name][own], 0.0)[found] for name in ("start_s", "end_s", "unhindered_s")
+        )
+        there = (found >= 0) & (end >= from_s)
+        self._from = from_s
+        self._begin = np.where(there, np.maximum(begin, from_s), from_s)
+        self.end = np.where(there, end, from_s)
+        self._unhindered = np.where(there, unhindered, 0.0)
+        self._is_to_pod = kind == _TO_POD
+
+    def hindered(self, from_s: Floats, to_s: Floats) -> Floats:
+        """Return the hindered time of the part of each drive that lies in a stretch of time.
+
+        A part of a drive is hindered as much as the whole. On the way to a pod, what passes before
+        the robot sets off counts as well: somebody stood beneath the pod.
+        """
+        since = self._from if self._is_to_pod else self._begin
+        until = to_s if self._is_to_pod else self.end
+        whole = np.maximum(until - self._from, 0.0)
+        late = np.clip(until - since - self._unhindered, 0.0, whole)
+        share = np.divide(to_s - from_s, whole, out=np.zeros_like(whole), where=whole > 0)
+        return np.clip(late * np.minimum(share, 1.0), 0.0, to_s - from_s)
+
+
+def _last(
+    robots: pd.Series[int], times: pd.Series[float], robot: Integers, until_s: Floats
+) -> Floats:
+    """Return the last of the times of each robot up to a moment; minus infinity without one."""
+    found = _last_row(np.asarray(robots), np.asarray(times, np.float64), robot, until_s)
+    return np.append(np.asarray(times, np.float64), -np.inf)[found]
+
+
+def _last_row(
+    robots: NDArray[np.int64] | Floats, times: Floats, robot: Integers, until_s: Floats
+) -> Integers:
+    """Return the row of the last of the times of each robot up to a moment; -1 without one."""
+    order = np.lexsort((times, robots))
+    found = np.full(len(robot), -1, np.int64)
+    for one in np.unique(robot):
+        low, high = np.searchsorted(robots[order], [one, one + 1])
+        here = robot == one
+        place = np.searchsorted(times[order[low:high]], until_s[here], side="right") - 1
+        rows = order[low:high]
+        found[here] = np.append(rows, -1)[place] if len(rows) else -1
+    return found
