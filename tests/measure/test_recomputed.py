@@ -111,7 +111,7 @@ def decided(run) -> dict[str, float]:
 
 
 def delayed(run, whole_s: float) -> dict[str, float]:
-    """Shares of the orders' time: each line counts with the reciprocal of the lines of its order."""
+    """Shares of the orders' time: a line counts with the reciprocal of its order's lines."""
     lines = run.table("delays")
     weight = 1 / lines.groupby("order")["sku"].transform("size")
     parts = [name for name in lines if name.split("_")[0] in ("wait", "drive", "queue", "service")]
