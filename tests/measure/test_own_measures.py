@@ -108,6 +108,21 @@ def test_a_measure_can_be_copied_and_saved_with_what_it_knows(folder: Path) -> N
         assert len(twin) == len(log) + 1
 
 
+def test_a_fork_and_a_saved_simulation_take_it_along(folder: Path) -> None:
+    given = {"scenario.duration_s": 300, "scenario.warmup_s": 60}
+    run = rmfs.Simulation("basic", "basic", set=given, measures=["busiest.py:Busiest"])
+    run.run_until(200.0)
+    run.save(folder / "file")
+    twins = run.fork(), rmfs.Simulation.load(folder / "file")
+    own = ["pods_used", "busiest_pod_units"]
+    run.run()
+    row = run.result().footprint[own]
+    assert row["pods_used"] > 0
+    for twin in twins:
+        twin.run()
+        assert twin.result().footprint[own].equals(row)
+
+
 def test_run_folder_report_and_compare(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     given = ["--layout", "basic", "--scenario", "basic", "--set", "scenario.duration_s=300"]
     for psa in ("nearest", "random"):

@@ -7,12 +7,14 @@ import shutil
 from collections import Counter
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 import rmfs
 from rmfs import experiments
 from rmfs.cli import main
 from rmfs.errors import InputError
+from rmfs.experiments.results import reproducible_table
 from rmfs.layout import load
 from rmfs.layout.explicit import read_json, save_json
 from rmfs.measure import load_run
@@ -155,9 +157,10 @@ def test_an_explicit_layout_keeps_kind_and_parameters(checked, tmp_path):
     assert again.stations[-1] is other
 
 
-def test_a_design_runs_it_in_worker_processes(checked, tmp_path):
-    design = tmp_path / "design.toml"
-    design.write_text(
+@pytest.fixture
+def design(checked: Path, tmp_path: Path) -> Path:
+    path = tmp_path / "design.toml"
+    path.write_text(
         f"""
 format = "rmfs-design/1"
 name = "checks"
@@ -175,13 +178,35 @@ controllers = "default"
 """,
         "utf-8",
     )
-    assert (
-        main(["experiment", "run", str(design), "--jobs", "2", "--out", str(tmp_path / "x")]) == 0
-    )
-    frame = experiments.load(tmp_path / "x")
+    return path
+
+
+def test_a_design_runs_it_in_worker_processes_and_its_report_tells_of_it(design, tmp_path):
+    out = tmp_path / "x"
+    assert main(["experiment", "run", str(design), "--jobs", "2", "--out", str(out)]) == 0
+    frame = experiments.load(out)
     assert len(frame) == 2
     often, seldom = frame["pods_checked"]
     assert often > seldom > 0
+    column = ["--column", "pods_checked"]
+    assert main(["experiment", "report", str(design), "--out", str(out), *column]) == 0
+    (page,) = out.rglob("*.html")
+    assert "pods checked" in page.read_text("utf-8").lower()
+
+
+@pytest.mark.slow
+def test_a_design_runs_it_on_dask(design, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, dashboard_address=None
+    ) as cluster:
+        done = experiments.run(
+            experiments.plan(design), tmp_path / "dask", dask=cluster.scheduler_address
+        )
+    assert (done.finished, done.failed) == (2, [])
+    experiments.run(experiments.plan(design), tmp_path / "local", processes=1)
+    tables = [reproducible_table(experiments.load(tmp_path / one)) for one in ("dask", "local")]
+    pd.testing.assert_frame_equal(*tables)
 
 
 @pytest.mark.parametrize(
