@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 import sys
+import warnings
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -227,6 +228,7 @@ def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
     options
         Further parameters of `rmfs.simulate`.
     """
+    from rmfs.simulation.idle_rules import IdleRuleWarning
     from rmfs.simulation.kernel import StalledError
     from rmfs.simulation.pacing import OptimiserError, ReplayError
     from rmfs.simulation.run import simulate
@@ -235,15 +237,19 @@ def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
         print(f"rmfs: {inputs[part]}: {note}", file=sys.stderr)
 
     what = f"simulating {', '.join(inputs.values())}, seed {seed}"
-    with progress(what) as advance:
+    with progress(what) as advance, warnings.catch_warnings():
+        warnings.simplefilter("ignore", IdleRuleWarning)  # told below, in our own words
         try:
-            return simulate(*inputs.values(), seed=seed, progress=advance, remark=told, **options)
+            done = simulate(*inputs.values(), seed=seed, progress=advance, remark=told, **options)
         except (StalledError, OptimiserError, ReplayError, RuleError) as error:
             print(f"rmfs: {error}", file=sys.stderr)
             raise typer.Exit(GIVEN_UP) from None
         except InternalError as error:
             error.add_note(what)
             raise
+    for idle in done.idle_rules:
+        print(f"rmfs: warning: {idle}", file=sys.stderr)
+    return done
 
 
 def default_name(

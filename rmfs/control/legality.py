@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control import decisions as say
@@ -48,8 +49,13 @@ def reason(decision: Any, view: View) -> str:
 # --- orders and bundles ---------------------------------------------------------------------------
 
 
+def _is_number(given: Any) -> bool:
+    """Whether it is an integer, of Python or of NumPy."""
+    return isinstance(given, Integral) and not isinstance(given, bool)
+
+
 def _station(number: Any, count: int, what: str, first: int = 0) -> str:
-    if not isinstance(number, int) or isinstance(number, bool):
+    if not _is_number(number):
         return f"{number!r} is no number of a {what}"
     if not first <= number < first + count:
         return f"there is no {what} {number} (they are {first} to {first + count - 1})"
@@ -186,7 +192,7 @@ def _visit(decision: say.Visit, view: View) -> str:
 
 
 def _empty_place(place: Any, view: View) -> str:
-    if not isinstance(place, int) or not 0 <= place < len(view.storage.place_index):
+    if not _is_number(place) or not 0 <= place < len(view.storage.place_index):
         return f"{place!r} is no waypoint"
     index = view.storage.place_index[place]
     if index < 0:

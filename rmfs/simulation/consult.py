@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rmfs.control.asks import By, told_by
 from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
+from rmfs.simulation.deciding import is_foreign
 from rmfs.world.stations import PickStation
 
 if TYPE_CHECKING:
@@ -42,21 +43,25 @@ class PhaseConsult:
         pps: PodSelection[Any] = self._controllers.consulted(Problem.PPS)
         target = self._world.work_stations[station]
         if isinstance(target, PickStation):
-            return self._number(Problem.PPS, pps, lambda: pps.pick_pod(robot, target))
+            asked = Question(Problem.PPS, "pick pod", robot.index, (station,))
+            return self._number(asked, pps, lambda: pps.pick_pod(robot, target))
         # RPS chose the pods of the bundles; which of them comes first is not left to a model
+        asked = Question(Problem.PPS, "replenishment pod", robot.index, (station,))
         return self._number(
-            Problem.PPS, pps, lambda: pps.replenishment_pod(robot, target), modelled=False
+            asked, pps, lambda: pps.replenishment_pod(robot, target), modelled=False
         )
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
         """Ask PPS for the next station of a carried pod."""
         pps: PodSelection[Any] = self._controllers.consulted(Problem.PPS)
-        return self._number(Problem.PPS, pps, lambda: pps.next_station(robot, stations))
+        asked = Question(Problem.PPS, "next station", robot.index, tuple(stations))
+        return self._number(asked, pps, lambda: pps.next_station(robot, stations))
 
     def place_for(self, robot: Robot) -> int:
         """Ask PSA for a place."""
         psa: PodStorageAssignment[Any] = self._controllers.consulted(Problem.PSA)
-        return self._number(Problem.PSA, psa, lambda: psa.place(robot))
+        asked = Question(Problem.PSA, "place", robot.index)
+        return self._number(asked, psa, lambda: psa.place(robot))
 
     def may_move(self) -> bool:
         """Whether repositioning may have a pod to move."""
@@ -71,21 +76,28 @@ class PhaseConsult:
         start = perf_counter_ns()
         move = rule.move(robot)
         spent_ns = perf_counter_ns() - start
+        if move is not None and is_foreign(rule):
+            question = Question(Problem.REPOSITIONING, "move", robot.index)
+            self._deciding.require_possible(rule, move, question)
         self._deciding.consulted(Problem.REPOSITIONING, rule, spent_ns, move is not None)
         return move
 
     def _number(
         self,
-        problem: Problem,
+        question: Question,
         controller: Controller[Any],
-        question: Callable[[], int | By[int]],
+        ask: Callable[[], int | By[int]],
         modelled: bool = True,
     ) -> int:
         """Ask for a number; -1 is no decision."""
         start = perf_counter_ns()
-        number, call = told_by(question(), None)
+        number, call = told_by(ask(), None)
         spent_ns = perf_counter_ns() - start
-        self._deciding.consulted(problem, controller, spent_ns, number >= 0, call, modelled)
+        if number != -1 and is_foreign(controller):
+            self._deciding.require_possible(controller, number, question)
+        self._deciding.consulted(
+            question.problem, controller, spent_ns, number >= 0, call, modelled
+        )
         return int(number)
 
 

@@ -6,7 +6,7 @@ from time import perf_counter_ns
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control.asks import Ask, told_by
-from rmfs.control.legality import reason
+from rmfs.control.legality import reason, why_not
 from rmfs.control.problems import Problem
 from rmfs.errors import RuleError
 from rmfs.simulation.outside import Awaits
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Call
     from rmfs.control.base import Controller
     from rmfs.control.choices import Choice
+    from rmfs.control.questions import Question
     from rmfs.simulation.alarms import Alarms
     from rmfs.simulation.controller_set import ControllerSet
     from rmfs.simulation.events import Events
@@ -176,7 +177,7 @@ class Deciding:
         RuleError
             If the rule is not one of rmfs.
         """
-        if type(controller).__module__.partition(".")[0] == "rmfs":
+        if not is_foreign(controller):
             return
         try:
             why = reason(decision, controller.view)
@@ -185,6 +186,22 @@ class Deciding:
         raise RuleError(
             f"{self._whose(problem, controller)}: {_short(decision)} is impossible: {why or error}"
         ) from error
+
+    def require_possible(self, controller: Controller[Any], given: Any, question: Question) -> None:
+        """Refuse what a user's rule answers to TA, if it is impossible.
+
+        Raises
+        ------
+        RuleError
+            Problem, rule, simulated time, answer, and why it is impossible.
+        """
+        why = why_not(given, question, controller.view)
+        if why:
+            problem = question.problem
+            raise RuleError(
+                f"{self._whose(problem, controller)}: {question.kind} {_short(given)} is "
+                f"impossible: {why}"
+            )
 
     def _whose(self, problem: Problem, controller: Controller[Any]) -> str:
         return f"{problem} {type(controller).__qualname__} at {self._world.now_s:.3f} s"
@@ -213,9 +230,14 @@ class Deciding:
 
     def record(self, problem: Problem, wall_ns: int, count: int, by_rule: int) -> None:
         """Take note of a call; decisions by a solution are told with the question."""
-        self.statistics[problem].record(wall_ns, count)
         now_s, wall_s = self._world.now_s, wall_ns / 1e9
+        self.statistics[problem].record(wall_ns, count, now_s)
         self._events.decision(problem.value, now_s, wall_s, by_rule)
+
+
+def is_foreign(controller: Controller[Any]) -> bool:
+    """Whether a controller is a user's, not one of rmfs."""
+    return type(controller).__module__.partition(".")[0] != "rmfs"
 
 
 def _short(decision: Any) -> str:

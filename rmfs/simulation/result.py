@@ -75,6 +75,8 @@ class Run(Results):
         What happened; only if the run was asked to record its trace.
     interventions
         Controllers exchanged by hand, and when (s); `names` tells of them, too.
+    idle_rules
+        Which rules decided nothing for long although work waited, in words.
     """
 
     layout: Layout
@@ -98,6 +100,7 @@ class Run(Results):
     disturbances: DisturbanceSource
     events: EventLog | None = None
     interventions: Sequence[tuple[float, Choice]] = ()
+    idle_rules: Sequence[str] = ()
 
     _report: CheckReport | None = None
     _sent: _Sent | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -15,6 +16,7 @@ from rmfs.measure.provenance import MARK
 from rmfs.measure.registry import find_all
 from rmfs.simulation import forking, saving
 from rmfs.simulation.checkpoints import resumed
+from rmfs.simulation.idle_rules import IdleRuleWarning, idle_rules
 from rmfs.simulation.inputs import as_overrides, load_inputs, name_of
 from rmfs.simulation.kernel import Kernel
 from rmfs.simulation.pacing import Replay, ReplayPacing, pacing_settings
@@ -251,6 +253,10 @@ streams, remark, allow_not_well_formed, traffic_maker
             raise InputError(
                 f"the run is at {self.now_s:g} s of {self.end_s:g} s: its results come at its end"
             )
+        statistics = self.deciding.statistics
+        idle = idle_rules(self.world, self.controller_set, statistics, self.end_s)
+        for told in idle:
+            warnings.warn(told, IdleRuleWarning, stacklevel=2)
         marks = "".join(
             f"{MARK}{choice.problem}={choice.name}@{time_s:.6f}s"
             for time_s, choice in self.interventions
@@ -271,12 +277,13 @@ streams, remark, allow_not_well_formed, traffic_maker
             wall_s=self.wall_s,
             world=self.world,
             traffic=self.traffic,
-            statistics=list(self.deciding.statistics.values()),
+            statistics=list(statistics.values()),
             recorder=self.recorder,
             measures=self.measures,
             disturbances=self.disturbances,
             events=self.log,
             interventions=list(self.interventions),
+            idle_rules=idle,
         )
 
 

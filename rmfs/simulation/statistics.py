@@ -20,6 +20,8 @@ class DecisionStatistics:
         The rule now installed.
     decisions
         Decisions given in all calls.
+    last_s
+        When it last decided something, simulated; -1 for never.
     wall_ns
         Wall time of each call, without the time in which other controllers were consulted.
     """
@@ -27,6 +29,7 @@ class DecisionStatistics:
     problem: str
     name: str
     decisions: int = 0
+    last_s: float = -1.0
     wall_ns: array[int] = field(default_factory=lambda: array("q"))
 
     @property
@@ -43,8 +46,10 @@ class DecisionStatistics:
         """Wall time that this share of the calls did not exceed; nan without calls."""
         return float(np.quantile(self.wall_ns, share)) / 1e9 if self.wall_ns else float("nan")
 
-    def record(self, wall_ns: int, decisions: int) -> None:
+    def record(self, wall_ns: int, decisions: int, now_s: float) -> None:
         """Add one call."""
+        if decisions:
+            self.last_s = now_s
         self.wall_ns.append(wall_ns)
         self.decisions += decisions
 

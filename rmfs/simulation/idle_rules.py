@@ -1,0 +1,79 @@
+"""Rules that decide nothing although work waits: a run that ends so is told of."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.control.problems import Problem
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rmfs.simulation.controller_set import ControllerSet
+    from rmfs.simulation.statistics import DecisionStatistics
+    from rmfs.world import World
+
+SHARE = 0.5
+"""A rule is idle that decided nothing in this last part of the run."""
+LEAST_S = 300.0
+"""And in at least so much simulated time."""
+
+
+class IdleRuleWarning(UserWarning):
+    """A rule has decided nothing for long although work waits."""
+
+
+def idle_rules(
+    world: World,
+    controllers: ControllerSet,
+    statistics: Mapping[Problem, DecisionStatistics],
+    end_s: float,
+) -> list[str]:
+    """Say which rules of POA, RPS, ROA and TA have decided nothing for long while work waits.
+
+    Parameters
+    ----------
+    end_s
+        Simulated time from the first event to the end, s.
+    """
+    found = []
+    for problem in (Problem.POA, Problem.RPS, Problem.ROA, Problem.TA):
+        rule, told = controllers[problem], statistics[problem]
+        idle_s = end_s - max(told.last_s, 0.0)
+        if rule.is_dummy or idle_s < max(SHARE * end_s, LEAST_S):
+            continue
+        waits = _waits(problem, world, after_rps=Problem.RPS in rule.waits_for)
+        if waits:
+            since = "ever" if told.last_s < 0 else f"since {told.last_s:.0f} s"
+            found.append(
+                f"{problem} {told.name} has decided nothing {since} (the run ended at "
+                f"{end_s:.0f} s), while {waits}"
+            )
+    return found
+
+
+def _waits(problem: Problem, world: World, *, after_rps: bool) -> str:
+    """Say what waits for a decision; nothing if nothing could be decided.
+
+    Parameters
+    ----------
+    after_rps
+        Whether bundles can be decided about only when they have a pod.
+    """
+    if problem is Problem.POA:
+        slots = sum(station.free_slots for station in world.pick_stations if station.active)
+        return f"{len(world.orders)} orders wait and {slots} slots are free" * bool(
+            len(world.orders) and slots
+        )
+    if problem is Problem.RPS:
+        count = len(world.bundles.without_pod)
+        return f"{count} bundles wait for a pod" * bool(count)
+    if problem is Problem.ROA:
+        stations = [station for station in world.replenishment_stations if station.active]
+        room = max((station.free_space for station in stations), default=0.0)
+        bundles = world.bundles.without_station.values()
+        count = sum(b.space <= room and (b.pod >= 0 or not after_rps) for b in bundles)
+        return f"{count} bundles wait for a station with room for them" * bool(count)
+    idle = len(world.asking) + len(world.resting)
+    work = any(station.has_open_work for station in world.work_stations)
+    return f"{idle} robots are idle and stations have work" * bool(idle and work)
