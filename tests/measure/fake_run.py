@@ -311,6 +311,7 @@ def run():
         controllers=Settings(),
         names=("fake-layout", "fake-scenario", "fake-controllers"),
         interventions=(),
+        idle_rules=(),
         overrides=[(["layout", "robots"], 2)],
         notes={"layout": ["Bot.Colour is unknown and was left out"]},
         seed=3,
