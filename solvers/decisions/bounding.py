@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rmfs.solvers.decisions.exact import exact
@@ -10,6 +12,7 @@ from rmfs.solvers.decisions.models import model_data
 from rmfs.solvers.decisions.solving import limits_of, methods, rule
 from rmfs.solvers.models import families, pile_on, planning
 from rmfs.solvers.models.backends import highs
+from rmfs.solvers.models.solution import Limits, WallGuardError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,7 +29,9 @@ _LARGEST = 400_000
 """Nonzeros of the largest programme whose relaxation is solved by the simplex method."""
 
 
-def bounds(decision: Decision, work: float, where: str = "") -> Iterator[tuple[str, float]]:
+def bounds(
+    decision: Decision, work: float, where: str = "", *, guard_s: float | None = None
+) -> Iterator[tuple[str, float]]:
     """Yield bounds with who proves them; those that say nothing are left out.
 
     Parameters
@@ -37,7 +42,10 @@ def bounds(decision: Decision, work: float, where: str = "") -> Iterator[tuple[s
         Limit of work of the exact search.
     where
         What the question is called in errors. Default: its name.
+    guard_s
+        Wall time after which the relaxation, and the search, are given up. Default: none.
     """
+    guard = Limits(wall_guard_s=guard_s)
     data, family = model_data(decision, where), decision.family
     if family == "pile_on":
         first = pile_on.solve(data, "greedy")
@@ -47,23 +55,28 @@ def bounds(decision: Decision, work: float, where: str = "") -> Iterator[tuple[s
         yield from _finite("prices", found.bound)
     stated = None if family in ("zones", "run_bound") else exact(decision, where)
     if stated is not None and stated.program.nonzeros <= _LARGEST:
-        yield from _finite("relaxation", highs.relax(stated.program).bound * stated.factor)
+        with suppress(WallGuardError):
+            relaxed = highs.relax(stated.program, guard)
+            yield from _finite("relaxation", relaxed.bound * stated.factor)
     method = _SEARCH.get(family, methods(family)[0])
     given = families.family(family).solve
-    start = given(data, rule(family)).values if rule(family) else None
-    found = given(data, method, limits_of(method, work), start=start)
-    yield from _finite(method, found.bound)
+    limits = replace(limits_of(method, work), wall_guard_s=guard_s)
+    with suppress(WallGuardError):
+        start = given(data, rule(family)).values if rule(family) else None
+        yield from _finite(method, given(data, method, limits, start=start).bound)
 
 
-def best(decision: Decision, work: float, where: str = "") -> tuple[str, float]:
+def best(
+    decision: Decision, work: float, where: str = "", *, guard_s: float | None = None
+) -> tuple[str, float]:
     """Return the best bound and who proves it; nan and nobody if there is none.
 
     Parameters
     ----------
-    decision, work, where
+    decision, work, where, guard_s
         As for `bounds`.
     """
-    found = list(bounds(decision, work, where))
+    found = list(bounds(decision, work, where, guard_s=guard_s))
     if not found:
         return "", math.nan
     return max(found, key=lambda one: one[1] * decision.sign)

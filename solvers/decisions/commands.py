@@ -11,6 +11,8 @@ import typer
 from rmfs.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rmfs.solvers.decisions.files import Decision, Found
 
 app = typer.Typer(no_args_is_help=True, context_settings={"help_option_names": ["-h", "--help"]})
@@ -214,3 +216,99 @@ def _line(decision: Decision, found: Found) -> str:
     told = f"{decision.name}: {by.get('backend', '?')}, {by.get('status', '?')}"
     told += f", value {found.objective:.10g}, bound {found.bound:.10g}"
     return f"{told}, work {by.get('work', math.nan):g}, {by.get('total_s', 0):.3f} s"
+
+
+LIBRARY = Path("instances/decisions")
+
+LibraryFolder = Annotated[Path, typer.Option("--library", help="Folder of the library.")]
+Family = Annotated[list[str] | None, typer.Option(help="Only these; may be repeated.")]
+
+
+@app.command()
+def draw(
+    out: Annotated[Path, typer.Option(help="Folder of the library.")] = LIBRARY,
+    family: Family = None,
+    size: Family = None,
+) -> None:
+    """Draw the questions of the library from runs, anew, by the documented procedure."""
+    from rmfs.solvers.decisions.files import write
+    from rmfs.solvers.decisions.library.drawing import draw
+    from rmfs.solvers.decisions.library.sites import SITES
+    from rmfs.solvers.decisions.schema import SCHEMAS
+
+    for one in known("family", family, SCHEMAS):
+        for big in known("size", size, SITES):
+            count = sum(write(drawn, out / one / big) for drawn in draw(one, big))
+            typer.echo(f"{one} {big}: {count} new")
+
+
+@app.command()
+def improve(
+    library: LibraryFolder = LIBRARY,
+    family: Family = None,
+    size: Family = None,
+    work: Annotated[
+        float, typer.Option(min=0.01, help="Deterministic seconds of a search, first round.")
+    ] = 1.0,
+    rounds: Annotated[int, typer.Option(min=1, help="Each with four times the work.")] = 1,
+    seconds: Annotated[float, typer.Option(min=1.0, help="Wall time in all.")] = math.inf,
+    load: Annotated[
+        float, typer.Option(min=0.0, help="Load of the machine above which it waits.")
+    ] = math.inf,
+) -> None:
+    """Search for better values and bounds of the library, as long as it may."""
+    import os
+
+    from rmfs.solvers.decisions.library.improving import Effort
+    from rmfs.solvers.decisions.library.improving import improve as improved
+    from rmfs.solvers.decisions.library.sites import SITES
+    from rmfs.solvers.decisions.library.table import Library
+    from rmfs.solvers.decisions.schema import SCHEMAS
+
+    os.nice(15)
+    families, sizes = known("family", family, SCHEMAS), known("size", size, SITES)
+    effort = Effort(work, rounds, seconds, load=load)
+    count = improved(Library.load(library), effort, families, sizes, tell=typer.echo)
+    typer.echo(f"{count} values and bounds got better")
+
+
+@app.command()
+def enter(
+    solutions: Annotated[
+        list[Path], typer.Argument(metavar="SOLUTION...", help="Solution files, from anybody.")
+    ],
+    by: Annotated[str, typer.Option(help="Who found them, and how.")],
+    library: LibraryFolder = LIBRARY,
+) -> None:
+    """Enter solutions into the library where they are allowed and better than what is known."""
+    from rmfs.solvers.decisions.checking import WrongError
+    from rmfs.solvers.decisions.files import question_named, read, read_solution
+    from rmfs.solvers.decisions.library.table import Library
+
+    known_ = Library.load(library)
+    for path in solutions:
+        name = question_named(path)
+        if name not in known_.rows:
+            raise InputError(f"{path}: question: {name} is not in {library}")
+        decision = read(known_.path(known_.rows[name]))
+        try:
+            better = known_.enter(decision, read_solution(decision, path), by)
+        except WrongError as error:
+            raise InputError(f"{path}: {error}") from None
+        row = known_.rows[name]
+        told = "entered" if better else "allowed, and no better than what is known"
+        typer.echo(f"{name}: {told}: best value {row.value!r}, bound {row.bound!r}")
+
+
+def known(what: str, given: list[str] | None, names: Iterable[str]) -> list[str]:
+    """Return what is asked for, all by default.
+
+    Raises
+    ------
+    InputError
+        If there is none of a name.
+    """
+    for one in given or ():
+        if one not in names:
+            raise InputError(f"--{what} {one}: must be one of {', '.join(names)}")
+    return given or list(names)

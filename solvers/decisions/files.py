@@ -46,6 +46,11 @@ class Found:
     bound: float = math.nan
     by: Mapping[str, Any] = field(default_factory=dict)
 
+    @property
+    def is_there(self) -> bool:
+        """Whether there is an answer."""
+        return self.values is not None
+
 
 @dataclass(frozen=True, eq=False)
 class Decision:
@@ -173,6 +178,18 @@ def read_solution(decision: Decision, path: Path) -> Found:
     if raw.get("question") != decision.hash:
         raise InputError(f"{path}: question: is another one; must be {decision.hash}")
     return _found(str(path), decision, raw)
+
+
+def question_named(path: Path) -> str:
+    """Return the name of the question that a solution file is an answer to.
+
+    Raises
+    ------
+    InputError
+        If the file is no solution.
+    """
+    raw = _read(path, SOLUTION)
+    return f"{raw.get('family')}-{str(raw.get('question'))[:NAMED_BY]}"
 
 
 def _told(schema: Schema, found: Found) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control.asks import Outcome
@@ -17,52 +18,45 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Call
 
 
-class DecisionRecorder(Observer):
-    """Writes each question, with its answer in the run, when the answer has come.
+class QuestionListener(Observer):
+    """Makes the content of a file of each question, with its answer, when the answer has come.
 
     Parameters
     ----------
-    folder
-        Where to; made if it is not there.
     run
         What tells the run from others: layout, scenario, controllers, seed, ...
 
     Attributes
     ----------
-    written
-        Files written, those that were there already not counted.
     strange
         Questions of no family of ours: those of optimisers of a user's own.
     """
 
-    def __init__(self, folder: Path, run: Mapping[str, Any]) -> None:
-        self._folder = folder
+    def __init__(self, run: Mapping[str, Any]) -> None:
         self._run = {"rmfs": {"version": version(), **commit()}, **run}
         self._open: dict[int, Call] = {}
-        self.written = 0
         self.strange = 0
+
+    @abstractmethod
+    def take(self, decision: Decision) -> None:
+        """Keep a question."""
 
     def optimiser_asked(self, call: Call) -> None:
         """Remember the question: its answer may never come."""
         self._open[call.number] = call
 
     def optimiser_answered(self, call: Call) -> None:
-        """Write it."""
+        """Hand it on."""
         self._open.pop(call.number, None)
-        self._write(call)
+        self._told(call)
 
     def run_ended(self, time_s: float) -> None:
-        """Write those whose answer has not taken effect."""
+        """Hand on those whose answer has not taken effect."""
         for call in self._open.values():
-            self._write(call)
+            self._told(call)
         self._open.clear()
 
-    def summary(self) -> str:
-        """Say in one line what was written."""
-        told = f"{self.written} questions written to {self._folder}"
-        return f"{told}; {self.strange} of other families left out" if self.strange else told
-
-    def _write(self, call: Call) -> None:
+    def _told(self, call: Call) -> None:
         question = question_of(call.ask.question)
         if question is None:
             self.strange += 1
@@ -80,7 +74,39 @@ class DecisionRecorder(Observer):
         recorded = None
         if call.answer is not None and call.outcome is not Outcome.WAITING:
             recorded = found_of(question.family, call.answer)
-        whole = Decision(
-            question.family, question.data, {**self._run, **told}, question.asked, recorded
+        self.take(
+            Decision(
+                question.family, question.data, {**self._run, **told}, question.asked, recorded
+            )
         )
-        self.written += write(whole, self._folder)
+
+
+class DecisionRecorder(QuestionListener):
+    """Writes each question to a file.
+
+    Parameters
+    ----------
+    folder
+        Where to; made if it is not there.
+    run
+        As for `QuestionListener`.
+
+    Attributes
+    ----------
+    written
+        Files written, those that were there already not counted.
+    """
+
+    def __init__(self, folder: Path, run: Mapping[str, Any]) -> None:
+        super().__init__(run)
+        self._folder = folder
+        self.written = 0
+
+    def take(self, decision: Decision) -> None:
+        """Write it."""
+        self.written += write(decision, self._folder)
+
+    def summary(self) -> str:
+        """Say in one line what was written."""
+        told = f"{self.written} questions written to {self._folder}"
+        return f"{told}; {self.strange} of other families left out" if self.strange else told

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -65,6 +66,7 @@ def solve(
     work: float | None = None,
     seed: int = 0,
     start: Found | None = None,
+    guard_s: float | None = None,
     where: str = "",
 ) -> Found:
     """Answer a question, and check the answer.
@@ -82,6 +84,8 @@ def solve(
         Seed of the method. Default 0.
     start
         Answer to begin from. Default: none.
+    guard_s
+        Wall time after which a method of ours gives up with an error. Default: none.
     where
         What the question is called in errors. Default: its name.
 
@@ -89,6 +93,8 @@ def solve(
     ------
     InputError
         If there is no such method, or the question is not one the model accepts.
+    WallGuardError
+        If the guard ran out.
     """
     name = where or decision.name
     plain = work is None and seed == 0 and start is None
@@ -100,7 +106,11 @@ def solve(
         by = {**found.by, "method": method}
         answer = Found(found.values, found.objective, found.bound, by)
     else:
-        answer = _by_model(decision, method, work, seed, start, name)
+        limits = replace(limits_of(method, work), wall_guard_s=guard_s)
+        answer = _by_model(decision, method, limits, seed, start, name)
+        answer = Found(
+            answer.values, answer.objective, answer.bound, {**answer.by, "work_limit": work}
+        )
     by = {**answer.by, "total_s": perf_counter() - began}
     if answer.values is not None:
         check(decision, answer)
@@ -108,14 +118,14 @@ def solve(
 
 
 def _by_model(
-    decision: Decision, method: str, work: float | None, seed: int, start: Found | None, name: str
+    decision: Decision, method: str, limits: Limits, seed: int, start: Found | None, name: str
 ) -> Found:
     known = methods(decision.family)
     if method not in known:
         raise InputError(
             f"method {method}: not one of {decision.family}; valid: {', '.join(known)}, {AS_ASKED}"
         )
-    data, limits = model_data(decision, name), limits_of(method, work)
+    data = model_data(decision, name)
     first: Any = None
     if start is not None and start.values is not None:
         first = model_values(decision, start.values)
@@ -127,7 +137,6 @@ def _by_model(
     by = {
         "method": method,
         "seed": seed,
-        "work_limit": work,
         "backend": found.backend,
         "status": found.status.value,
         "work": found.work,

@@ -1,0 +1,155 @@
+"""The questions of the library: drawn from runs by one seeded procedure.
+
+For each size, kind of demand and seed a site is simulated under each set of controllers that asks
+the family. Its time is cut into thirds: early, middle, late. Of each third one question is drawn,
+with equal chances, from its largest tenth (by the entries of its arrays), because many questions
+are about one robot or one slot. Families that no controller asks are made of others, or of the
+site, as `derived` says.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rmfs.simulation.run import simulate
+from rmfs.solvers.decisions.files import Decision
+from rmfs.solvers.decisions.library.derived import derived
+from rmfs.solvers.decisions.library.sites import LOADS, SITES, TWICE
+from rmfs.solvers.decisions.recording import QuestionListener
+from rmfs.solvers.decisions.schema import SCHEMAS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+MOMENTS = ("early", "middle", "late")
+_STREAM = 20171
+"""Sets these draws apart from others with the same seed."""
+
+
+CONTROLLERS: Mapping[str, tuple[str, ...]] = {
+    "pile_on": ("pile-on", "pile-on-split"),
+    "planning": ("planning",),
+    "placement": ("psa-placement",),
+    "zones": ("psa-prices",),
+    "stays": ("psa-stays",),
+    "matching": ("ta-matching",),
+    "balance": ("ta-balance",),
+    "sequence": ("ta-routes",),
+    "replenishment": ("stocking",),
+}
+"""Shipped sets of controllers that ask a family; seeds take turns where there are several."""
+
+_PARAMETERS: Mapping[str, Mapping[str, Any]] = {
+    "psa-prices": {"controllers.psa.period_s": 60.0},
+    "stocking": {
+        "scenario.replenishment.resume_below_share": 0.8,
+        "scenario.replenishment.pause_above_share": 0.9,
+    },
+}
+"""What is changed so that a set asks often enough in the time."""
+
+_EASIER: Mapping[tuple[str, str], Mapping[str, Any]] = {
+    ("planning", "small"): {
+        "layout.robots": 3,
+        "layout.pick_stations.east": 1,
+        "controllers.ta.visits": 2,
+    },
+    ("sequence", "small"): {"layout.robots": 5},
+}
+"""What is changed so that small questions can be solved to proven optimality."""
+
+_FEW: Mapping[str, Mapping[str, Any]] = {
+    "backlog": {"scenario.demand.orders": 10},
+    "arrivals": {"scenario.demand.orders_per_h": 100, "scenario.demand.initial_orders": 10},
+}
+
+
+class _Kept(QuestionListener):
+    """Keeps the questions of one family, the largest of each stretch of time."""
+
+    def __init__(self, family: str, run: Mapping[str, Any]) -> None:
+        super().__init__(run)
+        self._family = family
+        self.kept: list[tuple[float, int, Decision]] = []
+
+    def take(self, decision: Decision) -> None:
+        if decision.family == self._family and decision.recorded is not None:
+            size = sum(np.size(value) for value in decision.data.values() if value is not None)
+            self.kept.append((float(decision.provenance["time_s"]), size, decision))
+
+
+def draw(family: str, size: str) -> Iterator[Decision]:
+    """Draw the questions of a family and size.
+
+    Parameters
+    ----------
+    family
+        Its name in `SCHEMAS`.
+    size
+        A key of `SITES`.
+
+    Yields
+    ------
+    The questions; `provenance["drawn"]` says size, demand, moment and seed.
+    """
+    assert family in SCHEMAS
+    seen: set[str] = set()
+    for one in _pile_on_drawn(size) if family == "pile_on" else _drawn(family, size):
+        if one.hash not in seen:
+            seen.add(one.hash)
+            yield one
+
+
+@lru_cache(maxsize=1)
+def _pile_on_drawn(size: str) -> tuple[Decision, ...]:
+    """Draw once what several families are made of."""
+    return tuple(_drawn("pile_on", size))
+
+
+def _drawn(family: str, size: str) -> Iterator[Decision]:
+    if family not in CONTROLLERS:
+        asked = () if family == "run_bound" else _pile_on_drawn(size)
+        yield from derived(family, size, asked)
+        return
+    sets = CONTROLLERS[family]
+    for load in LOADS:
+        for number, seed in enumerate(SITES[size].seeds):
+            # at sizes with one seed the kinds of demand take turns instead
+            turn = number if len(SITES[size].seeds) > 1 else LOADS.index(load)
+            yield from _of_run(family, size, load, seed, sets[turn % len(sets)])
+
+
+def _of_run(family: str, size: str, load: str, seed: int, controllers: str) -> Iterator[Decision]:
+    """Simulate, and draw one question of each third."""
+    site = SITES[size]
+    changes: dict[str, Any] = {"scenario.duration_s": site.duration_s, "scenario.warmup_s": 0.0}
+    changes |= {**site.set, **(TWICE[load] if size == "double" else {})}
+    changes |= _PARAMETERS.get(controllers, {})
+    if (family, size) in _EASIER:
+        changes |= {**_EASIER[family, size], **(_FEW[load] if family == "planning" else {})}
+    run = {
+        "layout": site.layout,
+        "scenario": site.scenarios[load],
+        "controllers": controllers,
+        "seed": seed,
+        "set": [f"{key}={value}" for key, value in changes.items()],
+    }
+    kept = _Kept(family, run)
+    simulate(
+        site.layout, site.scenarios[load], controllers, seed=seed, set=changes, observers=[kept]
+    )
+    rng = np.random.default_rng([_STREAM, seed, list(SITES).index(size), LOADS.index(load)])
+    for third, moment in enumerate(MOMENTS):
+        begin, end = (site.duration_s * (third + step) / 3 for step in (0, 1))
+        some = [one for one in kept.kept if begin <= one[0] < end]
+        if some:
+            largest = sorted(some, key=lambda one: (-one[1], one[0]))
+            most = math.ceil(len(largest) / 10)
+            chosen = largest[int(rng.integers(most))][2]
+            told = {"size": size, "load": load, "moment": moment, "seed": seed}
+            provenance = {**chosen.provenance, "drawn": told}
+            yield Decision(chosen.family, chosen.data, provenance, chosen.asked, chosen.recorded)

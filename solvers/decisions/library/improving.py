@@ -1,0 +1,176 @@
+"""Searches that go on from what is known, with more work in every round."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from time import monotonic, sleep
+from typing import TYPE_CHECKING
+
+from rmfs.solvers.decisions.bounding import best as best_bound
+from rmfs.solvers.decisions.files import read
+from rmfs.solvers.decisions.library.table import OPTIMAL
+from rmfs.solvers.decisions.profiling import UNLIMITED
+from rmfs.solvers.decisions.solving import solve
+from rmfs.solvers.models import WallGuardError
+from rmfs.solvers.models.checks import ModelError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterator
+
+    from rmfs.solvers.decisions.files import Decision
+    from rmfs.solvers.decisions.library.table import Library, Row
+
+METHODS = {
+    "pile_on": ("greedy", "hadgs", "joint", "neighbourhood", "cp_sat"),
+    "planning": ("greedy", "lns", "cp_sat"),
+    "sequencing": ("beam", "cp_sat"),
+    "rack_allocation": ("greedy", "cp_sat"),
+    "placement": ("assignment",),
+    "stays": ("greedy", "cp_sat", "highs"),
+    "zones": ("clarabel",),
+    "matching": ("assignment",),
+    "balance": ("flow",),
+    "sequence": ("greedy", "cp_sat"),
+    "replenishment": ("greedy", "rounding", "cp_sat", "highs"),
+    "run_bound": ("highs",),
+}
+"""Who searches for answers, in this order."""
+
+STEPS = {"lns": 400.0, "beam": 400.0, "hadgs": 400.0, "highs": 100.0}
+"""Limit of the first round of those who count steps or nodes; the others get `work` seconds."""
+
+LARGEST_EXACT = {"planning": 60_000}
+"""Entries (pods times lines times stations) beyond which a programme is not even stated."""
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How much is spent.
+
+    Attributes
+    ----------
+    work
+        Deterministic seconds of a search in the first round; four times as many in each further.
+    rounds
+        How many.
+    seconds
+        Wall time in all.
+    guard_s
+        Wall time of one search, beyond which it is given up.
+    load
+        Load of the machine above which nothing is begun; infinite for no care.
+    """
+
+    work: float = 1.0
+    rounds: int = 1
+    seconds: float = float("inf")
+    guard_s: float = 120.0
+    load: float = float("inf")
+
+
+def improve(
+    library: Library,
+    effort: Effort,
+    families: Collection[str] = (),
+    sizes: Collection[str] = (),
+    tell: Callable[[str], None] = print,
+) -> int:
+    """Search for better values and bounds of the questions that are open.
+
+    Parameters
+    ----------
+    library
+        Where.
+    effort
+        How much.
+    families, sizes
+        Which questions. Default: all.
+    tell
+        Told what got better.
+
+    Returns
+    -------
+    How many values and bounds got better.
+    """
+    until, count = monotonic() + effort.seconds, 0
+    for number in range(effort.rounds):
+        for name in sorted(library.rows, key=lambda name: _urgency(library.rows[name])):
+            row = library.rows[name]
+            asked = (not families or row.family in families) and (not sizes or row.size in sizes)
+            if not asked or row.status == OPTIMAL:
+                continue
+            if not _wait(effort, until):
+                return count
+            count += _tried(library, row, effort, number, until, tell)
+    return count
+
+
+def _urgency(row: Row) -> tuple[float, str, str]:
+    """Order of the questions: those without anything, then small ones first."""
+    size = {"small": 1.0, "medium": 2.0, "real": 3.0, "double": 4.0}.get(row.size, 5.0)
+    return size, row.family, row.question
+
+
+def _wait(effort: Effort, until: float) -> bool:
+    """Wait for an idle machine; false if the time is over."""
+    while os.getloadavg()[0] > effort.load and monotonic() < until:
+        sleep(5.0)
+    return monotonic() < until
+
+
+def _tried(
+    library: Library,
+    row: Row,
+    effort: Effort,
+    number: int,
+    until: float,
+    tell: Callable[[str], None],
+) -> int:
+    decision = read(library.path(row))
+    count = 0
+    if row.value_by == "" and decision.recorded is not None:
+        count += len(library.enter(decision, decision.recorded, "recorded in the run"))
+    for method, work in _searches(decision, row, effort, number):
+        now = library.rows[row.question]
+        if now.status == OPTIMAL or monotonic() > until:
+            break
+        start = library.answer(now, decision)
+        try:
+            found = solve(
+                decision, method, work=work, seed=number, start=start, guard_s=effort.guard_s
+            )
+        except (WallGuardError, ModelError) as error:
+            tell(f"{row.question}: {method}: {error}")
+            continue
+        by = method if method in UNLIMITED else f"{method} {work:g}"
+        better = library.enter(decision, found, by, found.bound)
+        count += len(better)
+    if library.rows[row.question].status != OPTIMAL and _is_stated(decision):
+        who, bound = best_bound(decision, effort.work * 4**number, guard_s=effort.guard_s)
+        if who:
+            count += len(library.enter(decision, None, f"{who} {effort.work * 4**number:g}", bound))
+    now = library.rows[row.question]
+    tell(f"{now.size} {now.question}: value {now.value:.10g}, gap {now.gap:.2%}, {now.status}")
+    return count
+
+
+def _searches(
+    decision: Decision, row: Row, effort: Effort, number: int
+) -> Iterator[tuple[str, float]]:
+    """Yield methods and limits of a round; those without limits only in the first."""
+    for method in METHODS[decision.family]:
+        if method in UNLIMITED and number:
+            continue
+        if method == "cp_sat" and not _is_stated(decision):
+            continue
+        yield method, STEPS.get(method, effort.work) * 4**number
+
+
+def _is_stated(decision: Decision) -> bool:
+    """Whether the exact programme is small enough to be built."""
+    most = LARGEST_EXACT.get(decision.family)
+    if most is None:
+        return True
+    n = decision.sizes
+    return n["P"] * n["S"] * int(decision.data["visits"]) + n["L"] * n["S"] * 4 <= most

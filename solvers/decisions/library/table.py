@@ -1,0 +1,227 @@
+"""Best known values and bounds: a row per question, and the best answer as a file beside it.
+
+`FAMILY/SIZE/NAME.json.gz` is a question, `NAME.solution.json.gz` its best known answer, and
+`best.csv` the table. A value or a bound gets in by `Library.enter` alone, which accepts nothing
+that `checking` does not, and no bound beyond a value that somebody has.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from rmfs.errors import InputError
+from rmfs.files import write_text
+from rmfs.measure.provenance import commit, version
+from rmfs.solvers.decisions.checking import TOLERANCE, check
+from rmfs.solvers.decisions.files import Found, read, read_solution, write_solution
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from rmfs.solvers.decisions.files import Decision
+
+TABLE = "best.csv"
+OPTIMAL, OPEN = "optimal", "open"
+PROVEN = 1e-4
+"""Relative gap that counts as none: CP-SAT has costs in whole parts, of 1/1024 s and the like."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """What is known of one question.
+
+    Attributes
+    ----------
+    question
+        Its name.
+    family, size, load, moment
+        As it was drawn.
+    value, bound
+        Best known; nan for none.
+    value_by, bound_by
+        Who found it: method and limit, or a solver, or a person.
+    value_when, bound_when
+        Day, and version and commit of rmfs with which it was entered.
+    """
+
+    question: str
+    family: str
+    size: str
+    load: str = ""
+    moment: str = ""
+    value: float = math.nan
+    value_by: str = ""
+    value_when: str = ""
+    bound: float = math.nan
+    bound_by: str = ""
+    bound_when: str = ""
+
+    @property
+    def gap(self) -> float:
+        """Distance of value and bound relative to the greater of them; nan without one of them."""
+        apart = abs(self.value - self.bound)
+        return 0.0 if apart == 0.0 else apart / max(abs(self.value), abs(self.bound))
+
+    @property
+    def status(self) -> str:
+        """`optimal` if value and bound are the same but for `PROVEN`, `open` otherwise."""
+        near = abs(self.value - self.bound) <= PROVEN * max(1.0, abs(self.value))
+        return OPTIMAL if near else OPEN
+
+
+@dataclass
+class Library:
+    """A folder of questions with its table.
+
+    Attributes
+    ----------
+    folder
+        Where it is.
+    rows
+        By name of the question.
+    """
+
+    folder: Path
+    rows: dict[str, Row] = field(default_factory=dict)
+
+    @classmethod
+    def load(cls, folder: Path) -> Library:
+        """Read the table, and list the questions that it does not know yet.
+
+        Raises
+        ------
+        InputError
+            If there is no question.
+        """
+        known = {row.question: row for row in _rows(folder / TABLE)}
+        rows = {}
+        for path in questions(folder):
+            name = path.name.removesuffix(".json.gz")
+            rows[name] = known.get(name) or _first(path)
+        if not rows:
+            raise InputError(f"{folder}: no decision files")
+        return cls(folder, rows)
+
+    def path(self, row: Row) -> Path:
+        """Return the file of a question."""
+        return self.folder / row.family / row.size / f"{row.question}.json.gz"
+
+    def answer(self, row: Row, decision: Decision) -> Found | None:
+        """Return the best known answer."""
+        path = _answer(self.path(row))
+        return read_solution(decision, path) if path.exists() else None
+
+    def enter(
+        self, decision: Decision, found: Found | None, by: str, bound: float = math.nan
+    ) -> list[str]:
+        """Take an answer, a bound or both, if they are better than what is known, and save.
+
+        Parameters
+        ----------
+        decision
+            A question of the library.
+        found
+            The answer; its own bound is not looked at.
+        by
+            Who found it.
+        bound
+            A proven bound.
+
+        Returns
+        -------
+        What got better: `value`, `bound`.
+
+        Raises
+        ------
+        WrongError
+            If the answer is not allowed.
+        InputError
+            If the question is not of the library, or the bound is beyond the best value.
+        """
+        row = self.rows.get(decision.name)
+        if row is None:
+            raise InputError(f"{decision.name}: is not in {self.folder}")
+        better, sign = [], decision.sign
+        when = stamp()
+        if found is not None and found.is_there:
+            value = check(decision, replace(found, bound=math.nan))
+            slack = 1e-9 * max(1.0, abs(value))
+            if math.isnan(row.value) or (row.value - value) * sign > slack:
+                _refuse_beyond(row, value, row.bound, sign)
+                row = replace(row, value=value, value_by=by, value_when=when)
+                kept = replace(
+                    found, objective=value, bound=math.nan, by={**found.by, "entered_by": by}
+                )
+                write_solution(decision, kept, _answer(self.path(row)))
+                better.append("value")
+        if math.isfinite(bound) and (math.isnan(row.bound) or (bound - row.bound) * sign > 0):
+            _refuse_beyond(row, row.value, bound, sign)
+            row = replace(row, bound=bound, bound_by=by, bound_when=when)
+            better.append("bound")
+        if better:
+            self.rows[row.question] = row
+            self.save()
+        return better
+
+    def save(self) -> None:
+        """Write the table, whole or not at all."""
+        write_text(self.folder / TABLE, self.frame().to_csv(index=False))
+
+    def frame(self) -> pd.DataFrame:
+        """Return the table, sorted by family, size and name, with gap and status."""
+        rows = sorted(self.rows.values(), key=lambda row: (row.family, row.size, row.question))
+        return pd.DataFrame([{**vars(row), "gap": row.gap, "status": row.status} for row in rows])
+
+
+def questions(folder: Path) -> Iterator[Path]:
+    """Yield the questions below a folder, sorted by path."""
+    for path in sorted(folder.rglob("*.json.gz")):
+        if ".solution." not in path.name:
+            yield path
+
+
+def stamp() -> str:
+    """Say when and with what something was found: day, version and commit."""
+    head = commit()["git_commit"]
+    return f"{datetime.now(UTC):%Y-%m-%d} rmfs {version()} {(head or 'no commit')[:12]}"
+
+
+def _answer(question: Path) -> Path:
+    return question.with_name(question.name.replace(".json.gz", ".solution.json.gz"))
+
+
+def _first(path: Path) -> Row:
+    decision = read(path)
+    drawn = decision.provenance.get("drawn", {})
+    return Row(
+        decision.name,
+        decision.family,
+        path.parent.name,
+        str(drawn.get("load", "")),
+        str(drawn.get("moment", "")),
+    )
+
+
+def _rows(path: Path) -> Iterator[Row]:
+    if not path.exists():
+        return
+    # read line by line: every number as the double that was written
+    with path.open(encoding="utf-8", newline="") as file:
+        for told in csv.DictReader(file):
+            given = {key: told[key] for key in Row.__dataclass_fields__ if key in told}
+            value, bound = (float(given.pop(key, "") or math.nan) for key in ("value", "bound"))
+            yield Row(**given, value=value, bound=bound)
+
+
+def _refuse_beyond(row: Row, value: float, bound: float, sign: int) -> None:
+    if (bound - value) * sign > TOLERANCE * max(1.0, abs(value)):
+        raise InputError(
+            f"{row.question}: bound {bound!r} is beyond value {value!r}: one of them is wrong"
+        )
