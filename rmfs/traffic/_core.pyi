@@ -47,6 +47,33 @@ class Conflict:
 class Reserved:
     def __init__(self, waypoint: int) -> None: ...
 
+class Visits:
+    def __init__(
+        self,
+        under_way: list[list[int]],
+        kept: list[int],
+        order_station: list[int],
+        order_until: list[int],
+        order_worth: list[float],
+        line_order: list[int],
+        line_sku: list[int],
+        line_units: list[int],
+        line_worth: list[float],
+        stock: NDArray[np.int64],
+        cost: NDArray[np.float64],
+        visits: int,
+        decay: float,
+    ) -> None: ...
+    def filled(
+        self, pods: list[list[int]]
+    ) -> tuple[list[list[int]], list[int], list[int], float, int]: ...
+    def by_rule(
+        self, pods: list[list[int]]
+    ) -> tuple[list[list[int]], list[int], list[int], float, int]: ...
+    def searched(
+        self, pods: list[list[int]], steps: int, seed: int
+    ) -> tuple[list[list[int]], list[int], list[int], float, int]: ...
+
 class Core:
     def __init__(
         self,

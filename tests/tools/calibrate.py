@@ -61,6 +61,13 @@ CASES: list[tuple[str, str, str, Overrides]] = [
     ("large", "large", "ta-matching", [(["scenario", "duration_s"], 120.0)]),
     ("small", "small", "planning", []),
     ("small", "small", "planning", [(["controllers", "ta", "method"], "greedy")]),
+    ("large", "large", "planning", [(["scenario", "duration_s"], 300.0)]),
+    (
+        "large",
+        "large",
+        "planning",
+        [(["scenario", "duration_s"], 300.0), (["controllers", "ta", "method"], "greedy")],
+    ),
     ("small", "small", "stocking", []),
     ("small", "small", "stocking", [(["controllers", "rps", "method"], "highs")]),
     ("small", "small", "stocking", [(["controllers", "rps", "method"], "rounding")]),

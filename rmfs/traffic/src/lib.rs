@@ -18,6 +18,7 @@ pub mod robot;
 pub mod route;
 pub mod search;
 pub mod units;
+pub mod visits;
 
 #[cfg(feature = "python")]
 mod python;

@@ -19,12 +19,12 @@ class PlanningParameters(SearchParameters):
     method: Literal["lns", "greedy", "cp_sat"] = "lns"
     """Who plans: `lns` (large neighbourhood search), `cp_sat` (exact, for very small sites), or the
     start rule of both, `greedy`."""
-    visits: Count = 8
+    visits: Annotated[int, pydantic.Field(ge=1, le=32)] = 6
     """Visits per station that are planned ahead, besides those of pods under way."""
-    stations: Count = 3
+    stations: Count = 64
     """Pick stations planned for at a time, those with the least work on its way; what is planned
     for the others stays."""
-    steps: Annotated[int, pydantic.Field(ge=0)] = 30
+    steps: Annotated[int, pydantic.Field(ge=0)] = 300
     """Steps of the search for each plan."""
     buffer_s: NotNegative = 1.0
     """Seconds for which decisions are collected before the optimiser is asked again."""

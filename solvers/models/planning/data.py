@@ -13,6 +13,9 @@ from rmfs.solvers.models.checks import costs, integers, number, reals, require
 Integers = NDArray[np.int64]
 Reals = NDArray[np.float64]
 
+MOST_VISITS = 64
+"""Most visits of a station: they are bits of a number."""
+
 
 @dataclass(frozen=True)
 class Planning:
@@ -114,6 +117,12 @@ class Planning:
         have = np.bincount(line_order, minlength=orders) > 0
         require(bool(have[waits].all()), "line_order", "must name a line of each waiting order")
         under_way = np.array([len(found) for found in self.under_way], np.int64)
+        longest = int(under_way.max(initial=0)) + self.visits
+        require(
+            longest <= MOST_VISITS,
+            "visits",
+            f"at most {MOST_VISITS} of a station in all",
+        )
         until = self.order_until[~waits]
         require(
             bool((until < under_way[self.order_station[~waits]]).all()),

@@ -5,10 +5,9 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from rmfs.solvers.models.planning.appeal import Appeal
-from rmfs.solvers.models.planning.filling import Filling
+from rmfs.solvers.models.planning.compiled import found, visits
 from rmfs.solvers.models.planning.outcome import solution
-from rmfs.solvers.models.planning.visits import extended, first_visits
+from rmfs.solvers.models.planning.start import first_visits
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
 
 if TYPE_CHECKING:
@@ -48,7 +47,6 @@ def solve(
     The plan; not worse than the start.
     """
     began = time.perf_counter()
-    filling = Filling(data)
     known = first_visits(data, start, pods)
-    draft = extended(filling, Appeal(data), known)
-    return solution(data, draft.plan(), start, filling.work, bound_steps, began)
+    plan = found(visits(data).by_rule(known))
+    return solution(data, plan, start, bound_steps, began)

@@ -10,11 +10,12 @@ from rmfs.solvers.models.planning.values import objective
 from rmfs.solvers.models.solution import Solution, Status
 
 if TYPE_CHECKING:
+    from rmfs.solvers.models.planning.compiled import Found
     from rmfs.solvers.models.planning.data import Planning
     from rmfs.solvers.models.planning.values import Plan
 
 NAME = "visits"
-"""Back end of the rule and of the search; its unit of work is a line looked at for a station."""
+"""Back end of the rule and the search; a unit of work is an entry of stock or a line looked at."""
 
 
 def better(data: Planning, plan: Plan, start: Plan | None) -> Plan:
@@ -25,10 +26,10 @@ def better(data: Planning, plan: Plan, start: Plan | None) -> Plan:
 
 
 def solution(
-    data: Planning, plan: Plan, start: Plan | None, work: int, bound_steps: int, began: float
+    data: Planning, found: Found, start: Plan | None, bound_steps: int, began: float
 ) -> Solution[Plan]:
     """Wrap a plan up, with a bound if there are steps for one."""
-    chosen = better(data, plan, start)
+    chosen = better(data, found.plan, start)
     value = objective(data, chosen)
     proven = prices.bound(data, value, bound_steps)
     return Solution(
@@ -38,5 +39,6 @@ def solution(
         status=Status.OPTIMAL if proven == value else Status.FEASIBLE,
         backend=NAME,
         wall_s=time.perf_counter() - began,
-        work=float(work),
+        work=float(found.work),
+        built=float(data.stock.size + data.cost.size),
     )

@@ -4,6 +4,7 @@ mod guard;
 mod motion;
 mod planner;
 mod tables;
+mod visits;
 
 use std::collections::HashMap;
 
@@ -24,6 +25,7 @@ use crate::units::{Us, from_radians, to_radians};
 use guard::{guarded, internal_error};
 use motion::Motion;
 use planner::{Along, Conflict, Fault, PlannerInPython, Reserved, Search, Way};
+use visits::Visits;
 
 /// A robot kind as it comes from Python: acceleration, deceleration, top speed, full turn (µs),
 /// pod transfer (µs).
@@ -482,5 +484,5 @@ fn placed(network: &Network, robots: &[(u32, f64, u8)]) -> Result<Vec<(u32, u8, 
 #[pyo3(name = "_core")]
 mod core_module {
     #[pymodule_export]
-    use super::{Along, Conflict, Core, Motion, Reserved, Search, Way};
+    use super::{Along, Conflict, Core, Motion, Reserved, Search, Visits, Way};
 }

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from plain_filling import Filling
 from planning_oracle import best
 from planning_sample import planning
 
@@ -20,6 +21,7 @@ from rmfs.solvers.models.planning import (
     solve,
     violations,
 )
+from rmfs.solvers.models.planning.compiled import found, visits
 
 METHODS = methods()
 TINY: list[dict[str, int]] = [
@@ -98,6 +100,25 @@ def test_the_search_repeats_and_depends_on_its_seed() -> None:
         assert first.work == again.work
         others += first.required.pods != solve(data, "lns", limits, seed=2).required.pods
     assert others
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_compiled_filling_is_the_plain_one(seed: int) -> None:
+    """Any visits of any stations serve the same lines by either, and are worth the same."""
+    rng = np.random.default_rng(seed)
+    sizes = {"stations": (1, 5), "slots": (1, 5), "orders": (1, 40), "pods": (5, 30),
+             "skus": (1, 14), "visits": (1, 6)}  # fmt: skip
+    data = planning(**{name: int(rng.integers(*span)) for name, span in sizes.items()}, seed=seed)
+    pods: list[list[int]] = [[] for _ in range(data.stations)]
+    for pod in rng.permutation(np.arange(1, data.pods)).tolist():
+        station = int(rng.integers(data.stations))
+        if len(pods[station]) < data.visits:
+            pods[station].append(pod)
+    plain, compiled = Filling(data).draft(pods), found(visits(data).filled(pods))
+    assert [list(new) for new in compiled.plan.pods] == plain.pods
+    assert compiled.plan.order_station.tolist() == plain.order_station
+    assert compiled.plan.line_visit.tolist() == plain.line_visit
+    assert compiled.value == pytest.approx(plain.value)
 
 
 def test_a_plan_goes_on_from_the_last_one() -> None:

@@ -1,12 +1,10 @@
-"""Which orders go with given visits: a rule that is quick enough to be asked thousands of times."""
+"""Which orders go with given visits, in plain Python: what the compiled filling must do as well."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
-from rmfs.solvers.models.planning.values import NONE, Plan
+from rmfs.solvers.models.planning.values import NONE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -42,14 +40,6 @@ class Draft(NamedTuple):
     earned: float
     value: float
 
-    def plan(self) -> Plan:
-        """Return it as the values of the model."""
-        return Plan(
-            tuple(tuple(pods) for pods in self.pods),
-            np.array(self.order_station, np.int64),
-            np.array(self.line_visit, np.int64),
-        )
-
 
 class Filling:
     """Fills visits with orders.
@@ -57,16 +47,10 @@ class Filling:
     Open orders come first, each line in the first visit that has its units. A waiting order takes
     the visits closest together that have its lines: first the orders of one visit, which keep no
     slot, then those of visits next to each other, and so on; among them those that begin first.
-
-    Attributes
-    ----------
-    work
-        Lines looked at so far for the visits of a station.
     """
 
     def __init__(self, data: Planning) -> None:
         self.data = data
-        self.work = 0
         self._lines: list[list[Line]] = [[] for _ in range(data.orders)]
         rows = zip(data.line_order.tolist(), data.line_sku.tolist(), data.line_units.tolist(),
                    strict=True)  # fmt: skip
@@ -123,7 +107,6 @@ class Filling:
         ]
 
     def _fill(self, new: list[list[int]]) -> Draft:
-        self.work += self.data.stations * max(self.data.lines, 1)
         data = self.data
         left = [
             [dict(self._units_on(pod)) for pod in (*before, *after)]

@@ -1,0 +1,15 @@
+//! Plans of pod visits, for the model `rmfs.solvers.models.planning`: arrays in, a plan out.
+//!
+//! Nothing here knows of traffic. It is part of this crate as the package has one compiled library.
+
+mod appeal;
+mod filling;
+mod problem;
+mod rule;
+mod search;
+
+pub use appeal::Appeal;
+pub use filling::{Draft, Filling};
+pub use problem::{Given, Line, NONE, Problem, Stocked};
+pub use rule::extended;
+pub use search::improved;

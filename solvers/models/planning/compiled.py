@@ -1,0 +1,52 @@
+"""The compiled part: what is to be planned as it takes it, and the plan that it gives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from rmfs.solvers.models.planning.values import Plan
+from rmfs.traffic._core import Visits  # the package has one compiled library
+
+if TYPE_CHECKING:
+    from rmfs.solvers.models.planning.data import Planning
+
+
+class Found(NamedTuple):
+    """A plan, its worth (the objective with the other sign), and the work it took."""
+
+    plan: Plan
+    value: float
+    work: int
+
+
+def visits(data: Planning) -> Visits:
+    """Hand an input over; SKUs that no line wants are left out."""
+    wanted, sku = np.unique(data.line_sku, return_inverse=True)
+    return Visits(
+        data.under_way,
+        data.kept,
+        data.order_station.tolist(),
+        data.order_until.tolist(),
+        data.order_worth.tolist(),
+        data.line_order.tolist(),
+        sku.tolist(),
+        data.line_units.tolist(),
+        data.line_worth.tolist(),
+        np.ascontiguousarray(data.stock[:, wanted]),
+        np.ascontiguousarray(data.cost).ravel(),
+        data.visits,
+        data.decay,
+    )
+
+
+def found(told: tuple[list[list[int]], list[int], list[int], float, int]) -> Found:
+    """Read a plan."""
+    pods, order_station, line_visit, value, work = told
+    plan = Plan(
+        tuple(tuple(new) for new in pods),
+        np.array(order_station, np.int64),
+        np.array(line_visit, np.int64),
+    )
+    return Found(plan, value, work)
