@@ -74,9 +74,11 @@ def needed(frame: pd.DataFrame, groups: Sequence[str], enough: float = ENOUGH) -
     return Table(rows_frame(rows, ", ".join(groups)), decimals, caption)
 
 
-def picture(study: Study, frame: pd.DataFrame, limit: float) -> Path:
+def picture(
+    study: Study, frame: pd.DataFrame, limit: float, name: str = "fewer-robots.png"
+) -> Path:
     """Draw units per hour over the fleet, with the bounds."""
-    path = study.place("fewer-robots.png")
+    path = study.place(name)
     with saving(path, 6.0, 4.0) as figure:
         ax = figure.subplots()
         lines(frame, ROBOTS, "units_per_h", "controllers", ax)

@@ -1,9 +1,10 @@
 """What planning ahead is worth: the search against its own start rule.
 
-TA planning on the small site with three to five robots, whole orders, a backlog and arrivals, after
-half an hour of warm-up. The start rule is the same controller with `method = "greedy"`: same
-horizon, same values, plans that go on from the last one, but nothing searched. Bundles and space in
-use stand beside, as who stores fewer has robots to spare for a while.
+TA planning on the small site with three to five robots (`--large`: the large site with 20 and 30),
+whole orders, a backlog and arrivals, after a warm-up. The start rule is the same controller with
+`method = "greedy"`: same horizon, same values, plans that go on from the last one, but nothing
+searched. Bundles and space in use stand beside, as who stores fewer has robots to spare for a
+while.
 """
 
 from __future__ import annotations
@@ -36,11 +37,17 @@ GAINED = ("units_per_h", "distance_per_unit_m", "units_per_visit", "orders_per_h
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
-    study = done(parser("planning", __doc__).parse_args(arguments))
+    options = parser("planning", __doc__)
+    options.add_argument("--large", action="store_true", help="the large site instead")
+    given = options.parse_args(arguments)
+    name = "planning-large" if given.large else "planning"
+    if given.large:
+        given.design = name
+    study = done(given)
     frame = completed(study.frame, station_units_per_h(study))
     frame = frame.assign(**{CONTROLLERS: frame["planned"]})
-    study.publish(overview(frame, (*GROUPS, CONTROLLERS), COLUMNS), "planning", COLUMNS)
-    study.publish(gains(frame, GROUPS, START_RULE, GAINED), "planning-gains", GAINED)
+    study.publish(overview(frame, (*GROUPS, CONTROLLERS), COLUMNS), name, COLUMNS)
+    study.publish(gains(frame, GROUPS, START_RULE, GAINED), f"{name}-gains", GAINED)
     require_optimised(study)
 
 

@@ -7,49 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rmfs.control.decisions import AssignLines, AssignOrder
-
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from rmfs.control.asks import Call
     from rmfs.control.view import View
-    from rmfs.world.orders import Order, OrderLine
+    from rmfs.solvers.control.items import Item
     from rmfs.world.stations import PickStation
-
-
-@dataclass(frozen=True, eq=False)
-class Item:
-    """An order, or one line of an order that may be split.
-
-    Attributes
-    ----------
-    line
-        The line; None for the whole order.
-    """
-
-    order: Order
-    line: OrderLine | None = None
-
-    @property
-    def lines(self) -> tuple[OrderLine, ...]:
-        """The lines it stands for."""
-        return self.order.lines if self.line is None else (self.line,)
-
-    @property
-    def key(self) -> tuple[int, int]:
-        """Tells one from another: index of the order and SKU, or -1."""
-        return self.order.index, -1 if self.line is None else self.line.sku
-
-    def waits(self, view: View) -> bool:
-        """Whether it is still in the backlog."""
-        return self.order in view.orders and (self.line is None or self.line in self.order.lines)
-
-    def decision(self, station: int) -> AssignOrder | AssignLines:
-        """Put it on a station."""
-        if self.line is None:
-            return AssignOrder(self.order, station)
-        return AssignLines(self.order, station, (self.line.sku,))
 
 
 @dataclass(frozen=True, eq=False)

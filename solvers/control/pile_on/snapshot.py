@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.control.asks import Ask
-from rmfs.solvers.control.pile_on.plan import Item
+from rmfs.solvers.control.items import servable
 from rmfs.solvers.control.pile_on.question import Question, solve
 from rmfs.solvers.models.pile_on import Candidates, PileOn, everything
 from rmfs.solvers.models.pile_on.partial_assignment import PartialAssignment
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rmfs.control.view import View
+    from rmfs.solvers.control.items import Item
     from rmfs.solvers.control.pile_on.parameters import JointParameters
     from rmfs.solvers.control.pile_on.plan import Plan
     from rmfs.world.robots import Robot
@@ -74,7 +75,8 @@ def take(
     station gets a slot for each item that pods on their way cover to the full, and one more if it
     needs a pod; `when_needed = false` gives it all its free slots.
     """
-    items = _items(view, plan, given.split)
+    taken = plan.keys()
+    items = [item for item in servable(view, given.split) if item.key not in taken]
     open_units = _open_units(view, plan)
     if not items and not open_units.any():
         return None
@@ -91,21 +93,6 @@ def take(
     if not slots.any() and not data.shortage.any():
         return None
     return Snapshot(replace(data, slots=slots, may_call=may_call), items, robots or ())
-
-
-def _items(view: View, plan: Plan, split: bool) -> list[Item]:
-    """Orders, or lines, that wait and are not planned yet, in order of arrival."""
-    orders, stock = view.orders, view.inventory.free_stock
-    taken = plan.keys()
-    if split:
-        found = (Item(order, line) for order in orders for line in order.lines)
-        return [
-            i for i in found if i.lines[0].units <= stock[i.lines[0].sku] and i.key not in taken
-        ]
-    rows = orders.servable(stock).nonzero()[0]
-    rows = rows[np.argsort(orders.index[rows], kind="stable")]
-    found = (Item(orders.at_row[row]) for row in rows.tolist())
-    return [item for item in found if item.key not in taken]
 
 
 def _open_units(view: View, plan: Plan) -> NDArray[np.int64]:

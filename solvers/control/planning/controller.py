@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rmfs.control.asks import By
-from rmfs.control.decisions import AssignOrder, BringForBundles, BringForPicks, Park, Rest
+from rmfs.control.decisions import (
+    AssignLines,
+    AssignOrder,
+    BringForBundles,
+    BringForPicks,
+    Park,
+    Rest,
+)
 from rmfs.control.pps.lexicographic import Lexicographic
 from rmfs.control.problems import Problem, Trigger
 from rmfs.control.ta import WORK, TaskAllocation
@@ -44,14 +51,15 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
     The model is asked, at most once per `buffer_s`, when a pod has reached a pick station, a robot
     without pod is free, or an order has come for which there are slots or idle robots. It plans
     several visits per station, with the orders that each serves: whole orders, which keep their
-    slot until their last pod has come. The plan goes on from the last one. Of it only this is
-    carried out: orders whose first pod is under way take slots, and a station whose pods under way
-    have less work than `horizon_s` is sent the next pod by the nearest free robot.
+    slot until their last pod has come, or their lines apart (`split`). The plan goes on from the
+    last one. Of it only this is carried out: orders whose first pod is under way take slots, and a
+    station whose pods under way have less work than `horizon_s` is sent the next pod by the nearest
+    free robot.
 
     The rest is left to rules. A robot with a pod goes on while there is work for it at its station,
     takes it to a replenishment station for which bundles of this pod wait, or parks it where PSA
-    says. While the stock is below `stock_floor` one robot at least works for bundles; robots that
-    no pick station needs do so as well. If the optimiser fails, its start rule plans.
+    says. While the stock is below `stock_floor` some robots work for bundles (`bundle_share`);
+    robots that no pick station needs do so as well. If the optimiser fails, its start rule plans.
     """
 
     parameters_model = PlanningParameters
@@ -120,7 +128,7 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
         """Orders, and pods for picks with the robots that fetch them."""
         if isinstance(decision, BringForPicks):
             return decision.robot.pod < 0
-        return isinstance(decision, AssignOrder)
+        return isinstance(decision, AssignOrder | AssignLines)
 
     def _ask(self) -> Iterator[Decision]:
         given, now_s = self.parameters, self.view.now_s
@@ -148,15 +156,16 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
     def _give_slots(self) -> Iterator[Decision]:
         """Put orders on slots whose first pod is under way."""
         for station in self.view.pick_stations:
-            for order in self._plan.due(station):
-                yield By(AssignOrder(order, station.index), self._plan.call(station.index))
+            for decision in self._plan.due(station):
+                yield By(decision, self._plan.call(station.index))
 
     def _send(self) -> Iterator[Decision]:
         """Send free robots: for bundles if stock is low, for picks, then for bundles again."""
         view = self.view
         floor = self.parameters.stock_floor * view.inventory.total_capacity
-        if view.inventory.stored_space < floor and not self._at_bundles():
-            yield from self._replenish(1)
+        if view.inventory.stored_space < floor:
+            needed = max(1, round(self.parameters.bundle_share * len(view.robots)))
+            yield from self._replenish(needed - self._at_bundles())
         while (free := self._free_robots()) and (station := self._short()) is not None:
             pod = self._plan.pods[station.index].pop(0)
             at = view.storage.pod_waypoint[[pod]]

@@ -19,6 +19,8 @@ class PlanningParameters(SearchParameters):
     method: Literal["lns", "greedy", "cp_sat"] = "lns"
     """Who plans: `lns` (large neighbourhood search), `cp_sat` (exact, for very small sites), or the
     start rule of both, `greedy`."""
+    split: bool = False
+    """Whether lines of an order may go to different stations, or to one at different times."""
     visits: Annotated[int, pydantic.Field(ge=1, le=32)] = 6
     """Visits per station that are planned ahead, besides those of pods under way."""
     stations: Count = 64
@@ -44,8 +46,10 @@ class PlanningParameters(SearchParameters):
     decay: Annotated[float, pydantic.Field(gt=0, le=1)] = 0.9
     """What the next visit of a station counts, as a share of this one."""
     stock_floor: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.6
-    """Share of the space in use below which a robot always works for bundles; above it, robots that
+    """Share of the space in use below which robots always work for bundles; above it, robots that
     no pick station needs do."""
+    bundle_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.15
+    """Share of the robots, and one at least, that work for bundles below the floor."""
     robots_per_station: Count = 9
     """How many robots may be at, or on their way to, one pick station."""
     rest: RestRule = "nearest"

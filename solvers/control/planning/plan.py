@@ -13,15 +13,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from rmfs.control.asks import Call
+    from rmfs.control.decisions import AssignLines, AssignOrder
     from rmfs.control.view import View
+    from rmfs.solvers.control.items import Item
     from rmfs.solvers.control.planning.snapshot import Memo
-    from rmfs.world.orders import Order
     from rmfs.world.stations import PickStation
 
 
 @dataclass(frozen=True, eq=False)
 class Planned:
-    """A waiting order with a station.
+    """A waiting order, or a line of one, with a station.
 
     Attributes
     ----------
@@ -33,16 +34,16 @@ class Planned:
         The pod of its first visit.
     """
 
-    order: Order
+    item: Item
     first: int
     last: int
     units: Mapping[int, int]
     begins_with: int
 
     @property
-    def sequence(self) -> tuple[int, int, int]:
+    def sequence(self) -> tuple[int, int, tuple[int, int]]:
         """Orders that come first are smaller."""
-        return self.first, self.last, self.order.index
+        return self.first, self.last, self.item.key
 
 
 class Plan:
@@ -63,20 +64,21 @@ class Plan:
     def take(self, solution: Mapping[str, Any], memo: Memo, call: Call | None) -> None:
         """Replace the plan, at the stations it was asked for, by a solution."""
         visits: dict[int, list[tuple[int, int]]] = {}
-        for line, visit in zip(memo.lines, solution["line_visit"].tolist(), strict=True):
+        served = zip(memo.lines, memo.order_of, solution["line_visit"].tolist(), strict=True)
+        for line, number, visit in served:
             if visit >= 0:
-                visits.setdefault(line.order.index, []).append((visit, line.open_units))
+                visits.setdefault(number, []).append((visit, line.open_units))
         for number, row in enumerate(solution["pods"].tolist()):
             station = memo.stations[number].index
             self.pods[station] = [pod for pod in row if pod >= 0]
             self._orders[station] = []
             self._call[station] = call
-        for order, number in zip(memo.orders, solution["order_station"].tolist(), strict=True):
-            if number >= 0 and order in self._view.orders:
-                station = memo.stations[number].index
-                sequence = [*memo.under_way[number], *self.pods[station]]
-                planned = _planned(order, visits[order.index], sequence)
-                self._orders[station].append(planned)
+        stations = solution["order_station"].tolist()
+        for number, (item, at) in enumerate(zip(memo.items, stations, strict=True)):
+            if at >= 0 and item is not None and item.waits(self._view):
+                sequence = [*memo.under_way[at], *self.pods[memo.stations[at].index]]
+                planned = _planned(item, visits[number], sequence)
+                self._orders[memo.stations[at].index].append(planned)
         for orders in self._orders:
             orders.sort(key=lambda one: one.sequence)
 
@@ -84,9 +86,9 @@ class Plan:
         """Return the call that the plan of a station comes from; None: the rule."""
         return self._call[station]
 
-    def orders_of(self, stations: Sequence[int]) -> set[int]:
-        """Return the orders that are planned for some stations, by index."""
-        return {one.order.index for station in stations for one in self._orders[station]}
+    def keys_of(self, stations: Sequence[int]) -> set[tuple[int, int]]:
+        """Return keys of the orders, or lines, that are planned for some stations."""
+        return {one.item.key for station in stations for one in self._orders[station]}
 
     def next_pod(self, station: int) -> int:
         """Return the pod of the next visit that is still possible, or -1."""
@@ -96,8 +98,8 @@ class Plan:
             self._stale(station)
         return pods[0] if pods else -1
 
-    def due(self, station: PickStation) -> Iterator[Order]:
-        """Yield orders that are to have a slot now; each is given it before the next is asked for.
+    def due(self, station: PickStation) -> Iterator[AssignOrder | AssignLines]:
+        """Yield what is to have a slot now; each is given it before the next is asked for.
 
         These are orders whose first pod is under way. One slot is left for orders that the pod at
         the head serves alone.
@@ -108,14 +110,15 @@ class Plan:
         coming = set(under_way(self._view, station))
         head = self._head(station)
         for planned in list(waiting):
-            if planned.order not in self._view.orders:
+            if not planned.item.waits(self._view):
                 waiting.remove(planned)
                 self._stale(station.index)
             elif planned.begins_with in coming:
                 streams = list(planned.units) == [head]
-                if station.free_slots > (0 if streams else 1):
+                joins = planned.item.order.index in station.orders
+                if joins or station.free_slots > (0 if streams else 1):
                     waiting.remove(planned)
-                    yield planned.order
+                    yield planned.item.decision(station.index)
 
     def streams(self, pod: int, station: int) -> bool:
         """Whether orders wait that a pod serves alone."""
@@ -139,10 +142,10 @@ class Plan:
             call.stale += 1
 
 
-def _planned(order: Order, visits: list[tuple[int, int]], sequence: list[int]) -> Planned:
+def _planned(item: Item, visits: list[tuple[int, int]], sequence: list[int]) -> Planned:
     units: dict[int, int] = {}
     for visit, count in visits:
         units[sequence[visit]] = units.get(sequence[visit], 0) + count
     numbers = [visit for visit, _ in visits]
     first = min(numbers)
-    return Planned(order, first, max(numbers), units, sequence[first])
+    return Planned(item, first, max(numbers), units, sequence[first])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.control.asks import Ask
+from rmfs.solvers.control.items import servable
 from rmfs.solvers.control.planning.question import Question, solve
 from rmfs.solvers.models.planning import Planning
 from rmfs.solvers.models.solution import Limits
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rmfs.control.view import View
+    from rmfs.solvers.control.items import Item
     from rmfs.solvers.control.planning.parameters import PlanningParameters
     from rmfs.solvers.control.planning.plan import Plan
     from rmfs.world.orders import Order, OrderLine
@@ -34,15 +36,19 @@ class Memo:
     ----------
     stations
         The pick stations that are planned for.
-    orders, lines
-        The order, or line, of each number.
+    items
+        The waiting order, or line of an order that may be split, of each number of an order; None
+        for orders that are open.
+    lines, order_of
+        The line of each number, and the number of its order.
     under_way
         Pods under way to each of the stations, in the order in which they come.
     """
 
     stations: Sequence[PickStation]
-    orders: Sequence[Order]
+    items: Sequence[Item | None]
     lines: Sequence[OrderLine]
+    order_of: Sequence[int]
     under_way: Sequence[Sequence[int]]
 
 
@@ -50,18 +56,29 @@ class Memo:
 class _Rows:
     """Orders and lines as they are collected."""
 
-    orders: list[Order] = field(default_factory=list)
+    items: list[Item | None] = field(default_factory=list)
+    created_s: list[float] = field(default_factory=list)
     station: list[int] = field(default_factory=list)
     until: list[int] = field(default_factory=list)
     lines: list[OrderLine] = field(default_factory=list)
     order_of: list[int] = field(default_factory=list)
 
-    def add(self, order: Order, station: int, until: int) -> None:
-        for line in order.lines:
+    def open(self, order: Order, station: int, until: int) -> None:
+        """Add an order that a station has."""
+        self._add(order.lines, order.created_s, station, until)
+        self.items.append(None)
+
+    def waiting(self, item: Item) -> None:
+        """Add what waits."""
+        self._add(item.lines, item.order.created_s, NONE, NONE)
+        self.items.append(item)
+
+    def _add(self, lines: Sequence[OrderLine], created_s: float, station: int, until: int) -> None:
+        for line in lines:
             if line.open_units:
                 self.lines.append(line)
-                self.order_of.append(len(self.orders))
-        self.orders.append(order)
+                self.order_of.append(len(self.station))
+        self.created_s.append(created_s)
         self.station.append(station)
         self.until.append(until)
 
@@ -111,10 +128,10 @@ def ask(
     rows = _Rows()
     for number, station in enumerate(stations):
         _add_open(rows, station, number, coming[number])
-    taken = plan.orders_of(others)
-    for row in _servable(view):
-        if view.orders.at_row[row].index not in taken:
-            rows.add(view.orders.at_row[row], NONE, NONE)
+    taken = plan.keys_of(others)
+    for item in servable(view, given.split):
+        if item.key not in taken:
+            rows.waiting(item)
     if not rows.lines:
         return None
     may_come = view.storage.is_at_hand.copy()
@@ -129,7 +146,9 @@ def ask(
         "lines": data.lines,
         "pods": int(may_come.sum()),
     }
-    return Ask(solve, question, sizes, Memo(stations, rows.orders, rows.lines, coming))
+    return Ask(
+        solve, question, sizes, Memo(stations, rows.items, rows.lines, rows.order_of, coming)
+    )
 
 
 def _add_open(rows: _Rows, station: PickStation, number: int, coming: Sequence[int]) -> None:
@@ -141,14 +160,7 @@ def _add_open(rows: _Rows, station: PickStation, number: int, coming: Sequence[i
             order_number = pick.line.order.index
             until[order_number] = max(until.get(order_number, NONE), visit_of[pod])
     for index, order in station.orders.items():
-        rows.add(order, number, until.get(index, NONE))
-
-
-def _servable(view: View) -> list[int]:
-    """Rows of the waiting orders that the stock can serve, in order of arrival."""
-    rows = view.orders.servable(view.inventory.free_stock).nonzero()[0]
-    found: list[int] = rows[np.argsort(view.orders.index[rows], kind="stable")].tolist()
-    return found
+        rows.open(order, number, until.get(index, NONE))
 
 
 def _planning(
@@ -163,7 +175,7 @@ def _planning(
     order_of = np.array(rows.order_of, np.int64)
     units = np.array([line.open_units for line in rows.lines], np.int64)
     wanted, sku = np.unique([line.sku for line in rows.lines], return_inverse=True)
-    waited_s = np.array([view.now_s - order.created_s for order in rows.orders])
+    waited_s = view.now_s - np.array(rows.created_s)
     is_open = station >= 0
     return Planning(
         slots=np.array([one.slots for one in stations], np.int64),

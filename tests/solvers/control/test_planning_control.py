@@ -9,7 +9,13 @@ import pytest
 from doubles import Situation, small_layout
 
 from rmfs.control.asks import Ask, Call, told_by
-from rmfs.control.decisions import AssignOrder, BringForBundles, BringForPicks, Rest
+from rmfs.control.decisions import (
+    AssignLines,
+    AssignOrder,
+    BringForBundles,
+    BringForPicks,
+    Rest,
+)
 from rmfs.control.problems import Problem, Trigger
 from rmfs.solvers.control.planning import PlanningControl
 
@@ -48,6 +54,8 @@ def _apply(
         found.append(decision)
         if isinstance(decision, AssignOrder):
             world.assign_order(decision.order, decision.station)
+        elif isinstance(decision, AssignLines):
+            world.assign_lines(decision.order, decision.station, decision.skus)
         elif isinstance(decision, BringForPicks):
             world.start_pick(decision.robot, decision.pod, decision.station)
         elif isinstance(decision, BringForBundles):
@@ -81,6 +89,19 @@ def test_an_order_waits_at_its_station_for_a_second_pod(answer: bool) -> None:
     assert sorted(sent) == [0, 1]
 
 
+def test_lines_of_a_split_order_share_a_slot() -> None:
+    """Two pods of a line each come to the one station: the second line joins the first's slot."""
+    situation = Situation(small_layout(slots=2))
+    situation.stock(0, s1=5)
+    situation.stock(1, s2=5)
+    order = situation.order(s1=1, s2=1)
+    found = said(situation, situation.make(PlanningControl, split=True))
+    lines = [decision for decision in found if isinstance(decision, AssignLines)]
+    assert sorted(decision.skus for decision in lines) == [(1,), (2,)]
+    assert all(decision.order is order for decision in lines)
+    assert situation.world.pick_stations[0].free_slots == 1
+
+
 def test_no_further_pod_while_there_is_work_enough() -> None:
     """One unit is ten seconds of work: with a horizon of five the second pod is not sent for."""
     for horizon_s, sent in ((5.0, 1), (15.0, 2)):
@@ -105,6 +126,22 @@ def test_one_slot_is_left_for_the_pod_at_the_head() -> None:
     robot.station, station.robot = 0, robot.index
     assert len(orders(said(situation, control))) == 1
     assert sum(order in situation.world.orders for order in waiting) == 1
+
+
+def test_a_share_of_the_robots_works_for_bundles_while_stock_is_low() -> None:
+    """Below the floor so many robots as the share says, and one at least."""
+    for share, sent in ((0.0, 1), (0.5, 2)):
+        situation = Situation(small_layout(robots=4))
+        for pod in (0, 1, 2):
+            situation.waiting_bundle(pod=pod, station=1)
+            situation.stock(pod, s1=5)
+        for _ in range(8):
+            situation.order(s1=2)
+        given = {"stock_floor": 1.0, "bundle_share": share, "horizon_s": 500.0}
+        found = said(situation, situation.make(PlanningControl, **given))
+        first = [type(d) for d in found if isinstance(d, BringForPicks | BringForBundles)]
+        assert first[:sent] == [BringForBundles] * sent
+        assert first[sent] is BringForPicks
 
 
 def test_bundles_come_first_while_stock_is_low() -> None:

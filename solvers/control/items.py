@@ -1,0 +1,59 @@
+"""What a model assigns: whole orders, or lines of orders that may be split."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.control.decisions import AssignLines, AssignOrder
+
+if TYPE_CHECKING:
+    from rmfs.control.view import View
+    from rmfs.world.orders import Order, OrderLine
+
+
+@dataclass(frozen=True, eq=False)
+class Item:
+    """An order, or one line of an order that may be split.
+
+    Attributes
+    ----------
+    line
+        The line; None for the whole order.
+    """
+
+    order: Order
+    line: OrderLine | None = None
+
+    @property
+    def lines(self) -> tuple[OrderLine, ...]:
+        """The lines it stands for."""
+        return self.order.lines if self.line is None else (self.line,)
+
+    @property
+    def key(self) -> tuple[int, int]:
+        """Tells one from another: index of the order and SKU, or -1."""
+        return self.order.index, -1 if self.line is None else self.line.sku
+
+    def waits(self, view: View) -> bool:
+        """Whether it is still in the backlog."""
+        return self.order in view.orders and (self.line is None or self.line in self.order.lines)
+
+    def decision(self, station: int) -> AssignOrder | AssignLines:
+        """Put it on a station."""
+        if self.line is None:
+            return AssignOrder(self.order, station)
+        return AssignLines(self.order, station, (self.line.sku,))
+
+
+def servable(view: View, split: bool) -> list[Item]:
+    """Return waiting orders, or lines, that the stock can serve, in order of arrival."""
+    orders, stock = view.orders, view.inventory.free_stock
+    if split:
+        found = (Item(order, line) for order in orders for line in order.lines)
+        return [item for item in found if item.lines[0].units <= stock[item.lines[0].sku]]
+    rows = orders.servable(stock).nonzero()[0]
+    rows = rows[np.argsort(orders.index[rows], kind="stable")]
+    return [Item(orders.at_row[row]) for row in rows.tolist()]
