@@ -28,6 +28,7 @@ class Stream(IntEnum):
     TRIPS = 11
     DISTURBANCES = 12
     VISITS = 13
+    LOOK_AHEAD = 14
 
 
 def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:

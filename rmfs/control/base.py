@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from rmfs.control.asks import Call
+    from rmfs.control.lookahead import LookAhead
     from rmfs.control.problems import Problem, Trigger
     from rmfs.control.view import View
 
@@ -85,6 +86,8 @@ class Controller(Generic[P]):
     optimisers
         Modules with the functions that solve its questions (`rmfs.control.asks`); a controller
         that asks optimisers names one at least.
+    looks_ahead
+        Whether it is given `lookahead`, with which it tries decisions out.
     in_flight
         How many of its questions wait for an answer.
     """
@@ -98,6 +101,8 @@ class Controller(Generic[P]):
     decides: ClassVar[frozenset[Problem]] = frozenset()
     is_dummy: ClassVar[bool] = False
     optimisers: ClassVar[tuple[str, ...]] = ()
+    looks_ahead: ClassVar[bool] = False
+    lookahead: LookAhead
     in_flight: int = 0
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:

@@ -34,6 +34,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "due-time": "rmfs.control.poa.order_rules:DueTime",
         "frequency-age": "rmfs.control.poa.order_rules:FrequencyAge",
         "random": "rmfs.control.poa.order_rules:RandomOrder",
+        "rollout": "rmfs.control.poa.rollout:Rollout",
         "dummy": "rmfs.control.dummies:DummyPOA",
     },
     Problem.ROA: {
@@ -72,6 +73,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "random": "rmfs.control.ta.random:RandomTasks",
         "brute-force": "rmfs.control.ta.brute_force:BruteForce",
         "swarm": "rmfs.control.ta.swarm:Swarm",
+        "rollout": "rmfs.control.ta.rollout:Rollout",
         "dummy": "rmfs.control.dummies:DummyTA",
     },
     Problem.SA: {

@@ -58,7 +58,7 @@ class ArrivalProcess:
         )
         self._orders = order_intake(scenario, world.skus, site, seed, recorder)
         self._bundles = bundle_intake(scenario, world.skus, site, seed, recorder)
-        self._woken_us = -1
+        self._woken_us = self._wake = -1
 
     def top_up(self) -> None:
         """Make the orders and bundles that come now."""
@@ -67,6 +67,16 @@ class ArrivalProcess:
             self._add_order(order)
         for bundle in self._bundles.due(now_us, self):
             self._add_bundle(bundle)
+        self._wake_at(min(self._orders.next_us, self._bundles.next_us))
+
+    def redraw(self) -> None:
+        """Draw again when orders and bundles come next; see `Intake.redraw`."""
+        now_us = self._agenda.now_us
+        if self._woken_us > now_us:
+            self._agenda.cancel(self._wake)
+            self._woken_us = -1
+        self._orders.redraw(now_us)
+        self._bundles.redraw(now_us)
         self._wake_at(min(self._orders.next_us, self._bundles.next_us))
 
     def _add_order(self, arrival: OrderArrival) -> None:
@@ -94,7 +104,7 @@ class ArrivalProcess:
         """Ask again at a time, unless that has been arranged already."""
         if time_us != self._woken_us:
             self._woken_us = time_us
-            self._agenda.at(time_us, self._wanted)
+            self._wake = self._agenda.at(time_us, self._wanted)
 
     # --- what the scenario sees of the run ------------------------------------------------------
 

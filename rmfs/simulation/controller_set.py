@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
     from rmfs.control.base import Controller
     from rmfs.control.choices import Choice
+    from rmfs.control.lookahead import LookAhead
     from rmfs.control.settings import ControllerSettings
     from rmfs.control.trackers import Tracker
     from rmfs.control.view import View
@@ -31,6 +32,8 @@ class ControllerSet:
         The controllers of the beginning.
     seed
         The run's seed; each controller has a random stream of its own below it.
+    lookahead
+        For controllers that look ahead.
 
     Attributes
     ----------
@@ -40,9 +43,12 @@ class ControllerSet:
         Per trigger, methods that are told of it at once.
     """
 
-    def __init__(self, settings: ControllerSettings, view: View, seed: int) -> None:
+    def __init__(
+        self, settings: ControllerSettings, view: View, seed: int, lookahead: LookAhead
+    ) -> None:
         self._view = view
         self._seed = seed
+        self._lookahead = lookahead
         self._installed: dict[Problem, Controller[Any]] = {}
         self._consulted: dict[Problem, Controller[Any]] = {}
         self._generations = dict.fromkeys(Problem, 0)
@@ -69,12 +75,20 @@ class ControllerSet:
         self._create(choice)
         self._connect()
 
+    def put(self, problem: Problem, controller: Controller[Any]) -> None:
+        """Let a controller that exists already take over a problem."""
+        self._installed[problem] = controller
+        self._connect()
+
     def _create(self, choice: Choice) -> None:
         problem = choice.problem
         number = self._generations[problem]
         self._generations[problem] += 1
         rng = generator(self._seed, Stream.CONTROLLERS, _ORDER.index(problem), number)
-        self._installed[problem] = choice.controller(choice.parameters, self._view, rng)
+        created = choice.controller(choice.parameters, self._view, rng)
+        if created.looks_ahead:
+            created.lookahead = self._lookahead
+        self._installed[problem] = created
 
     def _connect(self) -> None:
         """Work out who is asked after, and told of, each trigger, and who decides what."""

@@ -88,6 +88,7 @@ class DisturbanceSource:
         self._draw = [generator(seed, Stream.DISTURBANCES, kind) for kind in range(3)]
         self._slow_since: dict[int, int] = {}
         self.begun: list[Disturbance] = []
+        self._next: dict[int, int] = {}
 
     @property
     def slow(self) -> list[tuple[int, int, int, float]]:
@@ -116,6 +117,12 @@ class DisturbanceSource:
             stop = partial(self._elevator_out, elevator, lasting_us)
             self._agenda.after(round(begin_s * 1e6), stop)
 
+    def redraw(self) -> None:
+        """Draw again what comes next of each kind; what has begun goes on."""
+        for kind, serial in list(self._next.items()):
+            self._agenda.cancel(serial)
+            self._repeat(kind)
+
     def _given_by_kind(self) -> tuple[Breakdowns | SlowRobots | Closures | None, ...]:
         """What the scenario says of each kind, in the order of their numbers."""
         return self._given.breakdowns, self._given.slow, self._given.closures
@@ -125,7 +132,7 @@ class DisturbanceSource:
         given = self._given_by_kind()[kind]
         assert given is not None
         gap_us = exponential_us(self._draw[kind].random(), 3600.0 / given.every_s)
-        self._agenda.after(gap_us, partial(self._come, kind))
+        self._next[kind] = self._agenda.after(gap_us, partial(self._come, kind))
 
     def _come(self, kind: int) -> None:
         """Start one of a kind, and enter the next."""

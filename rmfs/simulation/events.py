@@ -20,6 +20,11 @@ class Events(Observer):
     def __init__(self) -> None:
         self._observers: list[Observer] = []
 
+    @property
+    def observers(self) -> Sequence[Observer]:
+        """Who is told, in their order."""
+        return tuple(self._observers)
+
     def tell(self, observers: Sequence[Observer]) -> None:
         """Tell these, and nobody else, from now on."""
         self._observers = list(observers)

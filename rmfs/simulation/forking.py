@@ -9,8 +9,13 @@ from __future__ import annotations
 import io
 import pickle
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+import numpy as np
+
+from rmfs.observer import Observer
+from rmfs.random import Stream, generator
+from rmfs.scenario.substreams import Substreams
 from rmfs.simulation.arrays import ArrayPickler
 
 if TYPE_CHECKING:
@@ -23,6 +28,9 @@ K = TypeVar("K", bound="Kernel")
 _SHARED: ContextVar[Sequence[Any]] = ContextVar("_SHARED")
 """What the copy that is being made refers to instead of having it."""
 
+_STREAMS: ContextVar[tuple[int, tuple[int, ...]]] = ContextVar("_STREAMS")
+"""Seed and path of the random streams of the copy that is being made."""
+
 
 def fork(simulation: K) -> K:
     """Copy a simulation; see `Kernel.fork`."""
@@ -31,6 +39,51 @@ def fork(simulation: K) -> K:
     copied[fleet] = simulation.traffic.fork()
     twin: K = _copied(simulation, original, copied)
     return twin
+
+
+class Snapshot(Generic[K]):
+    """A simulation as it was, of which copies are made whose future is drawn anew.
+
+    Parameters
+    ----------
+    along
+        Copied with the simulation; may refer to parts of it.
+    spectators
+        Observers that have no part in what happens: a copy has empty ones in their place.
+    """
+
+    def __init__(self, simulation: K, along: Any, spectators: Sequence[Observer]) -> None:
+        original = [*_never_changing(simulation), *spectators]
+        self._seed = simulation.seed
+        self._fleet = original.index(simulation.traffic)
+        self._shared = [*_never_changing(simulation), *(Observer() for _ in spectators)]
+        self._shared[self._fleet] = simulation.traffic.fork()
+        stream = io.BytesIO()
+        arrays: list[pickle.PickleBuffer] = []
+        _Redrawing(stream, original, arrays.append).dump((simulation, along))
+        self._content = stream.getvalue()
+        self._arrays = [_copy(array) for array in arrays]
+
+    def __call__(self, path: tuple[int, ...]) -> tuple[K, Any]:
+        """Make a copy, and what came along.
+
+        Parameters
+        ----------
+        path
+            Names its random streams: of the same path all copies meet the same future.
+        """
+        shared = list(self._shared)
+        shared[self._fleet] = self._shared[self._fleet].fork()
+        tokens = _SHARED.set(shared), _STREAMS.set((self._seed, path))
+        try:
+            buffers = (_copy(pickle.PickleBuffer(array)) for array in self._arrays)
+            twin: K
+            twin, along = pickle.loads(self._content, buffers=buffers)
+        finally:
+            _SHARED.reset(tokens[0])
+            _STREAMS.reset(tokens[1])
+        twin.redraw()
+        return twin, along
 
 
 def _never_changing(simulation: Kernel) -> list[Any]:
@@ -80,6 +133,39 @@ class _Referring(ArrayPickler):
     def _reduced(self, thing: Any) -> Any:
         number = self._number.get(id(thing))
         return thing.__reduce_ex__(5) if number is None else (_shared, (number,))
+
+
+class _Redrawing(_Referring):
+    """Leaves random streams out: a copy has others in their place."""
+
+    def __init__(
+        self,
+        stream: io.BytesIO,
+        shared: Sequence[Any],
+        aside: Callable[[pickle.PickleBuffer], object],
+    ) -> None:
+        super().__init__(stream, shared, aside)
+        self._streams = 0
+        self.dispatch_table[np.random.Generator] = self._another_generator
+        self.dispatch_table[Substreams] = self._other_substreams
+
+    def _another_generator(self, _: Any) -> Any:
+        self._streams += 1
+        return _generator, (self._streams,)
+
+    def _other_substreams(self, _: Any) -> Any:
+        self._streams += 1
+        return _substreams, (self._streams,)
+
+
+def _generator(number: int) -> np.random.Generator:
+    seed, path = _STREAMS.get()
+    return generator(seed, Stream.LOOK_AHEAD, *path, number)
+
+
+def _substreams(number: int) -> Substreams:
+    seed, path = _STREAMS.get()
+    return Substreams(seed, Stream.LOOK_AHEAD, (*path, number))
 
 
 def _shared(number: int) -> Any:

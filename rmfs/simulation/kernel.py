@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from functools import partial
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from rmfs.control.problems import Trigger
 from rmfs.control.travel import Travel
 from rmfs.control.view import View
 from rmfs.errors import InputError
-from rmfs.observer import Observed
+from rmfs.observer import Observed, Observer
 from rmfs.scenario import initial_stock, sku_set
 from rmfs.simulation.agenda import LAST, Agenda, us_at
 from rmfs.simulation.alarms import Alarms
@@ -23,7 +23,9 @@ from rmfs.simulation.dispatch import Dispatch
 from rmfs.simulation.disturbances import DisturbanceSource
 from rmfs.simulation.energy import PodMasses, model_of
 from rmfs.simulation.events import Events
+from rmfs.simulation.forking import Snapshot
 from rmfs.simulation.late_binding import LateBinding
+from rmfs.simulation.lookahead import Forks
 from rmfs.simulation.optimisers import OptimiserGateway
 from rmfs.simulation.outside import Outside, problems_outside
 from rmfs.simulation.pacing import InstantPacing, pacing_of
@@ -39,10 +41,11 @@ from rmfs.world import World
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
+    from rmfs.control.base import Controller
     from rmfs.control.choices import Choice
+    from rmfs.control.problems import Problem
     from rmfs.control.settings import ControllerSettings
     from rmfs.layout.model import Layout
-    from rmfs.observer import Observer
     from rmfs.scenario import Scenario, StreamRecorder
     from rmfs.simulation.pacing import Paced
 
@@ -96,6 +99,8 @@ class Kernel:
         Controllers exchanged by hand, and when (s).
     wall_s
         Wall time of simulating so far.
+    instants
+        At how many instants something has happened so far.
 
     Raises
     ------
@@ -131,7 +136,9 @@ class Kernel:
         past = PastOrders(scenario, world.skus, seed)
         travel = Travel(layout, fleet)
         self.view = View(world, travel, self.end_s, past, scenario.time_of_day_s)
-        self.controller_set = installed = ControllerSet(controllers, self.view, seed)
+        self.controller_set = installed = ControllerSet(
+            controllers, self.view, seed, Forks(self._snapshot)
+        )
         services = services_of(layout, agenda=agenda, world=world, events=events)
         self.dispatch = Dispatch(layout, world, fleet, events, installed, services)
         visits = Visits(world, self.view, self.dispatch, seed)
@@ -185,12 +192,14 @@ class Kernel:
             layout, scenario.disturbances, seed, agenda=agenda, fleet=fleet
         )
         masses = _count_energy(scenario, world, fleet)
+        self._spectators = tuple(observers)
         events.tell([*masses, late_binding, *visits.controllers, *observers, Triggers(due)])
         self._due = due
         self._end_us = us_at(self.end_s)
         self._moved_us = 0
         self._begun = self._ended = False
         self.wall_s = 0.0
+        self.instants = 0
         self._unsettled = self._quiet = False
         self._handlers = _traffic_handlers(self.dispatch)
 
@@ -306,6 +315,7 @@ class Kernel:
 
     def _move(self, until_us: int) -> None:
         """Let the next instant happen, up to a time."""
+        self.instants += 1
         events = self.traffic.advance(until_us)
         if events:
             self._set_now(events[0][0])
@@ -352,6 +362,44 @@ class Kernel:
         self.interventions.append((self.world.now_s, choice))
         self.phase.exchange(choice)
 
+    # --- looking ahead --------------------------------------------------------------------------
+
+    def _snapshot(self, along: Any) -> Snapshot[Self]:
+        """Keep the run as it is, without those who only look on."""
+        return Snapshot(self, along, self._spectators)
+
+    def take_over(
+        self, problem: Problem, base: Controller[Any], decision: Any, watch: Observer
+    ) -> None:
+        """Take a decision, and let another controller go on from there: in a copy, to try it.
+
+        Parameters
+        ----------
+        watch
+            Observes what comes of it.
+        """
+        *inside, triggers = self.events.observers
+        kept = [one for one in inside if type(one) is not Observer]
+        self.events.tell([*kept, watch, triggers])
+        self.phase.take_over(problem, base)
+        self.applying(decision, None)
+        self._unsettled = True
+
+    def redraw(self) -> None:
+        """Draw again what is to come and is known already: after all streams have been renewed.
+
+        Raises
+        ------
+        InputError
+            If what comes stands in a file.
+        """
+        self.arrivals.redraw()
+        self.disturbances.redraw()
+
+    def observed(self) -> Observed:
+        """What is to be seen of the run."""
+        return Observed(self.layout, self.scenario, self.world, self.traffic, self.disturbances)
+
     def __getstate__(self) -> dict[str, Any]:
         """Return everything, unless a solver is at work elsewhere."""
         if self.optimisers.waits:
@@ -364,8 +412,7 @@ class Kernel:
         self._begun = True
         choices = self.controllers.choices.values()
         self.optimisers.begin(m for choice in choices for m in choice.controller.optimisers)
-        observed = Observed(self.layout, self.scenario, self.world, self.traffic, self.disturbances)
-        self.events.run_started(observed)
+        self.events.run_started(self.observed())
         self.disturbances.begin()
         self.arrivals.top_up()
         self._due.signal(Trigger.START)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rmfs.control.asks import Call
+    from rmfs.control.base import Controller
     from rmfs.control.choices import Choice
     from rmfs.control.view import View
     from rmfs.simulation.agenda import Agenda
@@ -118,6 +119,15 @@ class DecisionPhase:
         if problem in steps.STEP_OF:
             self._alarms.overdue.add(problem)
             self._due.want(problem)
+
+    def take_over(self, problem: Problem, controller: Controller[Any]) -> None:
+        """Let a controller that exists already decide a problem from now on; none is outside."""
+        self.outside.problems, self.outside.pending = frozenset(), None
+        self._controllers.put(problem, controller)
+        self._alarms.cancel(problem)
+        self._due.connect()
+        self._alarms.connect(steps.STEP_OF)
+        self._due.want(problem)
 
     def exchange_controller(self, decision: say.Exchange) -> None:
         """Install the controller that MM chose."""

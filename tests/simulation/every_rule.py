@@ -36,12 +36,12 @@ PARAMETERS: dict[tuple[str, str], dict[str, Any]] = {
 
 
 def rules_of(*problems: Problem) -> list[tuple[Problem, str]]:
-    """List the rules of some problems, dummies apart."""
+    """List the rules of some problems, dummies apart, and those that copy the run they are in."""
     return [
         (problem, name)
         for problem in problems
         for name in registry.built_in(problem)
-        if not registry.find(problem, name).is_dummy
+        if not (rule := registry.find(problem, name)).is_dummy and not rule.looks_ahead
     ]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar, runtime_checkable
 
 from rmfs.scenario.clock import US_PER_S, nearest_us
 
@@ -55,6 +55,14 @@ class BundleArrival(NamedTuple):
     space: float
 
 
+@runtime_checkable
+class Redrawn(Protocol):
+    """A process that knows what comes next before it comes."""
+
+    def redraw(self, now_us: int) -> None:
+        """Draw that again."""
+
+
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
 
@@ -91,6 +99,18 @@ class Intake(Generic[T]):
     def next_us(self) -> int:
         """When to be asked again at the latest, after all that is due has been taken."""
         return min(process.next_us for process in self._processes)
+
+    def redraw(self, now_us: int) -> None:
+        """Draw again when things come next, after the streams have been renewed.
+
+        Raises
+        ------
+        InputError
+            If they come at times that stand in a file.
+        """
+        for process in self._processes:
+            if isinstance(process, Redrawn):
+                process.redraw(now_us)
 
     def due(self, now_us: int, state: State) -> Iterator[T]:
         """Yield what comes now; the caller adds each to the state before it asks for the next.

@@ -35,6 +35,9 @@ class Rate(Protocol):
     def per_h(self, time_us: int) -> float:
         """Return the rate at a time."""
 
+    def redraw(self, now_us: int) -> None:
+        """Forget what has been drawn of later times."""
+
 
 def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: int) -> Rate:
     """Return the rate that a scenario asks for.
@@ -69,7 +72,14 @@ def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: in
     return rate
 
 
-class _Constant:
+class _Fixed:
+    """A rate of which nothing is drawn."""
+
+    def redraw(self, now_us: int) -> None:
+        """There is nothing to forget."""
+
+
+class _Constant(_Fixed):
     def __init__(self, per_h: float) -> None:
         self.peak_per_h = per_h
 
@@ -77,7 +87,7 @@ class _Constant:
         return self.peak_per_h
 
 
-class _InSteps:
+class _InSteps(_Fixed):
     """Steps with the given mean over a cycle.
 
     Each weight counts with the length of its own step.
@@ -116,6 +126,12 @@ class _HighLow:
         while not switches or switches[-1] <= time_us:
             switches.append((switches[-1] if switches else 0) + self._length_us(len(switches)))
         return self._rates[bisect_right(switches, time_us) % 2]
+
+    def redraw(self, now_us: int) -> None:
+        """Let the present period last as long as if it began now: its length has no memory."""
+        switches = self._switches_us
+        del switches[bisect_right(switches, now_us) :]
+        switches.append(now_us + self._length_us(len(switches)))
 
     def _length_us(self, period: int) -> int:
         """Length of a period; those with even numbers are low."""

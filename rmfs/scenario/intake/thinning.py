@@ -65,6 +65,12 @@ class Poisson:
         self._time_us = 0 if rate.peak_per_h else until_us + 1
         self._ordinal = 0
 
+    def redraw(self, now_us: int) -> None:
+        """Go on from a time as if nothing later had been drawn: the process has no memory."""
+        self._rate.redraw(now_us)
+        if self._rate.peak_per_h:
+            self._time_us = now_us
+
     def __iter__(self) -> Iterator[Candidate]:
         return self
 

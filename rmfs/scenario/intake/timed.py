@@ -5,8 +5,9 @@ from __future__ import annotations
 from operator import attrgetter
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from rmfs.errors import InputError
 from rmfs.scenario.clock import NEVER_US
-from rmfs.scenario.intake.thinning import Candidate
+from rmfs.scenario.intake.thinning import Candidate, Poisson
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -40,6 +41,24 @@ class Timed(Generic[T]):
         self._make = make
         self._share = share
         self._next = next(candidates, None)
+
+    def redraw(self, now_us: int) -> None:
+        """Draw again when the next thing comes.
+
+        Raises
+        ------
+        InputError
+            If that stands in a file.
+        """
+        if self._next is None:
+            return
+        if not isinstance(self._candidates, Poisson):
+            raise InputError(
+                "looking ahead: orders or bundles come from a file, and what it holds must not be "
+                "known before; use demand that is drawn"
+            )
+        self._candidates.redraw(now_us)
+        self._next = next(self._candidates, None)
 
     @property
     def next_us(self) -> int:

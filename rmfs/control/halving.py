@@ -1,0 +1,85 @@
+"""Which of several decisions is the best, by trials: sequential halving."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.control.asks import Answer
+
+if TYPE_CHECKING:
+    from rmfs.control.lookahead import Trials
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """A question to the future; the first decision is that of the base rule.
+
+    Attributes
+    ----------
+    trials
+        Tries decisions out.
+    count
+        How many decisions there are.
+    samples
+        Futures in which each may be tried.
+    instants
+        Budget: no further round begins after so many instants.
+    certainty
+        Another decision than the first is taken if its mean advantage is so many standard errors.
+    state
+        What tells this question from others.
+    """
+
+    trials: Trials
+    count: int
+    samples: int
+    instants: int
+    certainty: float
+    state: tuple[float, ...] = field(default=())
+
+    def digested(self) -> tuple[object, ...]:
+        """Return what makes the hash of the question."""
+        return self.count, self.samples, self.instants, self.certainty, self.state
+
+
+def solve(question: Comparison) -> Answer:
+    """Find the decision with the greatest value.
+
+    All decisions are tried in one future, then in as many again, and after each round the worse
+    half is dropped; the base rule's stays to be compared with, future by future (Karnin, Koren and
+    Somekh 2013, "Almost optimal exploration in multi-armed bandits"). Work is counted in instants.
+    """
+    values: dict[int, list[float]] = {row: [] for row in range(question.count)}
+    alive, tried, spent, round_end = list(values), 0, 0, 1
+    while tried < question.samples and spent < question.instants and len(alive) > 1:
+        for row in alive:
+            one = question.trials(row, tried)
+            values[row].append(one.value)
+            spent += one.instants
+        tried += 1
+        if tried == round_end:
+            round_end *= 2
+            ranked = sorted(alive[1:], key=lambda row: -_advantage(values, row)[0])
+            alive = [0, *ranked[: (len(ranked) + 1) // 2]]
+            if all(_advantage(values, row)[0] <= 0.0 for row in alive[1:]):
+                break
+    best = max(alive[1:], key=lambda row: _advantage(values, row)[0], default=0)
+    if best:
+        mean, error = _advantage(values, best)
+        if not mean > question.certainty * error:
+            best = 0
+    value = float(np.mean(values[best])) if values[best] else 0.0
+    return Answer({"row": best}, -value, -inf, "compared", "rollout", work=float(spent))
+
+
+def _advantage(values: dict[int, list[float]], row: int) -> tuple[float, float]:
+    """Return mean and standard error of the advantage over the first decision."""
+    gain = np.array(values[row]) - np.array(values[0][: len(values[row])])
+    mean = float(gain.mean())
+    if len(gain) < 2:
+        return mean, 0.0 if mean > 0 else inf
+    return mean, float(gain.std(ddof=1) / np.sqrt(len(gain)))

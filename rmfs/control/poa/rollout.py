@@ -1,0 +1,83 @@
+"""POA rollout: the base rule's order, or another one that did better when both were tried."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.control import legality
+from rmfs.control.candidates import candidates_for
+from rmfs.control.decisions import AssignOrder
+from rmfs.control.features import RANKINGS, best_rows, numbers
+from rmfs.control.poa import PickOrderAssignment
+from rmfs.control.problems import Problem, Trigger
+from rmfs.control.questions import Question
+from rmfs.control.rollouts import RolloutParameters, base_rule, question
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import numpy as np
+
+    from rmfs.control.asks import Call
+    from rmfs.control.view import View
+
+
+class Rollout(PickOrderAssignment[RolloutParameters]):
+    """Tries orders and stations out before it assigns an order.
+
+    The base rule says what it would do. That and the best other pairs of order and station (by
+    `rmfs.control.features.RANKINGS`) are tried in copies of the run, in which the base rule goes
+    on; the best one is taken. What trying costs in simulated time, the pacing says; while it goes
+    on, no order is assigned.
+    """
+
+    parameters_model = RolloutParameters
+    looks_ahead = True
+    optimisers = ("rmfs.control.halving",)
+
+    def __init__(self, parameters: RolloutParameters, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self.base = base_rule(Problem.POA, parameters, view, rng)
+        self.subscriptions = self.base.subscriptions  # type: ignore[misc]
+        self.hears = self.base.hears  # type: ignore[misc]
+
+    def hear(self, trigger: Trigger, subject: Any) -> None:
+        """Let the base rule hear."""
+        self.base.hear(trigger, subject)
+
+    def next_event_s(self) -> float:
+        """When the base rule wants to be asked."""
+        return float(self.base.next_event_s())
+
+    def decide(self) -> Iterator[Any]:
+        """Yield what the base rule says, or ask which decision is best."""
+        while not self.in_flight:
+            first = next(iter(self.base.decide()), None)
+            if first is None:
+                return
+            others = self._others(first) if isinstance(first, AssignOrder) else []
+            if others:
+                yield question(self, self.base, [first, *others], self.parameters)
+            else:
+                yield first
+
+    def answered(self, call: Call) -> Iterator[Any]:
+        """Yield the best decision, if it still holds."""
+        if call.solution is not None:
+            chosen = call.ask.memo[call.solution["row"]]
+            if legality.reason(chosen, self.view):
+                call.stale += 1
+            else:
+                yield chosen
+        if call.completed_us > call.requested_us:
+            yield from self.decide()
+
+    def _others(self, first: AssignOrder) -> list[AssignOrder]:
+        found = candidates_for(self.view, Question(Problem.POA, "turn"))
+        if not len(found):
+            return []
+        count = self.parameters.candidates
+        rows = best_rows(numbers(found, "poa", self.view), RANKINGS["poa"], count)
+        in_stock = found.columns["in_stock"]
+        others = [found[int(row)] for row in rows if in_stock[row]]
+        return [one for one in others if one != first][: count - 1]

@@ -1,0 +1,89 @@
+"""What rules that try decisions out have in common: parameters, the base rule, and the question."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import pydantic
+
+from rmfs.config import Table
+from rmfs.control.asks import Ask
+from rmfs.control.base import Controller, Parameters
+from rmfs.control.choices import choose
+from rmfs.control.halving import Comparison, solve
+from rmfs.control.lookahead import Goal
+from rmfs.control.problems import Problem
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy as np
+
+    from rmfs.control.view import View
+
+AtLeastOne = Annotated[int, pydantic.Field(ge=1)]
+Positive = Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)]
+
+
+class RolloutParameters(Parameters):
+    """Parameters of rules that try decisions out."""
+
+    base: Table = pydantic.Field(default_factory=dict)
+    """The rule that goes on after the decision that is tried, as in a controllers file; by default
+    the default rule of the problem."""
+    candidates: AtLeastOne = 4
+    """Decisions compared, that of the base rule included."""
+    samples: AtLeastOne = 4
+    """Futures in which each of them may be tried."""
+    horizon_s: Positive = 180.0
+    """Simulated time of a trial."""
+    instants: AtLeastOne = 100_000
+    """Budget of a decision: no further round of trials begins after so many simulated instants."""
+    certainty: Annotated[float, pydantic.Field(ge=0)] = 1.0
+    """Another decision than the base rule's is taken only if its mean advantage is greater than so
+    many standard errors."""
+    goal: Goal = Goal()
+    """What a trial is worth."""
+
+
+def base_rule(
+    problem: Problem, parameters: RolloutParameters, view: View, rng: np.random.Generator
+) -> Any:
+    """Make the rule that goes on.
+
+    Raises
+    ------
+    InputError
+        If there is no such rule, or it cannot be one.
+    """
+    choice = choose(problem, parameters.base, f"{problem}.base")
+    rule = choice.controller
+    if rule.optimisers or rule.is_dummy or rule.decides:
+        raise InputError(
+            f"{problem}.base: {choice.name} asks optimisers or decides with others: choose a rule "
+            f"that decides {problem} alone"
+        )
+    return rule(choice.parameters, view, rng)
+
+
+def question(
+    controller: Controller[Any],
+    base: Controller[Any],
+    decisions: Sequence[Any],
+    parameters: RolloutParameters,
+) -> Ask[Comparison]:
+    """Ask which decision is the best; the first is that of the base rule."""
+    view = controller.view
+    trials = controller.lookahead(
+        controller.problem, decisions, base, parameters.horizon_s, parameters.goal
+    )
+    asked = Comparison(
+        trials,
+        len(decisions),
+        parameters.samples,
+        parameters.instants,
+        parameters.certainty,
+        (view.now_s, float(view.orders_created), float(len(view.orders))),
+    )
+    return Ask(solve, asked, {"candidates": len(decisions)}, list(decisions))

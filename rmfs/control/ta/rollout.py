@@ -1,0 +1,133 @@
+"""TA rollout: what the base rule would let a robot do, or something that did better when tried."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import pydantic
+
+from rmfs.control import legality
+from rmfs.control.candidates import candidates_for
+from rmfs.control.decisions import BringForBundles, BringForPicks, Park
+from rmfs.control.features import RANKINGS, best_rows, numbers
+from rmfs.control.problems import Problem, Trigger
+from rmfs.control.questions import Question
+from rmfs.control.rollouts import RolloutParameters, base_rule, question
+from rmfs.control.ta import Consult, TaskAllocation
+from rmfs.control.ta.stations import bring, keeper_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import numpy as np
+
+    from rmfs.control.asks import Call
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+Part = Literal["ta", "pps", "psa"]
+
+
+class TaskRolloutParameters(RolloutParameters):
+    """Parameters of TA rollout."""
+
+    over: Annotated[tuple[Part, ...], pydantic.Field(min_length=1)] = ("ta", "pps", "psa")
+    """What may be other than the base rule, and PPS and PSA, would have it: the station (`ta`), the
+    pod (`pps`), the storage place (`psa`)."""
+
+
+class Rollout(TaskAllocation[TaskRolloutParameters]):
+    """Tries tasks out before it gives one to a robot: other stations, other pods, other places.
+
+    The base rule, with PPS and PSA, says what a robot would do. That is tried beside the same with
+    other pods for the station, work for other stations, or other places for the pod; the best one
+    is done. So PPS and PSA are decided by looking ahead as well, as far as `over` says. What trying
+    costs in simulated time, the pacing says; while it goes on, no robot gets a task.
+    """
+
+    parameters_model = TaskRolloutParameters
+    looks_ahead = True
+    optimisers = ("rmfs.control.halving",)
+
+    def __init__(
+        self, parameters: TaskRolloutParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        self.base = base_rule(Problem.TA, parameters, view, rng)
+        self.subscriptions = self.base.subscriptions  # type: ignore[misc]
+        self.hears = self.base.hears  # type: ignore[misc]
+        self._consult: Consult
+
+    def hear(self, trigger: Trigger, subject: Any) -> None:
+        """Let the base rule hear."""
+        self.base.hear(trigger, subject)
+
+    def next_event_s(self) -> float:
+        """When the base rule wants to be asked."""
+        return float(self.base.next_event_s())
+
+    def rest_place(self, robot: Robot) -> int:
+        """Choose by the base rule."""
+        return int(self.base.rest_place(robot))
+
+    def decide(self, consult: Consult) -> Iterator[Any]:
+        """Yield what the base rule says, or ask which task is best."""
+        self._consult = consult
+        while not self.in_flight:
+            for first in self.base.decide(consult):
+                others = self._others(first, consult)
+                if others:
+                    yield question(self, self.base, [first, *others], self.parameters)
+                    break  # the world may have become another one
+                yield first
+            else:
+                return
+
+    def answered(self, call: Call) -> Iterator[Any]:
+        """Yield the best task, if it still can be done."""
+        if call.solution is not None:
+            chosen = call.ask.memo[call.solution["row"]]
+            if legality.reason(chosen, self.view):
+                call.stale += 1
+            else:
+                yield chosen
+        if call.completed_us > call.requested_us:
+            yield from self.decide(self._consult)
+
+    def _others(self, first: Any, consult: Consult) -> list[Any]:
+        given, robot = self.parameters, getattr(first, "robot", None)
+        found: list[Any] = []
+        if isinstance(first, Park) and "psa" in given.over:
+            question = Question(Problem.PSA, "place", first.robot.index)
+            found = [Park(first.robot, place) for place in self._best(question, "place")]
+        elif isinstance(first, BringForPicks | BringForBundles) and first.robot.pod < 0:
+            assert robot is not None
+            if "ta" in given.over:
+                found += self._at_other_stations(robot, first.station, consult)
+            if "pps" in given.over and isinstance(first, BringForPicks):
+                question = Question(Problem.PPS, "pick pod", robot.index, (first.station,))
+                found += [
+                    BringForPicks(keeper_of(self.view, robot, pod), pod, first.station)
+                    for pod in self._best(question, "pick pod")
+                ]
+        possible = [one for one in found if one != first and not legality.reason(one, self.view)]
+        return possible[: given.candidates - 1]
+
+    def _at_other_stations(self, robot: Robot, station: int, consult: Consult) -> list[Any]:
+        tasks = []
+        for other in self.view.stations:
+            if other.index != station and self.view.has_open_work(other.index):
+                pod = consult.pod_for(robot, other.index)
+                if pod >= 0:
+                    chosen = keeper_of(self.view, robot, pod)
+                    tasks.append(bring(self.view, chosen, pod, other.index))
+        return tasks
+
+    def _best(self, asked: Question, kind: str) -> list[int]:
+        found = candidates_for(self.view, asked)
+        if not len(found):
+            return []
+        rows = best_rows(
+            numbers(found, kind, self.view), RANKINGS[kind], self.parameters.candidates
+        )
+        return [int(found[int(row)]) for row in rows]

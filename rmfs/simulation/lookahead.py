@@ -1,0 +1,152 @@
+"""Trials: copies of a run with another future, in which a decision is tried out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+from rmfs.control.lookahead import Tried
+from rmfs.observer import Observer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from rmfs.control.base import Controller
+    from rmfs.control.lookahead import Goal, Trials
+    from rmfs.control.problems import Problem
+    from rmfs.observer import Observed
+    from rmfs.world import World
+    from rmfs.world.orders import Order
+
+
+class Trial(Protocol):
+    """A copy of a run, as far as trying needs it."""
+
+    world: World
+
+    def take_over(
+        self, problem: Problem, base: Controller[Any], decision: Any, watch: Observer
+    ) -> None:
+        """Take a decision, and let a rule go on from there."""
+        ...
+
+    def run_until(self, time_s: float) -> Any:
+        """Go on."""
+        ...
+
+    @property
+    def instants(self) -> int:
+        """At how many instants something has happened."""
+        ...
+
+    def observed(self) -> Observed:
+        """What is to be seen of it."""
+        ...
+
+
+class Copies(Protocol):
+    """Makes copies of a run as it was."""
+
+    def __call__(self, path: tuple[int, ...]) -> tuple[Trial, Any]:
+        """Return a copy, with streams of this path, and its copy of what came along."""
+        ...
+
+
+class Forks:
+    """What controllers that look ahead are given.
+
+    Parameters
+    ----------
+    snapshot
+        Keeps the run as it is, together with something that refers to parts of it.
+    """
+
+    def __init__(self, snapshot: Callable[[Any], Copies]) -> None:
+        self._snapshot = snapshot
+        self._asked = 0
+
+    def __call__(
+        self,
+        problem: Problem,
+        decisions: Sequence[Any],
+        base: Controller[Any],
+        horizon_s: float,
+        goal: Goal,
+    ) -> Trials:
+        """Prepare trials of some decisions; see `rmfs.control.lookahead.LookAhead`."""
+        self._asked += 1
+        copies = self._snapshot((list(decisions), base))
+        return ForkedTrials(copies, problem, self._asked, horizon_s, goal)
+
+
+class ForkedTrials:
+    """Tries decisions out, each in a fresh copy."""
+
+    def __init__(
+        self, copies: Copies, problem: Problem, number: int, horizon_s: float, goal: Goal
+    ) -> None:
+        self._copies = copies
+        self._problem = problem
+        self._number = number
+        self._horizon_s = horizon_s
+        self._goal = goal
+
+    def __call__(self, which: int, sample: int) -> Tried:
+        """Try one of the decisions in one of the futures."""
+        trial, (decisions, base) = self._copies((self._number, sample))
+        earnings = Earnings(self._goal, trial.world.now_s, self._horizon_s)
+        earnings.run_started(trial.observed())
+        before = trial.instants
+        trial.take_over(self._problem, base, decisions[which], earnings)
+        trial.run_until(trial.world.now_s + self._horizon_s)
+        return Tried(earnings.value(trial.world), trial.instants - before)
+
+
+class Earnings(Observer):
+    """What a trial is worth."""
+
+    def __init__(self, goal: Goal, begin_s: float, horizon_s: float) -> None:
+        self._goal = goal
+        self._begin_s, self._end_s = begin_s, begin_s + horizon_s
+        self._horizon_s = horizon_s
+        self._value = 0.0
+
+    def run_started(self, run: Observed) -> None:
+        """Keep hold of what counts motion."""
+        self._traffic = run.traffic
+        self._driven_m = self._metres() if self._goal.distance_m else 0.0
+
+    def unit_picked(
+        self,
+        time_s: float,
+        order: Order,
+        sku: int,
+        pod: int,
+        robot: int,
+        station: int,
+        late_bound: bool,
+    ) -> None:
+        """Count it, the sooner the more."""
+        self._value += self._goal.units * (self._end_s - time_s) / self._horizon_s
+
+    def order_completed(self, order: Order) -> None:
+        """Count it, the sooner the more, and how long it was overdue."""
+        goal = self._goal
+        self._value += goal.orders * (self._end_s - order.completed_s) / self._horizon_s
+        self._value -= goal.overdue_s * self._overdue_s(order, order.completed_s)
+
+    def value(self, world: World) -> float:
+        """Return what was earned; orders that are overdue still are counted up to now."""
+        goal, value = self._goal, self._value
+        if goal.overdue_s:
+            still = list(world.orders)
+            still += [order for one in world.pick_stations for order in one.orders.values()]
+            value -= goal.overdue_s * sum(self._overdue_s(order, world.now_s) for order in still)
+        if goal.distance_m:
+            value -= goal.distance_m * (self._metres() - self._driven_m)
+        return value
+
+    def _overdue_s(self, order: Order, until_s: float) -> float:
+        return max(0.0, until_s - max(order.due_s, self._begin_s))
+
+    def _metres(self) -> float:
+        return float(self._traffic.motion()["distance_m"].sum())

@@ -1,0 +1,197 @@
+"""Looking ahead: trials meet no truth, change nothing, repeat, and are charged for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from test_stepping import told
+
+import rmfs
+from rmfs.control.decisions import AssignOrder
+from rmfs.control.halving import Comparison, solve
+from rmfs.control.lookahead import Goal, Tried
+from rmfs.control.problems import Problem
+from rmfs.errors import InputError
+
+GOAL = Goal(orders=1.0, overdue_s=0.01, distance_m=0.001)
+DISTURBED = {"scenario.disturbances.breakdowns": {"every_s": 60, "lasting_s": 20}}
+
+
+def made(scenario: str = "small-arrivals", pacing: str = "instant", **given: Any) -> Any:
+    keys = {"scenario.duration_s": 500}
+    keys |= {key.replace("__", "."): value for key, value in given.items()}
+    return rmfs.Simulation("small", scenario, seed=3, set=keys, pacing=pacing, trace=True)
+
+
+def trials_of(run: Any, count: int = 3) -> Any:
+    """Trials of giving one of the oldest orders to a station with a free slot."""
+    station = next(one for one in run.view.pick_stations if one.free_slots)
+    decisions = [AssignOrder(order, station.index) for order in list(run.view.orders)[:count]]
+    base = run.controller_set[Problem.POA]
+    return run.controller_set._lookahead(Problem.POA, decisions, base, 120.0, GOAL)
+
+
+def with_a_free_slot(**given: Any) -> Any:
+    """A run that waits for a decision of POA while a slot is free."""
+    keys = {"scenario.duration_s": 500, **given}
+    run = rmfs.Simulation("small", "small-arrivals", seed=3, set=keys, outside=["poa"], trace=True)
+    while (decision := run.step()) is not None:
+        free = any(one.free_slots for one in run.view.pick_stations)
+        if free and run.now_s > 200 and len(run.view.orders) > 3:
+            return run
+        advice = decision.advice()
+        if advice is None:
+            decision.decline()
+        else:
+            decision.answer(advice)
+    raise AssertionError("no slot was free")
+
+
+@pytest.mark.parametrize("given", [{}, DISTURBED], ids=["quiet", "disturbed"])
+def test_trials_do_not_see_what_will_really_come(given: dict[str, Any]) -> None:
+    """Two runs with one past and two futures: what is tried in both goes alike."""
+    past = with_a_free_slot(**given)
+    truth, other = (past._snapshot(None)(path)[0] for path in [(98, 0), (99, 0)])
+    assert trials_of(truth)(1, 0) == trials_of(other)(1, 0)
+    came = []
+    for one in (truth, other):
+        one.phase.take_over(Problem.POA, one.controller_set[Problem.POA])
+        one._unsettled = True
+        one.run_until(500)
+        came.append((one.world.orders_created, one.world.units_picked, one.instants))
+    assert came[0] != came[1]
+
+
+def test_one_future_for_all_that_is_compared_and_another_next_time() -> None:
+    run = with_a_free_slot()
+    trials = trials_of(run)
+    assert trials(0, 0) == trials(0, 0)
+    assert len({trials(0, sample).value for sample in range(4)}) > 1
+    assert len({trials(which, 0).value for which in range(3)}) > 1
+    assert trials_of(run)(0, 0) != trials(0, 0)
+
+
+def test_trying_changes_nothing() -> None:
+    run, untouched = with_a_free_slot(), with_a_free_slot()
+    trials = trials_of(run)
+    for which in range(3):
+        trials(which, 0)
+    for one in (run, untouched):
+        one.phase.take_over(Problem.POA, one.controller_set[Problem.POA])
+        one._unsettled = True
+        one.run()
+    assert told(run) == told(untouched)
+
+
+def test_a_trial_is_worth_what_its_goal_says() -> None:
+    run = with_a_free_slot()
+    order = next(iter(run.view.orders))
+    base = run.controller_set[Problem.POA]
+    decision = [AssignOrder(order, next(s.index for s in run.view.pick_stations if s.free_slots))]
+    look = run.controller_set._lookahead
+
+    def value(**weights: float) -> float:
+        goal = Goal(**{"units": 0.0, **weights})
+        look._asked = 0  # the same futures
+        return float(look(Problem.POA, decision, base, 150.0, goal)(0, 0).value)
+
+    assert value() == 0.0
+    assert 0 < value(units=1.0) < 200
+    assert 0 < value(orders=1.0) < value(units=1.0)
+    assert -5000 < value(distance_m=1.0) < -50
+    total = value(units=1.0) + value(orders=2.0) + value(distance_m=0.1)
+    assert value(units=1.0, orders=2.0, distance_m=0.1) == pytest.approx(total)
+
+
+@pytest.mark.parametrize("problem", ["poa", "ta"])
+def test_who_is_never_sure_decides_as_the_base_rule(problem: str) -> None:
+    sure = {"name": "rollout", "certainty": 1e9, "samples": 2, "candidates": 2, "horizon_s": 20}
+    inside, run = made(), made(**{f"controllers__{problem}": sure})
+    inside.run()
+    run.run()
+    assert run.optimisers._asked > 5
+    alike = ("motion", "stock", "orders", "units")
+    assert [told(run)[name] for name in alike] == [told(inside)[name] for name in alike]
+
+
+@pytest.mark.parametrize("problem", ["poa", "ta"])
+@pytest.mark.parametrize("pacing", ["instant", "fixed=3", "work"])
+def test_a_run_with_look_ahead_repeats_and_can_be_copied(problem: str, pacing: str) -> None:
+    rule = {"name": "rollout", "samples": 1, "candidates": 2, "horizon_s": 20, "certainty": 0}
+    given = {f"controllers__{problem}": rule, "scenario__duration_s": 120}
+    run, again = made(pacing=pacing, **given), made(pacing=pacing, **given)
+    run.run_until(60)
+    fork = run.fork()
+    for one in (run, again, fork):
+        one.run()
+    assert told(run) == told(again) == told(fork)
+    paced_s = run.result().footprint["paced_s"]
+    assert (paced_s > 0) == (pacing != "instant")
+
+
+@pytest.mark.parametrize(
+    ("given", "pacing", "told_why"),
+    [
+        (
+            {"controllers__poa": {"name": "rollout", "base": {"name": "best"}}},
+            "instant",
+            "poa.base",
+        ),
+        ({"controllers__poa": {"name": "rollout"}}, "wall", "wall cannot be copied"),
+        (
+            {"controllers__ta": {"name": "rollout", "over": ["poa"]}},
+            "instant",
+            "over.0: Input should be",
+        ),
+    ],
+)
+def test_what_cannot_be_looked_ahead_is_refused(
+    given: dict[str, Any], pacing: str, told_why: str
+) -> None:
+    with pytest.raises(InputError, match=told_why):
+        made(pacing=pacing, **given).run()
+
+
+# --- sequential halving ---------------------------------------------------------------------------
+
+
+class Noisy:
+    """Trials of known means, with noise that is partly common to all."""
+
+    def __init__(self, means: list[float], noise: float) -> None:
+        self.means, self.noise = means, noise
+        self.asked: list[tuple[int, int]] = []
+
+    def __call__(self, which: int, sample: int) -> Tried:
+        self.asked.append((which, sample))
+        common = np.random.default_rng(sample).normal()
+        own = np.random.default_rng([sample, which]).normal()
+        return Tried(self.means[which] + common + self.noise * own, 10)
+
+
+def best(trials: Noisy, samples: int = 16, instants: int = 10**6, certainty: float = 1.0) -> int:
+    answer = solve(Comparison(trials, len(trials.means), samples, instants, certainty))
+    assert answer.solution is not None
+    assert answer.work == 10 * len(trials.asked)
+    return int(answer.solution["row"])  # type: ignore[arg-type]
+
+
+def test_the_best_is_found_and_the_bad_are_dropped() -> None:
+    trials = Noisy([0.0, 0.2, 2.0, -1.0, 0.5], 0.3)
+    assert best(trials) == 2
+    per_row = [sum(which == row for which, _ in trials.asked) for row in range(5)]
+    assert per_row[2] == per_row[0] == 16
+    assert max(per_row[1], per_row[3], per_row[4]) <= 4
+
+
+def test_the_base_rule_keeps_what_is_not_clearly_worse() -> None:
+    assert best(Noisy([0.0, 0.1, 0.05], 5.0), certainty=3.0) == 0
+    assert best(Noisy([1.0, 0.5, 0.0], 0.0)) == 0
+
+
+def test_a_budget_ends_the_rounds() -> None:
+    trials = Noisy([0.0, 1.0, 0.9, 0.8], 0.1)
+    best(trials, instants=45)
+    assert len(trials.asked) == 7  # all four, then three of them, which was over the budget
