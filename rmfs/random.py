@@ -29,6 +29,7 @@ class Stream(IntEnum):
     DISTURBANCES = 12
     VISITS = 13
     LOOK_AHEAD = 14
+    BATTERIES = 20
 
 
 def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:

@@ -49,6 +49,8 @@ class RuleTables(Parameters):
     """The rule for path planning."""
     repositioning: Table | None = None
     """The rule for repositioning."""
+    ca: Table | None = None
+    """The rule for charge assignment."""
 
 
 class NoParameters(Parameters):

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from rmfs.control.ca.places import has_room
 from rmfs.control.decisions import (
     AssignOrder,
+    Charge,
     MovePod,
     PromiseBundle,
     ReleasePod,
@@ -15,6 +17,7 @@ from rmfs.control.decisions import (
     SendBundle,
     Store,
     SwitchStation,
+    Unplug,
     WorkFor,
 )
 from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
@@ -100,7 +103,8 @@ MEANINGS = {
     "away_s": Meaning("s", "unhindered time of the robot to the place or the station"),
     "back_s": Meaning("s", "unhindered time from the place to the nearest active pick station"),
     "distance_m": Meaning("m", "straight distance"),
-    "robots": Meaning("robots", "robots at work for the station"),
+    "robots": Meaning("robots", "robots at work for the station, or bound for it"),
+    "level_share": Meaning("share", "what is in the robot's battery, of its capacity"),
     "active": Meaning("", "1 if the station takes new work, 0 if not"),
     "kind": Meaning("", "0 work for the station, 1 store the pod, 2 move a pod, 3 rest"),
 }
@@ -212,6 +216,39 @@ def _stations_to_switch(view: View) -> Candidates:
         "robots": np.array([len(station.tasks) for station in stations], np.int64),
     }
     return Candidates(columns, lambda row: SwitchStation(row, not stations[row].active))
+
+
+def _charges(view: View) -> Candidates:
+    """Pairs of a robot without pod and a station with room; then robots that could leave."""
+    batteries = view.batteries
+    shares = [] if batteries is None else batteries.shares().tolist()
+    robots = [*view.asking.values(), *view.resting.values()]
+    found: list[tuple[Charge | Unplug, int, float]] = []
+    full = 1.0 if batteries is None else batteries.given.full_share
+    for station in view.recovery_stations:
+        if has_room(view, station):
+            away = view.travel.to(station.waypoint, loaded=False)
+            found += [
+                (Charge(robot, station.index, full), station.index, float(away[at]))
+                for robot in robots
+                if robot.pod < 0
+                for at in (view.travel.robot_waypoint(robot.index),)
+            ]
+    for station in view.chargers:
+        if station.robot in station.tasks:
+            found.append((Unplug(view.robots[station.robot]), -1, 0.0))
+    numbers = [station for _, station, _ in found]
+    columns: Columns = {
+        "robot": np.array([decision.robot.index for decision, *_ in found], np.int64),
+        "station": np.array(numbers, np.int64),
+        "level_share": np.array([shares[decision.robot.index] for decision, *_ in found]),
+        "away_s": np.array([away_s for *_, away_s in found], np.float64),
+        "robots": np.array(
+            [len(view.all_stations[number].tasks) if number >= 0 else 0 for number in numbers],
+            np.int64,
+        ),
+    }
+    return Candidates(columns, lambda row: found[row][0])
 
 
 def _exchanges(view: View) -> Candidates:
@@ -348,6 +385,7 @@ _OF_TURN: dict[Problem, Callable[[View], Candidates]] = {
     Problem.RPS: _bundles_to_pods,
     Problem.SA: _stations_to_switch,
     Problem.MM: _exchanges,
+    Problem.CA: _charges,
 }
 
 _OF_KIND: dict[str, Callable[[View, Robot, tuple[int, ...]], Candidates]] = {

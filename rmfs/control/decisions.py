@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from rmfs.world.charging import ChargeTask
 from rmfs.world.tasks import ParkTask, PickTask, ReplenishTask, RepositionTask, RestTask
 
 if TYPE_CHECKING:
@@ -179,6 +180,26 @@ class Prepare(_Ahead):
     is_ahead = True  # counts when it is done
 
 
+class Charge(NamedTuple):
+    """CA: let a robot without pod get energy at a station, until its battery has a level."""
+
+    robot: Robot
+    station: int
+    until_share: float
+
+    def task(self) -> Task:
+        """Make of it a task that has not begun."""
+        return ChargeTask(
+            self.robot.index, station=self.station, until_share=float(self.until_share)
+        )
+
+
+class Unplug(NamedTuple):
+    """CA: let a robot leave the plug-in place where it stands; it needs a task then."""
+
+    robot: Robot
+
+
 class SwitchStation(NamedTuple):
     """SA: let a station take new work, or stop it."""
 
@@ -204,6 +225,8 @@ Decision = (
     | Store
     | MovePod
     | Prepare
+    | Charge
+    | Unplug
     | SwitchStation
     | Exchange
 )

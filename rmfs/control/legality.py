@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rmfs.control import decisions as say
 from rmfs.control.problems import Problem
 from rmfs.control.repositioning import Move
+from rmfs.world.charging import ChargeTask
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -191,6 +192,30 @@ def _visit(decision: say.Visit, view: View) -> str:
     return _fetches(robot, pod, view)
 
 
+def _charge(decision: say.Charge, view: View) -> str:
+    robot, station, until = decision
+    wrong = _may_begin(robot, view)
+    if wrong:
+        return wrong
+    if robot.pod >= 0:
+        return f"robot {robot.index} carries pod {robot.pod}"
+    places = [other.index for other in view.recovery_stations]
+    if station not in places:
+        return f"station {station} gives no energy (those that do: {places})"
+    if not isinstance(until, int | float) or not 0 < until <= 1:
+        return f"{until!r} is no level (a share of the capacity, more than 0 and at most 1)"
+    bound = len(view.all_stations[station].tasks)
+    most = len(view.layout.stations[station].queue)
+    return "" if bound < most else f"{bound} robots are bound for station {station} already"
+
+
+def _unplug(decision: say.Unplug, view: View) -> str:
+    robot = decision.robot
+    if any(station.robot == robot.index for station in view.chargers):
+        return "" if isinstance(robot.task, ChargeTask) else f"robot {robot.index} is not charging"
+    return f"robot {robot.index} stands at no plug-in place"
+
+
 def _empty_place(place: Any, view: View) -> str:
     if not _is_number(place) or not 0 <= place < len(view.storage.place_index):
         return f"{place!r} is no waypoint"
@@ -262,6 +287,8 @@ _DECISIONS: dict[type, Callable[[Any, View], str]] = {
     say.ReleasePod: _release,
     say.SwitchStation: _switch,
     say.Exchange: _nothing_wrong,
+    say.Charge: _charge,
+    say.Unplug: _unplug,
     say.BringForPicks: _pick,
     say.BringForBundles: _bundles,
     say.Visit: _visit,

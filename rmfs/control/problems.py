@@ -19,6 +19,7 @@ class Problem(StrEnum):
     MM = "mm"
     PP = "pp"
     REPOSITIONING = "repositioning"
+    CA = "ca"
 
     @property
     def meaning(self) -> str:
@@ -106,6 +107,12 @@ _DECLARED = {
         "repositioning: idle pod -> another storage place",
         "rmfs.control.repositioning:Repositioning",
         "none",
+    ),
+    Problem.CA: _Declared(
+        "charge assignment: robot -> where, from when and until which level it gets energy",
+        "rmfs.control.ca:ChargeAssignment",
+        "threshold",
+        ("Charge", "Unplug"),
     ),
 }
 """Every problem, declared once: what else is known of one is in its package."""

@@ -107,6 +107,13 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "cbs": "rmfs.control.pp.trees:Cbs",
         "pbs": "rmfs.control.pp.trees:Pbs",
     },
+    Problem.CA: {
+        "threshold": "rmfs.control.ca.threshold:Threshold",
+        "to-full": "rmfs.control.ca.threshold:ToFull",
+        "opportunity": "rmfs.control.ca.opportunity:Opportunity",
+        "breaks": "rmfs.control.ca.breaks:Breaks",
+        "by-demand": "rmfs.control.ca.by_demand:ByDemand",
+    },
 }
 
 _SOLVER_BACKED: dict[Problem, dict[str, str]] = {

@@ -7,6 +7,8 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from rmfs.control.trackers import Trackers
+from rmfs.layout.charging import Charger
+from rmfs.world.charging import RecoveryStation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
     from rmfs.control.travel import Travel
     from rmfs.scenario import OrderContent
     from rmfs.world import World
+    from rmfs.world.batteries import Batteries
     from rmfs.world.robots import Robot
 
 
@@ -43,6 +46,8 @@ class View:
         Order lines per pick station and SKU, picked or not, shape (S, K): of the open orders there.
     bundles_waiting
         Assigned bundles not yet in a task, per replenishment station and pod, shape (S, P).
+    recovery_stations
+        Of these, the stations where robots get energy: plug-in places and battery swap.
     robots, asking, resting
         All robots; those that need a task; those at rest.
     queued_need
@@ -80,6 +85,7 @@ class View:
         self.need = world.need
         self.lines = world.lines
         self.bundles_waiting = world.bundles_waiting
+        self.recovery_stations = [s for s in world.stations if isinstance(s, RecoveryStation)]
         self.robots = world.robots
         self.asking = world.asking
         self.resting = world.resting
@@ -93,6 +99,17 @@ class View:
     def now_s(self) -> float:
         """Present simulated time."""
         return self._world.now_s
+
+    @property
+    def batteries(self) -> Batteries | None:
+        """What robots carry to draw from; None if it is as much as they need."""
+        return self._world.batteries
+
+    @cached_property
+    def chargers(self) -> list[RecoveryStation]:
+        """The plug-in places among the recovery stations."""
+        plans = self.layout.stations
+        return [s for s in self.recovery_stations if isinstance(plans[s.index].kind, Charger)]
 
     @property
     def orders_created(self) -> int:

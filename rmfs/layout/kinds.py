@@ -78,7 +78,7 @@ class StationKind:
     measures: ClassVar[tuple[str | type, ...]] = ()
 
     def __init__(self, parameters: Any = None) -> None:
-        self.parameters = self.parameters_model() if parameters is None else parameters
+        self.parameters: Any = self.parameters_model() if parameters is None else parameters
 
     def digested(self) -> tuple[object, ...]:
         """What tells it from other kinds: the files it is written in, and its parameters."""
@@ -144,6 +144,12 @@ TASK_COLOURS = {
 }
 """Of robots by what they have to do; a robot bound for another kind of station has its colour."""
 
+_SHIPPED = {
+    "charger": "rmfs.layout.charging:Charger",
+    "swap": "rmfs.layout.charging:Swap",
+}
+"""Kinds that come with rmfs besides pick and replenishment stations."""
+
 _RESERVED = ("pick", "replenish", "replenishment", "elevator", "park", "reposition", "rest")
 
 
@@ -156,9 +162,9 @@ def find(reference: str) -> type[StationKind]:
         If there is none of that name.
     """
     if not is_reference(reference):
-        known = _installed()
+        known = {**_installed(), **_SHIPPED}
         if reference not in known:
-            there = f"; installed: {', '.join(sorted(known))}" if known else ""
+            there = f"; valid: {', '.join(sorted(known))}"
             raise InputError(
                 f"no kind of station {reference}; expected module:Class or "
                 f"path/to/file.py:Class{there}"

@@ -21,8 +21,9 @@ class Applying:
 
     Parameters
     ----------
-    prepare, exchange
-        What is done with tasks prepared ahead, and with another controller.
+    prepare, exchange, unplug
+        What is done with tasks prepared ahead, with another controller, and with a robot that is to
+        leave a plug-in place.
     """
 
     def __init__(
@@ -33,6 +34,7 @@ class Applying:
         *,
         prepare: Callable[[say.Prepare, Call | None], None],
         exchange: Callable[[say.Exchange], None],
+        unplug: Callable[[say.Unplug], None],
     ) -> None:
         self._world = world
         self._events = events
@@ -52,6 +54,8 @@ class Applying:
             say.Reposition: dispatch.start,
             say.Rest: dispatch.start,
             say.Exchange: exchange,
+            say.Charge: dispatch.start,
+            say.Unplug: unplug,
         }
 
     def __call__(self, decision: Any, call: Call | None) -> None:

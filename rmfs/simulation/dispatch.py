@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rmfs.control.asks import Call
-    from rmfs.control.decisions import Prepare, TaskDecision
+    from rmfs.control.decisions import Charge, Prepare, TaskDecision
     from rmfs.control.ta import Consult
     from rmfs.layout.model import Layout
     from rmfs.simulation.controller_set import ControllerSet
@@ -59,8 +59,8 @@ class Dispatch:
 
     # --- decisions of TA ------------------------------------------------------------------------
 
-    def start(self, decision: TaskDecision) -> None:
-        """Let a robot begin what TA has decided."""
+    def start(self, decision: TaskDecision | Charge) -> None:
+        """Let a robot begin what TA, or CA, has decided."""
         self._begin(decision.task())
 
     def _begin(self, planned: Task) -> None:

@@ -17,11 +17,13 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
     from rmfs.scenario.parameters.disturbances import (
         Breakdowns,
+        ChargerFailures,
         Closures,
         Disturbances,
         SlowRobots,
     )
     from rmfs.simulation.agenda import Agenda
+    from rmfs.simulation.charging.chargers import Chargers
     from rmfs.traffic import Traffic
 
 AGAIN_US = 1_000_000
@@ -32,7 +34,7 @@ TRIES = 20
 
 FOR_EVER_US = 2**62
 
-_BREAKDOWNS, _SLOW, _CLOSURES = range(3)
+_BREAKDOWNS, _SLOW, _CLOSURES, _CHARGERS = range(4)
 
 
 class Disturbance(NamedTuple):
@@ -41,9 +43,9 @@ class Disturbance(NamedTuple):
     Attributes
     ----------
     kind
-        `breakdown`, `slow`, `closure` or `elevator`.
+        `breakdown`, `slow`, `closure`, `charger` or `elevator`.
     element
-        Robot, waypoint or elevator.
+        Robot, waypoint, station or elevator.
     from_us, to_us
         When.
     """
@@ -74,7 +76,14 @@ class DisturbanceSource:
     """
 
     def __init__(
-        self, layout: Layout, given: Disturbances, seed: int, *, agenda: Agenda, fleet: Traffic
+        self,
+        layout: Layout,
+        given: Disturbances,
+        seed: int,
+        *,
+        agenda: Agenda,
+        fleet: Traffic,
+        chargers: Chargers | None = None,
     ) -> None:
         elevators = len(layout.elevators)
         for elevator, *_ in given.elevators_out:
@@ -84,8 +93,12 @@ class DisturbanceSource:
                     f"layout has {elevators}, numbered from 0)"
                 )
         self._layout, self._given = layout, given
-        self._agenda, self._fleet = agenda, fleet
-        self._draw = [generator(seed, Stream.DISTURBANCES, kind) for kind in range(3)]
+        self._agenda, self._fleet, self._chargers = agenda, fleet, chargers
+        if given.chargers is not None and not (chargers and chargers.stations):
+            raise InputError(
+                "scenario.disturbances.chargers: the layout has no station of the kind charger"
+            )
+        self._draw = [generator(seed, Stream.DISTURBANCES, kind) for kind in range(4)]
         self._slow_since: dict[int, int] = {}
         self.begun: list[Disturbance] = []
         self._next: dict[int, int] = {}
@@ -123,9 +136,12 @@ class DisturbanceSource:
             self._agenda.cancel(serial)
             self._repeat(kind)
 
-    def _given_by_kind(self) -> tuple[Breakdowns | SlowRobots | Closures | None, ...]:
+    def _given_by_kind(
+        self,
+    ) -> tuple[Breakdowns | SlowRobots | Closures | ChargerFailures | None, ...]:
         """What the scenario says of each kind, in the order of their numbers."""
-        return self._given.breakdowns, self._given.slow, self._given.closures
+        given = self._given
+        return given.breakdowns, given.slow, given.closures, given.chargers
 
     def _repeat(self, kind: int) -> None:
         """Enter the next of a kind, at a random time."""
@@ -143,6 +159,8 @@ class DisturbanceSource:
             self._hold(self._robot(_BREAKDOWNS), lasting_us)
         elif kind == _SLOW:
             self._slow_down(lasting_us)
+        elif kind == _CHARGERS:
+            self._fail(lasting_us)
         else:
             self._close_somewhere(lasting_us)
         self._repeat(kind)
@@ -201,6 +219,22 @@ class DisturbanceSource:
                 self._closed(waypoint, lasting_us)
                 return
             traffic.reopen([waypoint])
+
+    def _fail(self, lasting_us: int) -> None:
+        """Let a plug-in place that works fail."""
+        assert self._chargers is not None
+        failed = {one.element for one in self._now("charger")}
+        working = [number for number in self._chargers.stations if number not in failed]
+        if working:
+            station = working[int(self._draw[_CHARGERS].integers(len(working)))]
+            self._chargers.set_working(station, False)
+            number = self._note("charger", station)
+            self._agenda.after(lasting_us, partial(self._repair, station, number))
+
+    def _repair(self, station: int, number: int) -> None:
+        assert self._chargers is not None
+        self._chargers.set_working(station, True)
+        self._end(number)
 
     def _closed(self, waypoint: int, lasting_us: int) -> None:
         number = self._note("closure", waypoint)

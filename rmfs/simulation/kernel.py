@@ -16,12 +16,14 @@ from rmfs.simulation.agenda import LAST, Agenda, us_at
 from rmfs.simulation.alarms import Alarms
 from rmfs.simulation.applying import Applying
 from rmfs.simulation.arrivals import ArrivalProcess
+from rmfs.simulation.charging.chargers import Chargers
+from rmfs.simulation.charging.guard import EnergyGuard
+from rmfs.simulation.charging.setup import count_energy
 from rmfs.simulation.controller_set import ControllerSet
 from rmfs.simulation.deciding import Deciding
 from rmfs.simulation.decision import Decision
 from rmfs.simulation.dispatch import Dispatch
 from rmfs.simulation.disturbances import DisturbanceSource
-from rmfs.simulation.energy import PodMasses, model_of
 from rmfs.simulation.events import Events
 from rmfs.simulation.forking import Snapshot
 from rmfs.simulation.late_binding import LateBinding
@@ -133,6 +135,7 @@ class Kernel:
         self.agenda = agenda = Agenda()
         self.world = world = _stocked_world(layout, scenario, seed)
         self.events = events = Events()
+        masses = count_energy(scenario.energy, layout, world, fleet, seed)
         past = PastOrders(scenario, world.skus, seed)
         travel = Travel(layout, fleet)
         self.view = View(world, travel, self.end_s, past, scenario.time_of_day_s)
@@ -141,9 +144,22 @@ class Kernel:
         )
         services = services_of(layout, agenda=agenda, world=world, events=events)
         self.dispatch = Dispatch(layout, world, fleet, events, installed, services)
+        self.chargers = Chargers(layout, services, fleet)
         visits = Visits(world, self.view, self.dispatch, seed)
         late_binding = LateBinding(world, travel, installed)
         due = Due(world, installed)
+        self.guard: EnergyGuard | None = None
+        if scenario.energy is not None and world.batteries is not None:
+            self.guard = EnergyGuard(
+                scenario.energy,
+                world.batteries,
+                self.view,
+                agenda=agenda,
+                dispatch=self.dispatch,
+                fleet=fleet,
+                controllers=installed,
+                due=due,
+            )
         decided_outside = problems_outside(outside, controllers.choices)
         alarms = Alarms(agenda, installed, due.want, decided_outside)
         self.deciding = Deciding(world, events, installed, alarms, controllers.choices)
@@ -161,6 +177,7 @@ class Kernel:
             dispatch=self.dispatch,
             late_binding=late_binding,
             visits=visits,
+            guard=self.guard,
         )
         self.applying = Applying(
             world,
@@ -168,6 +185,7 @@ class Kernel:
             self.dispatch,
             prepare=self.phase.prepare,
             exchange=self.phase.exchange_controller,
+            unplug=self.chargers.unplug,
         )
         self.arrivals = ArrivalProcess(
             layout,
@@ -189,9 +207,8 @@ class Kernel:
         self.deciding.connect(self.applying, self.optimisers)
         self.phase.connect(self.applying, self.arrivals)
         self.disturbances = DisturbanceSource(
-            layout, scenario.disturbances, seed, agenda=agenda, fleet=fleet
+            layout, scenario.disturbances, seed, agenda=agenda, fleet=fleet, chargers=self.chargers
         )
-        masses = _count_energy(scenario, world, fleet)
         self._spectators = tuple(observers)
         events.tell([*masses, late_binding, *visits.controllers, *observers, Triggers(due)])
         self._due = due
@@ -414,6 +431,8 @@ class Kernel:
         self.optimisers.begin(m for choice in choices for m in choice.controller.optimisers)
         self.events.run_started(self.observed())
         self.disturbances.begin()
+        if self.guard is not None:
+            self.guard.begin()
         self.arrivals.top_up()
         self._due.signal(Trigger.START)
         if self.warmup_s == 0:
@@ -448,16 +467,6 @@ class Kernel:
             )
         self.events.sampled(self.world.now_s)
         self._sample_again(number + 1)
-
-
-def _count_energy(scenario: Scenario, world: World, fleet: Traffic) -> list[Observer]:
-    """Let traffic count energy, if that is wanted; returns who keeps it informed."""
-    given = scenario.energy
-    if given is None:
-        return []
-    masses = PodMasses(given, world, fleet)
-    fleet.count_energy(model_of(given), masses.all_kg())
-    return [masses]
 
 
 def _traffic_handlers(dispatch: Dispatch) -> list[Callable[[int, int], None] | None]:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rmfs.simulation.alarms import Alarms
     from rmfs.simulation.applying import Applying
     from rmfs.simulation.arrivals import ArrivalProcess
+    from rmfs.simulation.charging.guard import EnergyGuard
     from rmfs.simulation.controller_set import ControllerSet
     from rmfs.simulation.deciding import Deciding
     from rmfs.simulation.dispatch import Dispatch
@@ -38,8 +39,8 @@ if TYPE_CHECKING:
 class DecisionPhase:
     """Goes through the steps that are due.
 
-    The order is answers of optimisers, MM, arrivals, SA, RPS, ROA, POA, late binding, PPS, PSA, TA;
-    whatever a step makes due is done before anything later in this order. PPS, PSA and
+    The order is answers of optimisers, MM, arrivals, SA, RPS, ROA, POA, late binding, PPS, PSA, CA,
+    TA; whatever a step makes due is done before anything later in this order. PPS, PSA and
     repositioning decide when TA asks them; in steps of their own PPS and PSA may only ask
     optimisers. TA is also asked when repositioning wants to be.
 
@@ -67,12 +68,14 @@ class DecisionPhase:
         dispatch: Dispatch,
         late_binding: LateBinding,
         visits: Visits,
+        guard: EnergyGuard | None = None,
     ) -> None:
         self._agenda, self._world, self._events = agenda, world, events
         self._controllers, self._due, self._alarms = controllers, due, alarms
         self._view = view
         self._deciding, self._dispatch, self._late_binding = deciding, dispatch, late_binding
         self._visits = visits
+        self._guard = guard
         self._answers: list[Call] = []
         self._interrupted = -1
         self._applying: Applying
@@ -160,6 +163,8 @@ class DecisionPhase:
             self._give_tasks()
         elif step == steps.ANSWERS:
             self._take_answers()
+        elif step == steps.CHARGES and self._guard is None:
+            pass  # robots have as much energy as they need
         else:
             problem = Problem.MM if step == steps.MANAGE else steps.PROBLEM_OF[step]
             if problem in self.outside.problems and problem not in ASKED_BY_TA:
@@ -172,6 +177,8 @@ class DecisionPhase:
         if outside.doing is not None:
             self.do_outside()
             raise Awaits(Question(Problem.TA, "turn"))
+        if self._guard is not None:
+            self._guard.secure(self._consult)
         self._visits.give()
         outside.taken = 0  # all that was answered in this attempt is asked again, in its order
         self._start_prepared()

@@ -18,11 +18,13 @@ ASKED = (Problem.SA, Problem.RPS, Problem.ROA, Problem.POA)
 LATE_BINDING = ARRIVALS + len(ASKED) + 1
 # these may ask optimisers; what they decide, TA asks
 AHEAD = (Problem.PPS, Problem.PSA)
-TASKS = LATE_BINDING + len(AHEAD) + 1
+CHARGES = LATE_BINDING + len(AHEAD) + 1
+TASKS = CHARGES + 1
 
 PROBLEM_OF: dict[int, Problem] = {
     **dict(enumerate(ASKED, start=ARRIVALS + 1)),
     **dict(enumerate(AHEAD, start=LATE_BINDING + 1)),
+    CHARGES: Problem.CA,
 }
 """Whose controller is asked in a step."""
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from rmfs.layout.model import Layout
     from rmfs.scenario import SkuSet
+    from rmfs.world.batteries import Batteries
 
 
 class WorldState:
@@ -68,6 +69,8 @@ class WorldState:
         How often an order was drawn anew because stock could not serve the first draw.
     orders_short
         Orders that came although stock could not serve them.
+    batteries
+        What robots carry to draw from; None if it is as much as they need.
     tasks_dropped
         How many prepared tasks were impossible when their turn came.
     """
@@ -120,6 +123,7 @@ class WorldState:
             for i, plan in enumerate(layout.other_stations)
         ]
         self.stations: list[Station[Any]] = [*self.work_stations, *self.other_stations]
+        self.batteries: Batteries | None = None
         self.tasks_dropped = 0
         self.orders_created = 0
         self.order_redraws = 0

@@ -45,6 +45,10 @@ class Keeps(Protocol):
         """Begin to bring a pod to a station of another kind."""
         ...
 
+    def start_charge(self, task: Any) -> Task:
+        """Begin to go for energy."""
+        ...
+
     def start_park(self, robot: Robot, place: int) -> Task:
         """Begin to store a pod."""
         ...

@@ -12,6 +12,7 @@ from rmfs.world.tasks import ParkTask, Pick, PickTask, ReplenishTask, Reposition
 if TYPE_CHECKING:
     from collections.abc import Collection
 
+    from rmfs.world.charging import ChargeTask
     from rmfs.world.orders import Bundle, OrderLine
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation
@@ -324,6 +325,12 @@ class World(WorldState):
         robot = self.robots[task.robot]
         self._begin_pod_task(robot, task)
         self.stations[task.station].tasks[task.pod] = task
+        return task
+
+    def start_charge(self, task: ChargeTask) -> ChargeTask:
+        """Begin the task to go for energy."""
+        self.stations[task.station].tasks[task.robot] = task
+        self._set_task(self.robots[task.robot], task)
         return task
 
     def start_park(self, robot: Robot, place: int) -> Task:

@@ -13,7 +13,9 @@ from rmfs.scenario.parameters.demand import Demand as Demand
 from rmfs.scenario.parameters.demand import PoissonDemand as PoissonDemand
 from rmfs.scenario.parameters.demand import StreamDemand as StreamDemand
 from rmfs.scenario.parameters.disturbances import Disturbances as Disturbances
+from rmfs.scenario.parameters.energy import Battery as Battery
 from rmfs.scenario.parameters.energy import Energy as Energy
+from rmfs.scenario.parameters.energy import Inductive as Inductive
 from rmfs.scenario.parameters.orders import AnyOrders as AnyOrders
 from rmfs.scenario.parameters.orders import Orders as Orders
 from rmfs.scenario.parameters.orders import WordOrders as WordOrders

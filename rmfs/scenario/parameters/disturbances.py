@@ -31,6 +31,10 @@ class Closures(_Repeated):
     """A waypoint of the aisles that everything can do without is closed for a while."""
 
 
+class ChargerFailures(_Repeated):
+    """A plug-in place gives nothing for a while; the robot there waits, or is called away."""
+
+
 Outage = Annotated[tuple[Natural, NotNegative, Positive], pydantic.Strict(strict=False)]
 Outages = Annotated[tuple[Outage, ...], pydantic.Strict(strict=False)]
 
@@ -41,6 +45,9 @@ class Disturbances(Block):
     breakdowns: Breakdowns | None = Field(None, description="robots that stop; default: none")
     slow: SlowRobots | None = Field(None, description="robots that are slow; default: none")
     closures: Closures | None = Field(None, description="closed waypoints; default: none")
+    chargers: ChargerFailures | None = Field(
+        None, description="plug-in places that fail; default: none"
+    )
     elevators_out: Outages = Field(
         (), description="triples of an elevator's index and the first and last s it is out of use"
     )

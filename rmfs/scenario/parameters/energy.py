@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 import pydantic
 from pydantic import Field
 
-from rmfs.scenario.quantities import Block, NotNegative, Positive, Share
+from rmfs.scenario.quantities import Block, NotNegative, Positive, Share, not_below
 
 Efficiency = Annotated[float, Field(gt=0, le=1)]
 
@@ -17,6 +17,58 @@ PRESETS: dict[str, dict[str, Any]] = {
     "light": {"robot_kg": 60.0, "pod_kg": 40.0, "standby_w": 5.0, "standby_loaded_w": 8.0},
 }
 """What the presets change of the default values; docs/energy.md names the sources."""
+
+
+class Battery(Block):
+    """What robots carry, and what may be taken of it."""
+
+    capacity_wh: Positive = Field(1000.0, description="Wh")
+    taper_from_share: Efficiency = Field(
+        0.8, description="level from which a charger gives less, evenly to 0 when full; 1: never"
+    )
+    full_share: Efficiency = Field(0.98, description="level that counts as full")
+    least_share: Share = Field(
+        0.1, description="level below which a robot strands; must be less than full_share"
+    )
+    reserve_share: Share = Field(
+        0.05, description="kept besides for waiting: no task that could end below both"
+    )
+    initial_least_share: Share = Field(
+        0.5, description="at time zero levels are drawn evenly between this ..."
+    )
+    initial_most_share: Share = Field(1.0, description="... and this")
+    rescue_after_s: Positive = Field(
+        900.0, description="s a stranded robot waits until somebody brings energy"
+    )
+    rescue_share: Efficiency = Field(0.5, description="its level then")
+
+    @pydantic.field_validator("initial_most_share")
+    @classmethod
+    def _in_order(cls, value: float, info: pydantic.ValidationInfo) -> float:
+        return not_below(value, info, "initial_least_share")
+
+    @pydantic.model_validator(mode="after")
+    def _some_use(self) -> Battery:
+        bottom = self.least_share + self.reserve_share
+        for key in ("full_share", "rescue_share", "initial_least_share"):
+            if getattr(self, key) <= bottom:
+                raise ValueError(
+                    f"{key} = {getattr(self, key):g} must be more than least_share + reserve_share "
+                    f"= {bottom:g}"
+                )
+        return self
+
+
+class Inductive(Block):
+    """Waypoints that charge robots while they wait or are served."""
+
+    power_w: Positive = Field(200.0, description="W given to a robot that stands there")
+    at: Literal["pick-stations", "replenishment-stations", "all-stations"] = Field(
+        "all-stations", description="whose queues"
+    )
+    places: Annotated[int, Field(ge=1)] = Field(
+        4, description="places of each queue, the station's own place first"
+    )
 
 
 class Energy(Block):
@@ -52,6 +104,21 @@ class Energy(Block):
     lift_efficiency: Efficiency = Field(0.5, description="share of the power drawn that lifts")
     standby_w: NotNegative = Field(30.0, description="W of electronics, all the time, without pod")
     standby_loaded_w: NotNegative = Field(40.0, description="W of electronics with a pod")
+    battery: Battery | None = Field(
+        None, description="what robots carry; default: as much as they need"
+    )
+    inductive: Inductive | None = Field(
+        None, description="charging while waiting; default: nowhere"
+    )
+
+    @pydantic.field_validator("inductive")
+    @classmethod
+    def _charges_something(
+        cls, value: Inductive | None, info: pydantic.ValidationInfo
+    ) -> Inductive | None:
+        if value is not None and "battery" in info.data and info.data["battery"] is None:
+            raise ValueError("needs a battery to charge: energy.battery")
+        return value
 
     @pydantic.model_validator(mode="before")
     @classmethod

@@ -1,0 +1,73 @@
+"""CA breaks: robots charge at fixed times of the day."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import inf
+from typing import TYPE_CHECKING, Annotated
+
+import pydantic
+
+from rmfs.control.ca.levels import ByLevel, Level, LevelParameters, Share
+
+if TYPE_CHECKING:
+    from rmfs.world.robots import Robot
+
+Break = tuple[
+    Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)],
+    Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)],
+]
+
+
+class BreaksParameters(LevelParameters):
+    """Parameters of CA breaks."""
+
+    below_share: Share = 0.25
+    """Below this level a robot goes for energy outside breaks, too."""
+    until_share: Level = 0.9
+    """Level until which robots charge."""
+    breaks_s: tuple[Break, ...] = ((14400.0, 16200.0), (28800.0, 30600.0))
+    """Pairs of the first and last second of a break, in order, within a cycle."""
+    cycle_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 43200.0
+    """Seconds after which breaks come again; the clock is that of the scenario."""
+
+    @pydantic.model_validator(mode="after")
+    def _breaks_in_order(self) -> BreaksParameters:
+        times = [time for pair in self.breaks_s for time in pair]
+        if any(a >= b for a, b in pairwise(times)) or (times and times[-1] > self.cycle_s):
+            raise ValueError("breaks_s must be in order, not overlap and end by cycle_s")
+        return self
+
+
+class Breaks(ByLevel[BreaksParameters]):
+    """Sends all robots that come free within a break (interim charging), others when they are low.
+
+    With more robots than places, they queue.
+    """
+
+    parameters_model = BreaksParameters
+
+    def next_event_s(self) -> float:
+        """When the next break begins."""
+        given, view = self.parameters, self.view
+        if view.batteries is None or not given.breaks_s:
+            return inf
+        now_s = view.now_s + view.time_of_day_s
+        begin_s = now_s // given.cycle_s * given.cycle_s
+        starts = [
+            begin_s + cycle * given.cycle_s + start
+            for cycle in (0, 1)
+            for start, _ in given.breaks_s
+        ]
+        return min(start for start in starts if start > now_s) - view.time_of_day_s
+
+    def wanted_share(self, robot: Robot, share: float) -> float:
+        """The upper level, if there is a break or the robot is low."""
+        given = self.parameters
+        time_s = (self.view.now_s + self.view.time_of_day_s) % given.cycle_s
+        is_break = any(start <= time_s < end for start, end in given.breaks_s)
+        return given.until_share if is_break or share < given.below_share else 0.0
+
+    def target_share(self) -> float:
+        """The upper level."""
+        return self.parameters.until_share

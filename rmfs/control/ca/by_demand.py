@@ -1,0 +1,82 @@
+"""CA by-demand: robots charge early while few orders arrive."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, Annotated, Any
+
+import pydantic
+
+from rmfs.control.ca.levels import ByLevel, Level, LevelParameters, Share
+from rmfs.control.problems import Trigger
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+
+class ByDemandParameters(LevelParameters):
+    """Parameters of CA by-demand."""
+
+    below_share: Share = 0.25
+    """Level below which a robot goes for energy while many orders arrive."""
+    calm_below_share: Share = 0.6
+    """The same while few arrive."""
+    until_share: Level = 0.8
+    """Level until which it stays."""
+    window_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 900.0
+    """Arrivals of so many seconds are counted ..."""
+    calm_share: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.8
+    """... and are few if their rate is below this share of the mean since the run began."""
+
+    @pydantic.model_validator(mode="after")
+    def _calm_in_order(self) -> ByDemandParameters:
+        if not self.below_share <= self.calm_below_share < self.until_share:
+            raise ValueError(
+                f"calm_below_share = {self.calm_below_share:g} must be at least below_share and "
+                "less than until_share"
+            )
+        return self
+
+
+class ByDemand(ByLevel[ByDemandParameters]):
+    """Sends robots earlier while the arrival rate is low, to have them when it is high."""
+
+    parameters_model = ByDemandParameters
+    hears = frozenset({Trigger.NEW_ORDER})
+
+    def __init__(
+        self, parameters: ByDemandParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        self._arrivals: deque[float] = deque()
+        self._begun_s = view.now_s
+        self._count = 0
+
+    def hear(self, trigger: Trigger, subject: Any) -> None:
+        """Count an order."""
+        self._arrivals.append(self.view.now_s)
+        self._count += 1
+
+    def wanted_share(self, robot: Robot, share: float) -> float:
+        """The upper level, below the one that counts now."""
+        given = self.parameters
+        low = given.calm_below_share if self.is_calm() else given.below_share
+        return given.until_share if share < low else 0.0
+
+    def target_share(self) -> float:
+        """The upper level."""
+        return self.parameters.until_share
+
+    def is_calm(self) -> bool:
+        """Whether few orders arrived of late; never before two windows have passed."""
+        now_s, window_s = self.view.now_s, self.parameters.window_s
+        while self._arrivals and self._arrivals[0] < now_s - window_s:
+            self._arrivals.popleft()
+        passed_s = now_s - self._begun_s
+        if passed_s < 2 * window_s or not self._count:
+            return False
+        mean_rate = self._count / passed_s
+        return len(self._arrivals) / window_s < self.parameters.calm_share * mean_rate

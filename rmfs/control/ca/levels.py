@@ -1,0 +1,90 @@
+"""What CA rules share: levels from which and to which robots charge, places, handing over."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Annotated, TypeVar
+
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.ca import ChargeAssignment
+from rmfs.control.ca.places import PlaceRule, choose
+from rmfs.control.decisions import Charge, Unplug
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.world.robots import Robot
+
+Share = Annotated[float, pydantic.Field(ge=0, le=1)]
+Level = Annotated[float, pydantic.Field(gt=0, le=1)]
+
+
+class PlaceParameters(Parameters):
+    """Parameters of all rules that send robots to places."""
+
+    place: PlaceRule = "least-queued"
+    """Which place: the `least-queued`, or the `nearest`."""
+    hand_over_share: Level | None = None
+    """A robot that charges gives up its place to one that waits there and has less by this share of
+    the capacity; default: never."""
+
+
+class LevelParameters(PlaceParameters):
+    """Parameters of rules with two levels."""
+
+    below_share: Share = 0.3
+    """A robot goes for energy once its level is below."""
+    until_share: Level = 0.8
+    """It stays until it has this level."""
+
+    @pydantic.model_validator(mode="after")
+    def _in_order(self) -> LevelParameters:
+        if self.below_share >= self.until_share:
+            raise ValueError(
+                f"below_share = {self.below_share:g} must be less than until_share = "
+                f"{self.until_share:g}"
+            )
+        return self
+
+
+P = TypeVar("P", bound=PlaceParameters)
+
+
+class ByLevel(ChargeAssignment[P]):
+    """Sends robots one by one, the emptiest first."""
+
+    @abstractmethod
+    def wanted_share(self, robot: Robot, share: float) -> float:
+        """Level until which a robot with this one is to charge now; 0 if it is not to."""
+
+    def decide(self) -> Iterator[Charge | Unplug]:
+        """Yield robots to be sent, then places handed over."""
+        batteries = self.view.batteries
+        if batteries is None:
+            return
+        shares = batteries.shares().tolist()
+        yield from self._send(shares)
+        if self.parameters.hand_over_share is not None:
+            yield from self._hand_over(shares, self.parameters.hand_over_share)
+
+    def _send(self, shares: list[float]) -> Iterator[Charge]:
+        view = self.view
+        empty = [r for r in (*view.asking.values(), *view.resting.values()) if r.pod < 0]
+        for robot in sorted(empty, key=lambda robot: (shares[robot.index], robot.index)):
+            until = self.wanted_share(robot, shares[robot.index])
+            if until <= shares[robot.index]:
+                continue
+            station = choose(view, robot, self.parameters.place)
+            if station < 0:
+                return
+            yield Charge(robot, station, until)
+
+    def _hand_over(self, shares: list[float], gap: float) -> Iterator[Unplug]:
+        """Let robots leave whose place somebody waits for who has much less."""
+        for station in self.view.chargers:
+            here = station.robot
+            waiting = [shares[robot] for robot in station.tasks if robot != here]
+            if here in station.tasks and waiting and min(waiting) < shares[here] - gap:
+                yield Unplug(self.view.robots[here])

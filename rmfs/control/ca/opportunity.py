@@ -1,0 +1,74 @@
+"""CA opportunity: a robot without work charges."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING, Annotated
+
+import pydantic
+
+from rmfs.control.ca.levels import ByLevel, Level, LevelParameters, Share
+from rmfs.control.decisions import Charge, Unplug
+from rmfs.control.problems import Trigger
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.world.robots import Robot
+
+
+class OpportunityParameters(LevelParameters):
+    """Parameters of CA opportunity."""
+
+    below_share: Share = 0.25
+    """Below this level a robot goes for energy even if there is work."""
+    until_share: Level = 0.8
+    """Level at which a robot leaves, at the latest."""
+    idle_below_share: Share = 0.75
+    """A robot at rest charges if its level is below, and a place free."""
+    leave_above_share: Share = 0.4
+    """A robot above this level leaves its place as soon as work waits and nobody is at rest."""
+    period_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 30.0
+    """How often robots at rest are looked at."""
+
+
+class Opportunity(ByLevel[OpportunityParameters]):
+    """Lets robots charge whenever they have nothing to do, and calls them back when there is work.
+
+    A robot at rest goes to a free place; one that is low goes in any case.
+    """
+
+    parameters_model = OpportunityParameters
+    subscriptions = frozenset(
+        {Trigger.ORDER_ASSIGNED, Trigger.ORDER_QUEUED, Trigger.BUNDLE_ASSIGNED}
+    )
+
+    def decide(self) -> Iterator[Charge | Unplug]:
+        """Yield robots to be sent, and one to be called back."""
+        yield from super().decide()
+        batteries, view = self.view.batteries, self.view
+        work_waits = any(station.has_open_work for station in view.stations)
+        if batteries is None or view.resting or not work_waits:
+            return
+        for station in view.chargers:
+            here = station.robot
+            if here in station.tasks and batteries.share(here) > self.parameters.leave_above_share:
+                yield Unplug(view.robots[here])
+                return
+
+    def next_event_s(self) -> float:
+        """Look at robots at rest from time to time."""
+        period_s = self.parameters.period_s
+        now_s = self.view.now_s
+        return inf if self.view.batteries is None else (now_s // period_s + 1) * period_s
+
+    def wanted_share(self, robot: Robot, share: float) -> float:
+        """The upper level, if it is low, or at rest while a place is free."""
+        given, view = self.parameters, self.view
+        free = any(not station.tasks for station in view.recovery_stations)
+        low = given.idle_below_share if free and robot.index in view.resting else given.below_share
+        return given.until_share if share < low else 0.0
+
+    def target_share(self) -> float:
+        """The upper level."""
+        return self.parameters.until_share

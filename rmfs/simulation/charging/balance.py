@@ -1,0 +1,78 @@
+"""Whether a fleet can get as much energy as it needs in the long run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from rmfs.errors import InputError
+from rmfs.layout.charging import RecoveryKind
+
+if TYPE_CHECKING:
+    from rmfs.layout.model import Layout
+    from rmfs.scenario.parameters import Energy
+
+
+class Balance(NamedTuple):
+    """Power in the long run, W.
+
+    Attributes
+    ----------
+    given_w
+        What all stations, and all waypoints that charge, give at most.
+    least_w
+        What the fleet draws at least: its electronics alone.
+    """
+
+    given_w: float
+    least_w: float
+
+
+def waypoint_power_w(layout: Layout, energy: Energy) -> dict[int, float]:
+    """Return the power of each waypoint that charges whoever stands there, W."""
+    power: dict[int, float] = {}
+    queues: list[tuple[int, ...]] = []
+    given = energy.inductive
+    if given is not None:
+        if given.at != "replenishment-stations":
+            queues += [station.queue for station in layout.pick_stations]
+        if given.at != "pick-stations":
+            queues += [station.queue for station in layout.replenishment_stations]
+        for queue in queues:
+            power.update(dict.fromkeys(queue[: given.places], given.power_w))
+    for other in layout.other_stations:
+        if isinstance(other.kind, RecoveryKind) and other.kind.head_w:
+            power[other.waypoint] = other.kind.head_w
+    return power
+
+
+def balance(layout: Layout, energy: Energy) -> Balance:
+    """Compare what a fleet can get with what it draws at least."""
+    given_w = sum(
+        other.kind.long_run_w
+        for other in layout.other_stations
+        if isinstance(other.kind, RecoveryKind) and not other.kind.head_w
+    )
+    given_w += sum(waypoint_power_w(layout, energy).values())
+    return Balance(given_w, layout.robots * energy.standby_w)
+
+
+def refuse(layout: Layout, energy: Energy) -> None:
+    """Refuse batteries that nothing, or too little, charges.
+
+    Raises
+    ------
+    InputError
+        Naming the deficit.
+    """
+    found = balance(layout, energy)
+    if not found.given_w:
+        raise InputError(
+            "scenario.energy.battery: nothing charges: the layout has no station of the kind "
+            "charger or swap, and scenario.energy.inductive is not given"
+        )
+    if found.given_w < found.least_w:
+        raise InputError(
+            f"scenario.energy.battery: {layout.robots} robots draw {found.least_w:g} W standing "
+            f"still, and all chargers together give {found.given_w:g} W: "
+            f"{found.least_w - found.given_w:g} W are missing in the long run"
+        )

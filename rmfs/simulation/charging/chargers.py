@@ -1,0 +1,56 @@
+"""The plug-in places of a run: robots leave them when told to, and places fail."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.layout.charging import RecoveryKind
+from rmfs.simulation.charging.service import ChargeService
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.control.decisions import Unplug
+    from rmfs.layout.model import Layout
+    from rmfs.simulation.service import Service
+    from rmfs.traffic import Traffic
+
+
+class Chargers:
+    """All plug-in places.
+
+    Attributes
+    ----------
+    stations
+        Their numbers among all stations.
+    """
+
+    def __init__(self, layout: Layout, services: Sequence[Service], fleet: Traffic) -> None:
+        self._layout, self._fleet = layout, fleet
+        self._services = {
+            number: service
+            for number, service in enumerate(services)
+            if isinstance(service, ChargeService)
+        }
+        self.stations = list(self._services)
+
+    def unplug(self, decision: Unplug) -> None:
+        """Let a robot leave.
+
+        Raises
+        ------
+        ValueError
+            If it stands at no plug-in place, or does not charge.
+        """
+        service = self._services.get(decision.robot.station)
+        if service is None or not service.is_charging:
+            raise ValueError(f"robot {decision.robot.index} stands at no plug-in place")
+        service.unplug()
+
+    def set_working(self, station: int, working: bool) -> None:
+        """Let a place fail, or work again."""
+        plan = self._layout.stations[station]
+        assert isinstance(plan.kind, RecoveryKind)
+        power_w = plan.kind.head_w if working else 0.0
+        self._fleet.set_power(plan.waypoint, power_w)
+        self._services[station].set_power(power_w)

@@ -1,0 +1,82 @@
+"""How much energy a robot needs at most for one more task and the way to a station for energy.
+
+The bound holds for every way in the layout. From rest to rest, the mean power of a robot of *m* kg
+is at most *m p* + standby: a run of top speed *v* draws no more than *c g v* against rolling
+resistance, and no more than half *(1 + k) v²* of kinetic energy per kg in the time *v / a + v / b*
+that speeding up to it and braking take; a turn at the angular speed *w* draws *t g w*, and half
+*(r w)²* in the time of the bend. Times are the unhindered ones of traffic. What waiting and other
+robots add is what the reserve is for.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+    from rmfs.layout.model import RobotKind
+    from rmfs.scenario.parameters import Energy
+
+GRAVITY = 9.80665
+BEND_RAD = np.pi / 2
+"""Bends of the layouts of this field are right angles or more."""
+
+
+def most_w_per_kg(given: Energy, kind: RobotKind) -> float:
+    """Most power per kg that motion draws in the mean, from rest to rest, W/kg."""
+    v, a, b = kind.top_speed_m_s, kind.acceleration_m_s2, kind.deceleration_m_s2
+    roll = given.rolling_resistance * GRAVITY * v
+    kinetic = (1 + given.inertia_share) / 2 * v / (1 / a + 1 / b)
+    turn_rad_s = 2 * np.pi / kind.full_turn_s
+    twist = given.turning_resistance_m * GRAVITY * turn_rad_s
+    spin = (given.gyration_m * turn_rad_s) ** 2 / 2 * turn_rad_s / BEND_RAD
+    return float(max(roll + kinetic, twist + spin) / given.drive_efficiency)
+
+
+class Needs:
+    """Energy that a robot needs at most, J.
+
+    Attributes
+    ----------
+    task_j
+        Of a robot without pod: fetch any pod, bring it to any station, store it anywhere, and go
+        for energy from there.
+    store_j
+        Of a robot with a pod at a station: store it anywhere, and go for energy from there.
+    visit_j
+        The same after a visit of any other station.
+    """
+
+    def __init__(self, view: View, given: Energy) -> None:
+        travel, layout, places = view.travel, view.layout, view.storage.places
+        per_kg = max(most_w_per_kg(given, kind) for kind in layout.robot_kinds)
+        most_kg = given.pod_kg + given.goods_kg_per_space * float(layout.pod_capacity.max())
+        empty_w = given.robot_kg * per_kg + given.standby_w
+        loaded_w = (given.robot_kg + most_kg) * per_kg + given.standby_loaded_w
+        work = np.array([station.waypoint for station in view.stations])
+        energy = [station.waypoint for station in view.recovery_stations]
+        bring_s = max(_most(travel.to(at, loaded=True)[places]) for at in work.tolist())
+        away_s = max(_most(travel.away(at, loaded=True)[places]) for at in work.tolist())
+        between_s = max(_most(travel.to(at, loaded=True)[work]) for at in work.tolist())
+        # to the farthest, not the nearest: that may be in use
+        energy_s = max((_most(travel.to(at, loaded=False)[places]) for at in energy), default=0.0)
+        # from anywhere to anywhere is no farther than by way of a station
+        fetch_s = min(
+            _most(travel.to(at, loaded=False)) + _most(travel.away(at, loaded=False)[places])
+            for at in work.tolist()
+        )
+        lift_j = most_kg * GRAVITY * given.lift_m / given.lift_efficiency
+        transfer_s = max(kind.pod_transfer_s for kind in layout.robot_kinds)
+        lift_j += 2 * transfer_s * given.standby_loaded_w
+        self.store_j = loaded_w * away_s + lift_j + empty_w * energy_s
+        self.visit_j = loaded_w * between_s + self.store_j
+        self.task_j = empty_w * fetch_s + loaded_w * bring_s + self.store_j
+
+
+def _most(times: NDArray[Any]) -> float:
+    """Longest of the times for which there is a way."""
+    return float(times[np.isfinite(times)].max(initial=0.0))

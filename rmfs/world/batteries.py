@@ -1,0 +1,132 @@
+"""The batteries of the robots: what is in them, and how long charging takes."""
+
+from __future__ import annotations
+
+from math import inf, log
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from rmfs.scenario.parameters import Battery
+
+J_PER_WH = 3600.0
+
+
+class Levels(Protocol):
+    """The part of traffic that knows levels."""
+
+    def energy(self) -> dict[str, NDArray[Any]]:
+        """Energy per robot; `level_j` is what is in each battery."""
+        ...
+
+    def level_j(self, robot: int) -> float:
+        """What is in the battery of a robot, J."""
+        ...
+
+    def exchange_battery(self, robot: int, level_j: float) -> None:
+        """Give a robot another battery."""
+        ...
+
+
+class Batteries:
+    """The batteries of all robots, each of the same kind.
+
+    Parameters
+    ----------
+    given
+        The kind.
+    levels
+        Where levels are known.
+
+    Attributes
+    ----------
+    capacity_j, least_j, reserve_j
+        Capacity; what must never be used; what is kept besides.
+    stranded
+        Robots that stand still because their battery is empty.
+    strandings
+        Times (s) and robots of all strandings so far.
+    """
+
+    def __init__(self, given: Battery, levels: Levels) -> None:
+        self.given = given
+        self._levels = levels
+        self.capacity_j = given.capacity_wh * J_PER_WH
+        self.least_j = given.least_share * self.capacity_j
+        self.reserve_j = given.reserve_share * self.capacity_j
+        self.stranded: set[int] = set()
+        self.strandings: list[tuple[float, int]] = []
+
+    def usable_j(self, robot: int) -> float:
+        """What a robot may use before its reserve, J."""
+        return self._levels.level_j(robot) - self.least_j - self.reserve_j
+
+    def levels_j(self) -> NDArray[np.float64]:
+        """What is in each battery, shape (R,), J."""
+        levels: NDArray[np.float64] = self._levels.energy()["level_j"]
+        return levels
+
+    def share(self, robot: int) -> float:
+        """Level of a robot's battery, as a share of its capacity."""
+        return self._levels.level_j(robot) / self.capacity_j
+
+    def shares(self) -> NDArray[np.float64]:
+        """Levels of all batteries, as shares of the capacity, shape (R,)."""
+        shares: NDArray[np.float64] = self.levels_j() / self.capacity_j
+        return shares
+
+    def exchange(self, robot: int, share: float) -> None:
+        """Give a robot a battery with this level."""
+        self._levels.exchange_battery(robot, share * self.capacity_j)
+
+    def strand(self, robot: int, now_s: float) -> None:
+        """Take note that a robot stands still without energy."""
+        self.stranded.add(robot)
+        self.strandings.append((now_s, robot))
+
+    def rescue(self, robot: int) -> None:
+        """Bring energy to a robot that stands still."""
+        self.stranded.discard(robot)
+        self.exchange(robot, max(self.given.rescue_share, self.share(robot)))
+
+    def seconds(self, from_share: float, to_share: float, power_w: float) -> float:
+        """How long a charger needs from one level to another; infinite if it never gets there.
+
+        The inverse of `Battery::charged` in rmfs/traffic/src/energy.rs.
+        """
+        if to_share <= from_share:
+            return 0.0
+        if power_w <= 0 or to_share > 1:
+            return inf
+        bend = self.given.taper_from_share
+        pace = power_w / self.capacity_j
+        constant = max(min(to_share, bend) - from_share, 0.0) / pace
+        if to_share <= bend:
+            return constant
+        if to_share >= 1:
+            return inf
+        begun = max(from_share, bend)
+        return constant + (1 - bend) / pace * log((1 - begun) / (1 - to_share))
+
+    def charged(self, from_share: float, power_w: float, seconds: float) -> float:
+        """Level after some time at a charger, as a share."""
+        bend = self.given.taper_from_share
+        pace = power_w / self.capacity_j
+        constant_for = max((bend - from_share) / pace, 0.0)
+        if seconds <= constant_for:
+            return from_share + pace * seconds
+        if bend >= 1:
+            return max(1.0, from_share)
+        begun = min(max(from_share, bend), 1.0)
+        return 1 - (1 - begun) * float(np.exp(-(seconds - constant_for) * pace / (1 - bend)))
+
+
+def initial_j(given: Battery, robots: int, draw: Callable[[int], NDArray[np.float64]]) -> Any:
+    """Draw what is in each battery at time zero, shape (R,), J."""
+    low, high = given.initial_least_share, given.initial_most_share
+    return (low + (high - low) * draw(robots)) * given.capacity_wh * J_PER_WH

@@ -1,0 +1,51 @@
+"""Robots that go for energy, and the stations they go to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rmfs.world.stations import Station
+from rmfs.world.tasks import Keeps, Serves, Task, VisitTask
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.world.robots import Robot
+
+
+@dataclass(slots=True, eq=False)
+class ChargeTask(VisitTask):
+    """Go to a station for energy, without a pod.
+
+    Attributes
+    ----------
+    until_share
+        Level of the battery at which the robot leaves a plug-in place.
+    """
+
+    kind = "charge"
+
+    until_share: float = 1.0
+
+    def started(self, world: Keeps) -> Task:
+        """Join those who are bound for the station."""
+        return world.start_charge(self)
+
+    def is_possible(self, world: Keeps, serves: Serves) -> bool:
+        """Whether the robot carries nothing."""
+        return world.robots[self.robot].pod < 0
+
+    def ended(self, world: Keeps) -> None:
+        """The robot is no longer bound for the station."""
+        del world.stations[self.station].tasks[self.robot]
+
+
+class RecoveryStation(Station[ChargeTask]):
+    """A station where robots get energy; its tasks are by robot, not by pod."""
+
+    def verify(self, robots: Sequence[Robot]) -> None:
+        """Check that the tasks are those of the robots."""
+        for robot, task in self.tasks.items():
+            if (task.robot, task.station, robots[robot].task) != (robot, self.index, task):
+                raise AssertionError(f"inconsistent world: tasks of station {self.index}")
