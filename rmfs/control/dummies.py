@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from rmfs.control.base import NoParameters
+from rmfs.control.ca import ChargeAssignment
 from rmfs.control.poa import PickOrderAssignment
 from rmfs.control.pps import LateBinding, PodSelection
 from rmfs.control.psa import PodStorageAssignment
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from rmfs.control.decisions import (
         AssignOrder,
+        Charge,
         PromiseBundle,
         ReleasePod,
         SendBundle,
@@ -131,5 +133,16 @@ class DummySA(StationActivation[NoParameters]):
     triggers = NEVER
 
     def decide(self) -> Iterator[SwitchStation]:
+        """Yield nothing."""
+        yield from ()
+
+
+class DummyCA(ChargeAssignment[NoParameters]):
+    """Leaves charging to another controller; who is low goes in any case."""
+
+    is_dummy: ClassVar[bool] = True
+    triggers = NEVER
+
+    def decide(self) -> Iterator[Charge]:
         """Yield nothing."""
         yield from ()

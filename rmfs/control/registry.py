@@ -113,6 +113,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "opportunity": "rmfs.control.ca.opportunity:Opportunity",
         "breaks": "rmfs.control.ca.breaks:Breaks",
         "by-demand": "rmfs.control.ca.by_demand:ByDemand",
+        "dummy": "rmfs.control.dummies:DummyCA",
     },
 }
 

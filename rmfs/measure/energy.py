@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +11,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rmfs.observer import MotionCounts
+    from rmfs.world.batteries import Batteries
 
 WH = 3600.0
 """Joules of a watt-hour."""
@@ -24,25 +26,28 @@ class EnergyLog:
     Attributes
     ----------
     samples
-        Every minute, J since the last reset: drawn and charged by all robots, and then the mean
-        level of the batteries (J).
+        Every minute, J since the last reset: drawn and charged by all robots; and J in the mean,
+        and the least, of the batteries, nan without batteries.
     per_order
         J of each order's units so far, by index.
     final
         What traffic counted; empty if energy is not counted.
+    batteries
+        Of the robots, if they have any.
     """
 
     def __init__(self) -> None:
         self._traffic: MotionCounts | None = None
         self._before: list[float] = []
         self._units: dict[int, list[int]] = {}
-        self.samples: list[tuple[float, float, float]] = []
+        self.batteries: Batteries | None = None
+        self.samples: list[tuple[float, float, float, float]] = []
         self.per_order: dict[int, float] = {}
         self.final: dict[str, NDArray[Any]] = {}
 
-    def begin(self, traffic: MotionCounts, robots: int) -> None:
+    def begin(self, traffic: MotionCounts, robots: int, batteries: Batteries | None) -> None:
         """Count from now on."""
-        self._traffic = traffic
+        self._traffic, self.batteries = traffic, batteries
         self._before = [0.0] * robots
 
     def sampled(self) -> None:
@@ -50,8 +55,11 @@ class EnergyLog:
         if self._traffic is not None:
             now = self._traffic.energy()
             levels = now["level_j"]
-            level = float(levels.mean()) if len(levels) else 0.0
-            self.samples.append((float(now["used_j"].sum()), float(now["charged_j"].sum()), level))
+            mean = least = nan
+            if self.batteries is not None:
+                mean, least = float(levels.mean()), float(levels.min())
+            used, charged = float(now["used_j"].sum()), float(now["charged_j"].sum())
+            self.samples.append((used, charged, mean, least))
 
     def picked(self, order: int, station: int) -> None:
         """Note a unit of the visit."""
@@ -73,6 +81,8 @@ class EnergyLog:
         """Take what traffic has counted."""
         if self._traffic is not None:
             self.final = self._traffic.energy()
+            if self.batteries is None:
+                self.final["level_j"] = np.full(len(self.final["level_j"]), nan)
 
     def per_interval_wh(self, which: int) -> NDArray[np.float64]:
         """Wh per minute: drawn (0) or charged (1)."""

@@ -81,6 +81,8 @@ class Recorder(Observer):
         Every minute: time, and the fleet's totals of distance and times since the last reset.
     energy
         What robots draw.
+    charge_kinds
+        Numbers of the tasks in which robots go for energy.
     """
 
     def __init__(self) -> None:
@@ -120,6 +122,7 @@ class Recorder(Observer):
         self.switches = Log(time_s="f8", station="i2", active="?")
         self.samples: list[tuple[float, dict[str, float]]] = []
         self.energy = EnergyLog()
+        self.charge_kinds: list[int] = []
         self.stored_space_start = 0.0
         self.motion: dict[str, NDArray[Any]] = {}
         self.heat: dict[str, NDArray[Any]] = {}
@@ -143,8 +146,9 @@ class Recorder(Observer):
         self.layout, self.world, self.traffic = run.layout, run.world, run.traffic
         self._disturbances = run.disturbances
         if run.scenario.energy is not None:
-            self.energy.begin(run.traffic, run.layout.robots)
+            self.energy.begin(run.traffic, run.layout.robots, run.world.batteries)
         visits = [kind.part("task", VisitTask).kind for kind in run.layout.other_kinds]
+        self.charge_kinds = [n for n, kind in enumerate(visits, len(TASKS)) if kind == "charge"]
         self._task_number = {kind: number for number, kind in enumerate([*TASKS, *visits])}
         self.stored_space_start = run.world.inventory.stored_space
 

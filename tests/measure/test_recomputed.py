@@ -9,7 +9,7 @@ import pytest
 from rmfs.measure import load_run, write_run
 from rmfs.measure.columns import TEXT
 from rmfs.measure.dictionary import TABLES
-from rmfs.measure.measures.energy import Energy
+from rmfs.measure.measures.energy import Batteries, Energy
 from rmfs.simulation.run import simulate
 
 WARMUP_S, DURATION_S = 300.0, 1500.0
@@ -48,7 +48,7 @@ NOT_IN_TABLES = {
     **dict.fromkeys(("order_redraws", "orders_short"), "counted when an order is drawn, or comes"),
     **dict.fromkeys(("disturbances", "disturbed_s"), "tests/simulation/test_disturbances.py"),
     **dict.fromkeys(
-        (column.name for column in Energy.columns),
+        (column.name for column in (*Energy.columns, *Batteries.columns)),
         "empty here; tests/simulation/test_energy_use.py",
     ),
     **dict.fromkeys(("planning_wall_s", "wall_s", "peak_rss_mb"), "of the machine, measured once"),

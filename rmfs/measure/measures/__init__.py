@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rmfs.measure.measures.decisions import Decisions, Optimisers
 from rmfs.measure.measures.delays import Delays
 from rmfs.measure.measures.disturbances import Disturbances
-from rmfs.measure.measures.energy import Energy
+from rmfs.measure.measures.energy import Batteries, Energy
 from rmfs.measure.measures.heading import Heading
 from rmfs.measure.measures.motion import Motion, RobotTime
 from rmfs.measure.measures.orders import Backlog, OrderTimes
@@ -38,6 +38,7 @@ SHIPPED: tuple[type[Measure], ...] = (
     Safety,
     Disturbances,
     Energy,
+    Batteries,
     Decisions,
     Optimisers,
     Speed,

@@ -6,7 +6,7 @@ from math import nan
 from typing import TYPE_CHECKING, Any
 
 from rmfs.measure.base import Measure
-from rmfs.measure.columns import LESS, REAL, Column
+from rmfs.measure.columns import COUNT_OR_EMPTY, LESS, REAL, Column
 from rmfs.measure.energy import WH
 from rmfs.measure.measures.reckoning import ratio
 
@@ -56,4 +56,70 @@ class Energy(Measure):
             **{
                 f"energy_{part}_kwh": float(counted[f"{part}_j"].sum()) / WH / 1e3 for part in PARTS
             },
+        }
+
+
+class Batteries(Measure):
+    """What became of the batteries."""
+
+    columns = (
+        Column(
+            "energy_charged_kwh",
+            REAL,
+            "kWh",
+            "Taken up where there is power, and by swaps; empty without batteries, as are the "
+            "following columns",
+        ),
+        Column("charging_share", REAL, "share", "Robot time standing where there is power"),
+        Column(
+            "charge_task_share",
+            REAL,
+            "share",
+            "Robot time with a task charge: the way, waiting, and charging or swapping",
+            better=LESS,
+        ),
+        Column("charges", COUNT_OR_EMPTY, "tasks", "Tasks charge started"),
+        Column(
+            "robots_stranded",
+            COUNT_OR_EMPTY,
+            "robots",
+            "How often a robot stood still with an empty battery, until it was rescued",
+            better=LESS,
+        ),
+        Column(
+            "battery_cycles_mean",
+            REAL,
+            "cycles",
+            "Equivalent full cycles: energy drawn / capacity, mean over batteries",
+            better=LESS,
+        ),
+        Column("battery_level_mean_share", REAL, "share", "Mean level, of samples every minute"),
+        Column("battery_level_least_share", REAL, "share", "Least level of any robot, likewise"),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Add up what traffic counted, and tasks."""
+        energy = run.recorder.energy
+        batteries, counted, samples = energy.batteries, energy.final, energy.samples
+        if batteries is None:
+            return {
+                column.name: None if column.dtype == COUNT_OR_EMPTY else nan
+                for column in self.columns
+            }
+        robot_time_s = run.layout.robots * run.logs.duration_s
+        tasks = run.logs.tasks
+        own = tasks[tasks["kind"].isin(run.recorder.charge_kinds)]
+        lasted = (own["end_s"] - own["begin_s"].clip(lower=run.start_s)).clip(lower=0.0)
+        stranded = [time_s for time_s, _ in batteries.strandings if time_s >= run.start_s]
+        return {
+            "energy_charged_kwh": float(counted["charged_j"].sum()) / WH / 1e3,
+            "charging_share": ratio(float(counted["charging_s"].sum()), robot_time_s),
+            "charge_task_share": ratio(float(lasted.sum()), robot_time_s),
+            "charges": int((own["begin_s"] >= run.start_s).sum()),
+            "robots_stranded": len(stranded),
+            "battery_cycles_mean": float(counted["used_j"].mean()) / batteries.capacity_j,
+            "battery_level_mean_share": sum(one[2] for one in samples)
+            / len(samples)
+            / batteries.capacity_j,
+            "battery_level_least_share": min(one[3] for one in samples) / batteries.capacity_j,
         }

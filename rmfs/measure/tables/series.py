@@ -71,7 +71,13 @@ SERIES = (
         "level_mean_wh",
         REAL,
         "Wh",
-        "Mean of what is in the batteries, at the end; empty where energy is not counted",
+        "Mean of what is in the batteries, at the end; empty without batteries",
+    ),
+    Column(
+        "level_least_wh",
+        REAL,
+        "Wh",
+        "The least of what is in the batteries, at the end; empty without batteries",
     ),
 )
 
@@ -108,7 +114,9 @@ def series(logs: Logs) -> pd.DataFrame:
     counted = bool(energy.samples)
     columns["energy_wh"] = energy.per_interval_wh(0) if counted else np.nan
     columns["charged_wh"] = energy.per_interval_wh(1) if counted else np.nan
-    columns["level_mean_wh"] = [level / WH for *_, level in energy.samples] if counted else np.nan
+    for name, which in (("level_mean_wh", 2), ("level_least_wh", 3)):
+        levels = [sample[which] / WH for sample in energy.samples]
+        columns[name] = levels if counted else np.nan
     return tidy("series", SERIES, columns)
 
 
