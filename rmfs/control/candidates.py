@@ -225,6 +225,7 @@ def _charges(view: View) -> Candidates:
     robots = [*view.asking.values(), *view.resting.values()]
     found: list[tuple[Charge | Unplug, int, float]] = []
     full = 1.0 if batteries is None else batteries.given.full_share
+    enough = 1.0 if batteries is None else batteries.enough_share
     for station in view.recovery_stations:
         if has_room(view, station):
             away = view.travel.to(station.waypoint, loaded=False)
@@ -235,7 +236,7 @@ def _charges(view: View) -> Candidates:
                 for at in (view.travel.robot_waypoint(robot.index),)
             ]
     for station in view.chargers:
-        if station.robot in station.tasks:
+        if station.robot in station.tasks and shares[station.robot] >= enough:
             found.append((Unplug(view.robots[station.robot]), -1, 0.0))
     numbers = [station for _, station, _ in found]
     columns: Columns = {

@@ -212,7 +212,12 @@ def _charge(decision: say.Charge, view: View) -> str:
 def _unplug(decision: say.Unplug, view: View) -> str:
     robot = decision.robot
     if any(station.robot == robot.index for station in view.chargers):
-        return "" if isinstance(robot.task, ChargeTask) else f"robot {robot.index} is not charging"
+        if not isinstance(robot.task, ChargeTask):
+            return f"robot {robot.index} is not charging"
+        batteries = view.batteries
+        if batteries is None or batteries.share(robot.index) >= batteries.enough_share:
+            return ""
+        return f"robot {robot.index} has too little for a task"
     return f"robot {robot.index} stands at no plug-in place"
 
 

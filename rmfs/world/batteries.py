@@ -47,6 +47,8 @@ class Batteries:
     ----------
     capacity_j, least_j, reserve_j
         Capacity; what must never be used; what is kept besides.
+    enough_share
+        Level from which a robot may take a task for certain; who has less goes for energy.
     stranded
         Robots that stand still because their battery is empty.
     strandings
@@ -59,6 +61,7 @@ class Batteries:
         self.capacity_j = given.capacity_wh * J_PER_WH
         self.least_j = given.least_share * self.capacity_j
         self.reserve_j = given.reserve_share * self.capacity_j
+        self.enough_share = 0.0
         self.stranded: set[int] = set()
         self.strandings: list[tuple[float, int]] = []
 

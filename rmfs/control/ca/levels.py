@@ -69,9 +69,16 @@ class ByLevel(ChargeAssignment[P]):
         if self.parameters.hand_over_share is not None:
             yield from self._hand_over(shares, self.parameters.hand_over_share)
 
+    def enough_share(self) -> float:
+        """Level from which a robot may take a task for certain."""
+        batteries = self.view.batteries
+        return 0.0 if batteries is None else batteries.enough_share
+
     def _send(self, shares: list[float]) -> Iterator[Charge]:
         view = self.view
-        empty = [r for r in (*view.asking.values(), *view.resting.values()) if r.pod < 0]
+        robots = (*view.asking.values(), *view.resting.values())
+        # who has just left a place is not sent there again at once
+        empty = [robot for robot in robots if robot.pod < 0 and robot.station < 0]
         for robot in sorted(empty, key=lambda robot: (shares[robot.index], robot.index)):
             until = self.wanted_share(robot, shares[robot.index])
             if until <= shares[robot.index]:
@@ -86,5 +93,8 @@ class ByLevel(ChargeAssignment[P]):
         for station in self.view.chargers:
             here = station.robot
             waiting = [shares[robot] for robot in station.tasks if robot != here]
-            if here in station.tasks and waiting and min(waiting) < shares[here] - gap:
+            if here not in station.tasks or not waiting:
+                continue
+            enough = max(min(waiting) + gap, self.enough_share())
+            if shares[here] > enough:
                 yield Unplug(self.view.robots[here])

@@ -52,7 +52,8 @@ class Opportunity(ByLevel[OpportunityParameters]):
             return
         for station in view.chargers:
             here = station.robot
-            if here in station.tasks and batteries.share(here) > self.parameters.leave_above_share:
+            enough = max(self.parameters.leave_above_share, batteries.enough_share)
+            if here in station.tasks and batteries.share(here) > enough:
                 yield Unplug(view.robots[here])
                 return
 

@@ -60,6 +60,9 @@ class EnergyGuard:
         self._controllers, self._due = controllers, due
         self.needs = Needs(view, given)
         self._most_w = _most_w(given, view)
+        least_j = batteries.least_j + batteries.reserve_j + 1.5 * self.needs.task_j
+        full_share = batteries.given.full_share
+        batteries.enough_share = min(least_j / batteries.capacity_j, full_share)
         self._safe_until_s = [0.0] * len(view.robots)
 
     def begin(self) -> None:
@@ -88,14 +91,8 @@ class EnergyGuard:
     def _send(self, robot: Robot) -> None:
         station = choose(self._view, robot, "least-queued", full_too=True)
         if station >= 0:
-            until = max(self._controllers[Problem.CA].target_share(), self._enough_share())
+            until = max(self._controllers[Problem.CA].target_share(), self._batteries.enough_share)
             self._dispatch.start(Charge(robot, station, until))
-
-    def _enough_share(self) -> float:
-        """Level from which a robot may take a task at all."""
-        batteries = self._batteries
-        least = batteries.least_j + batteries.reserve_j + 2 * self.needs.task_j
-        return min(least / batteries.capacity_j, batteries.given.full_share)
 
     # --- robots that strand ---------------------------------------------------------------------
 

@@ -1,0 +1,215 @@
+"""Batteries in whole runs: rules, places, swap, power while waiting, and what goes wrong."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import rmfs
+from rmfs.control.decisions import Charge, Unplug
+from rmfs.control.registry import built_in
+from rmfs.errors import InputError
+from rmfs.simulation.decision import ImpossibleError
+from rmfs.world import verify
+from rmfs.world.batteries import Batteries
+from tests.simulation.energy_ledger import EnergyLedger
+
+SHORT = {"layout.robots": 12, "scenario.warmup_s": 0, "scenario.duration_s": 2400}
+BATTERY = {"capacity_wh": 150.0, "initial_least_share": 0.3, "initial_most_share": 0.6}
+PLACES = {"kind": "charger", "north": 3, "parameters": {"power_w": 600.0}}
+CHARGERS = {
+    **SHORT,
+    "scenario.energy": {"battery": BATTERY},
+    "layout.other_stations.charger": PLACES,
+}
+
+
+def simulate(seed=1, **given):
+    ledger = EnergyLedger()
+    run = rmfs.simulate(seed=seed, set=CHARGERS | given, trace=True, observers=[ledger])
+    ledger.check(run)
+    verify(run.world)
+    report = run.check()
+    assert not report.findings, report.findings[:3]
+    return run
+
+
+RULES = [name for name in built_in(rmfs.control.problems.Problem.CA) if name != "dummy"]
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_nobody_strands_whatever_the_rule(rule):
+    run = simulate(**{"controllers.ca.name": rule})
+    footprint = run.footprint
+    assert footprint["robots_stranded"] == 0
+    assert footprint["charges"] > 3
+    assert footprint["battery_level_least_share"] > 0.1
+    assert 0 < footprint["charging_share"] < footprint["charge_task_share"] < 0.6
+    assert footprint["energy_charged_kwh"] > 0.2
+    charged = run.table("stations").query("kind == 'charger'")
+    assert charged["visits"].sum() > 0
+    assert run.table("controllers").set_index("problem").loc["ca", "decisions"] > 3
+
+
+def test_rules_that_do_nothing_are_overruled():
+    """A threshold of 0 never sends anybody: who could not finish a task goes in any case."""
+    run = simulate(**{"controllers.ca.below_share": 0.0, "scenario.duration_s": 3600})
+    assert run.footprint["robots_stranded"] == 0
+    assert run.footprint["charges"] > 3
+    assert run.footprint["battery_level_least_share"] > 0.1
+
+
+def test_levels_are_kept_between_threshold_and_target():
+    run = simulate(**{"controllers.ca": {"below_share": 0.4, "until_share": 0.55}})
+    levels = run.table("robots")["level_wh"] / 150.0
+    assert levels.max() < 0.62
+    # nobody goes to a place of its own with more than the threshold, but for those from the start
+    assert run.footprint["battery_level_least_share"] > 0.2
+
+
+def test_battery_swap():
+    swap = {"kind": "swap", "north": 2, "parameters": {"swap_s": 60.0, "batteries": 3}}
+    run = simulate(**{"layout.other_stations.charger.north": 0, "layout.other_stations.swap": swap})
+    assert run.footprint["robots_stranded"] == 0
+    swapped = run.table("stations").query("kind == 'swap'")
+    assert swapped["visits"].sum() > 3
+    assert (run.footprint["charging_share"], run.footprint["charge_task_share"] > 0) == (0, True)
+    assert run.footprint["energy_charged_kwh"] > 0.2
+
+
+def test_power_while_waiting():
+    given = {
+        **SHORT,
+        "scenario.energy": {
+            "battery": BATTERY | {"capacity_wh": 600},
+            "inductive": {"power_w": 400.0, "places": 3},
+        },
+    }
+    ledger = EnergyLedger()
+    run = rmfs.simulate(seed=2, set=given, trace=True, observers=[ledger])
+    ledger.check(run)
+    assert run.footprint["charging_share"] > 0.1
+    assert run.footprint["energy_charged_kwh"] > 0.1
+    assert run.footprint["charges"] == 0
+
+
+def test_a_stranded_robot_is_counted_and_rescued():
+    """Places that fail for long: robots strand, are rescued, and every run goes on."""
+    failing = {
+        "scenario.disturbances.chargers": {"every_s": 120, "lasting_s": 3000},
+        "scenario.energy.battery.rescue_after_s": 200,
+        "scenario.energy.battery.capacity_wh": 60,
+        "scenario.duration_s": 4500,
+    }
+    given = {**CHARGERS, "layout.other_stations.charger.north": 2}
+    run = rmfs.simulate(seed=3, set=given | failing)
+    strandings = run.world.batteries.strandings
+    assert run.footprint["robots_stranded"] == len(strandings) > 0
+    assert len(run.world.batteries.stranded) < len(strandings)  # some were rescued
+    assert run.footprint["disturbances"] > 2
+
+
+def test_places_are_handed_over():
+    few = {"layout.other_stations.charger.north": 1, "controllers.ca.below_share": 0.55}
+    kept = simulate(**few)
+    handed = simulate(**few, **{"controllers.ca.hand_over_share": 0.05})
+    assert handed.table("stations")["visits"].iloc[-1] > kept.table("stations")["visits"].iloc[-1]
+
+
+def test_copies_and_saved_runs_go_on_alike(tmp_path):
+    simulation = rmfs.Simulation(seed=4, set=CHARGERS)
+    simulation.run_until(1000)
+    fork = simulation.fork()
+    simulation.save(tmp_path / "saved")
+    saved = rmfs.Simulation.load(tmp_path / "saved")
+    for one in (simulation, fork, saved):
+        one.run()
+    rows = [
+        one.result().footprint.filter(regex="energy|charg|batter|units")
+        for one in (simulation, fork, saved)
+    ]
+    assert rows[0].equals(rows[1])
+    assert rows[0].equals(rows[2])
+
+
+def test_rules_are_exchanged_in_the_middle():
+    exchanges = [{"at_s": 600.0, "ca": "opportunity"}, {"at_s": 1200.0, "ca": "to-full"}]
+    run = simulate(**{"controllers.mm": {"name": "scheduled", "exchanges": exchanges}})
+    assert run.footprint["robots_stranded"] == 0
+    assert run.footprint["charges"] > 3
+
+
+def test_charging_is_decided_outside():
+    simulation = rmfs.Simulation(seed=1, outside=["ca"], set=CHARGERS)
+    sent = unplugged = 0
+    while (decision := simulation.step()) is not None:
+        assert decision.problem == "ca"
+        rows = decision.candidates.frame() if len(decision.candidates) else None
+        chosen = None
+        if rows is not None:
+            low = rows[(rows["station"] >= 0) & (rows["level_share"] < 0.35)]
+            if len(low):
+                chosen = decision.candidates[int(low.index[0])]
+                chosen = chosen._replace(until_share=0.5)
+            elif (rows["station"] < 0).any() and unplugged < 2:
+                chosen = decision.candidates[int(rows[rows["station"] < 0].index[0])]
+        if chosen is None:
+            decision.decline()
+        else:
+            sent += isinstance(chosen, Charge)
+            unplugged += isinstance(chosen, Unplug)
+            decision.answer(chosen)
+    assert sent > 3
+    assert unplugged == 2
+    assert simulation.result().footprint["robots_stranded"] == 0
+
+
+def test_impossible_charges_say_why():
+    simulation = rmfs.Simulation(seed=1, outside=["ca"], set=CHARGERS)
+    decision = simulation.step()
+    robot, charger = decision.view.robots[0], decision.view.recovery_stations[0].index
+    for wrong, why in [
+        (Charge(robot, 0, 0.5), "gives no energy"),
+        (Charge(robot, charger, 1.5), "no level"),
+        (Unplug(robot), "stands at no plug-in place"),
+    ]:
+        with pytest.raises(ImpossibleError, match=why):
+            decision.answer(wrong)
+    assert decision.advice() is None or isinstance(decision.advice(), Charge)
+
+
+def test_charging_times_are_the_inverse_of_charging():
+    given = rmfs.scenario.load("default", [(["energy", "battery", "capacity_wh"], 500.0)])
+    for taper in (0.7, 1.0):
+        battery = Batteries(
+            given.energy.battery.model_copy(update={"taper_from_share": taper}), None
+        )
+        for begin, end in [(0.1, 0.5), (0.2, 0.95), (0.8, 0.99)]:
+            seconds = battery.seconds(begin, end, 700.0)
+            assert battery.charged(begin, 700.0, seconds) == pytest.approx(end, rel=1e-12)
+    constant = battery.seconds(0.0, 1.0, 700.0)
+    assert constant == pytest.approx(500 * 3600 / 700)
+    assert battery.seconds(0.5, 0.4, 700.0) == 0
+    assert np.isinf(battery.seconds(0.5, 0.6, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ({"layout.other_stations.charger.north": 0}, "nothing charges"),
+        (
+            {"layout.other_stations.charger.parameters.power_w": 50.0},
+            "12 robots draw 360 W standing still, and all chargers together give 150 W: 210 W are",
+        ),
+        ({"controllers.ca": {"below_share": 0.8, "until_share": 0.5}}, "below_share = 0.8 must be"),
+        ({"scenario.energy.battery.capacity_wh": -5}, "capacity_wh: .*greater than 0"),
+        ({"scenario.energy.battery.least_share": 0.95}, "must be more than least_share"),
+        ({"scenario.energy.battery.initial_most_share": 0.2}, "at least initial_least_share"),
+        ({"layout.other_stations.charger.parameters.power_w": 0}, "power_w: .*greater than 0"),
+        ({"layout.other_stations.charger.kind": "socket"}, "valid: charger, swap"),
+    ],
+)
+def test_bad_input_gets_one_line(given, says):
+    with pytest.raises(InputError, match=says) as error:
+        rmfs.Simulation(set=CHARGERS | given)
+    assert "\n" not in str(error.value)
