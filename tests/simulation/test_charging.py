@@ -39,7 +39,8 @@ RULES = [name for name in built_in(rmfs.control.problems.Problem.CA) if name != 
 
 @pytest.mark.parametrize("rule", RULES)
 def test_nobody_strands_whatever_the_rule(rule):
-    run = simulate(**{"controllers.ca.name": rule})
+    breaks = {"controllers.ca.breaks_s": [[600, 1500]]} if rule == "breaks" else {}
+    run = simulate(**{"controllers.ca.name": rule} | breaks)
     footprint = run.footprint
     assert footprint["robots_stranded"] == 0
     assert footprint["charges"] > 3
