@@ -45,7 +45,7 @@ def test_nobody_strands_whatever_the_rule(rule):
     assert footprint["robots_stranded"] == 0
     assert footprint["charges"] > 3
     assert footprint["battery_level_least_share"] > 0.1
-    assert 0 < footprint["charging_share"] < footprint["charge_task_share"] < 0.6
+    assert 0 < footprint["charging_share"] < footprint["charge_task_share"] < 0.9
     assert footprint["energy_charged_kwh"] > 0.2
     charged = run.table("stations").query("kind == 'charger'")
     assert charged["visits"].sum() > 0
