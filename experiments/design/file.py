@@ -144,6 +144,10 @@ class DesignFile(Strict):
     check: bool = Field(False, description="prove every run safe; fills `collisions`")
     allow_not_well_formed: bool = False
     keep: list[str] = Field([], description="tables kept of every run beside its footprint")
+    decisions: str = Field(
+        "",
+        description="folder for every question to an optimiser, one below it per run",
+    )
     measures: list[str] = Field(
         [],
         description="measures of your own: path/to/file.py:Class, module:Class, or the name of an "

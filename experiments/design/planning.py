@@ -131,6 +131,7 @@ class Plan:
             keep=tuple(self.design.keep),
             files=self.files,
             measures=tuple(one["reference"] for one in self.measures),
+            decisions=_absolute_folder(self.design.decisions),
         )
 
     def require_sound(self) -> None:
@@ -265,6 +266,11 @@ def load(folder: Path) -> Plan:
         )
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{path}: corrupted ({error!r})") from None
+
+
+def _absolute_folder(given: str) -> str:
+    """Say where a folder is, for workers elsewhere; empty stays empty."""
+    return str(Path(given).absolute()) if given else ""
 
 
 def _absolute(given: str) -> str:

@@ -18,6 +18,7 @@ from rmfs.experiments.design import resolve
 from rmfs.experiments.running.job import Job, Outcome
 from rmfs.measure.footprints import some_tables
 from rmfs.simulation.run import simulate
+from rmfs.solvers.decisions.recording import DecisionRecorder
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -64,6 +65,7 @@ def _simulated(job: Job) -> dict[str, pd.DataFrame]:
     changed = [name for name, known in job.files.items() if resolve.present_hash(name) != known]
     if changed:
         raise InputError(f"{', '.join(changed)}: changed since the plan was made; plan again")
+    keeper = _keeper(job)
     run = simulate(
         inputs.layout,
         inputs.scenario,
@@ -73,12 +75,23 @@ def _simulated(job: Job) -> dict[str, pd.DataFrame]:
         trace=job.check,
         allow_not_well_formed=job.allow_not_well_formed,
         measures=job.measures,
+        observers=[] if keeper is None else [keeper],
     )
     # as if simulate had read the files itself
     layout, scenario, controllers = (Path(given).stem for given in job.inputs.values())
     run.names = (layout, scenario, controllers)
     run.overrides = list(job.overrides)
     return _tables(run, job)
+
+
+def _keeper(job: Job) -> DecisionRecorder | None:
+    """Return what writes the questions of a run below the folder of the design."""
+    if not job.decisions:
+        return None
+    run = {part: Path(given).stem for part, given in job.inputs.items()}
+    changes = [f"{'.'.join(path)}={value}" for path, value in job.overrides]
+    told = {**run, "seed": job.seed, "set": changes, "design": job.design, "arm": job.arm}
+    return DecisionRecorder(Path(job.decisions) / f"{job.arm}-seed{job.seed}", told)
 
 
 def _forget_changed(files: dict[str, str]) -> None:

@@ -24,6 +24,8 @@ class Job:
         Hash of every input file of the design: the worker compares.
     measures
         References to measures of the user.
+    decisions
+        Folder for the questions to optimisers; empty for none.
     """
 
     design: str
@@ -40,6 +42,7 @@ class Job:
     keep: tuple[str, ...]
     files: dict[str, str]
     measures: tuple[str, ...] = ()
+    decisions: str = ""
 
     @property
     def key(self) -> str:

@@ -11,6 +11,8 @@ import pytest
 
 import rmfs
 from rmfs.errors import InputError
+from rmfs.experiments.design import plan
+from rmfs.experiments.running.execute import execute
 from rmfs.solvers.decisions.asking import asked_again
 from rmfs.solvers.decisions.checking import check
 from rmfs.solvers.decisions.files import Decision, read
@@ -130,3 +132,35 @@ def test_wrong_ways_of_asking_are_refused(asked: dict[str, Any], told: str, tmp_
     question = recorded("planning", 30.0, tmp_path)[0]
     with pytest.raises(InputError, match=told):
         asked_again(Decision(question.family, question.data, asked=asked))
+
+
+DESIGN = """
+format = "rmfs-design/1"
+name = "questions"
+seeds = [1]
+decisions = "kept"
+[base]
+layout = "small"
+scenario = "small"
+controllers = "pile-on"
+"scenario.duration_s" = 60
+[factors]
+"controllers.poa.method" = ["joint", "greedy"]
+"""
+
+
+def test_a_design_keeps_the_questions_of_each_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("design.toml").write_text(DESIGN)
+    made = plan(Path("design.toml"))
+    made.require_sound()
+    for arm in made.arms:
+        assert execute(made.job(arm, 1)).error == ""
+    folders = sorted(Path("kept").iterdir())
+    assert len(folders) == 2
+    for folder, method in zip(folders, ("greedy", "joint"), strict=True):
+        questions = [read(path) for path in folder.iterdir()]
+        assert {one.asked["method"] for one in questions} == {method}
+        assert {one.provenance["design"] for one in questions} == {"questions"}
