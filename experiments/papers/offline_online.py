@@ -1,0 +1,183 @@
+"""What a better solution of the question is worth in the warehouse, family by family.
+
+Every arm is a method with its limit of work. Its offline gap is the mean primal gap to the best
+known value over the library's questions of its family, answered as the controller would answer
+them; online it is run, with the same seeds as the other arms of the family. Where a lower gap goes
+with more units, fewer late orders and less driving, the objective is a good proxy.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+from scipy.stats import spearmanr
+
+from rmfs.errors import InputError
+from rmfs.experiments.papers.decision_library import LIBRARY
+from rmfs.experiments.papers.study import command, done, parser
+from rmfs.experiments.statistics import interval
+from rmfs.experiments.tables import HALF, Table, rows_frame
+from rmfs.solvers.decisions.asking import asked_again
+from rmfs.solvers.decisions.files import read
+from rmfs.solvers.decisions.library.table import Library
+from rmfs.solvers.decisions.profiling import primal_gap
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rmfs.solvers.decisions.files import Decision
+
+SOLVER = "solver"
+COLUMNS = ("units_per_h", "late_share", "distance_per_unit_m")
+GAP = "offline gap, %"
+
+ASKED: Mapping[str, tuple[str, Mapping[str, Any]]] = {
+    "pile_on greedy": ("pile_on", {"method": "greedy"}),
+    "pile_on hadgs": ("pile_on", {"method": "hadgs"}),
+    "pile_on joint 0.002": ("pile_on", {"limits": {"deterministic_s": 0.002}}),
+    "pile_on joint 0.05": ("pile_on", {"limits": {"deterministic_s": 0.05}}),
+    "planning greedy": ("planning", {"method": "greedy"}),
+    "planning lns 10": ("planning", {"limits": {"iterations": 10}}),
+    "planning lns 100": ("planning", {"limits": {"iterations": 100}}),
+    "placement greedy": ("placement", {"method": "greedy"}),
+    "placement assignment": ("placement", {}),
+    "stays greedy": ("stays", {"method": "greedy"}),
+    "stays cp_sat": ("stays", {}),
+    "zones greedy": ("zones", {"method": "greedy"}),
+    "zones clarabel": ("zones", {}),
+    "balance greedy": ("balance", {"method": "greedy"}),
+    "balance flow": ("balance", {}),
+    "sequence greedy": ("sequence", {"method": "greedy"}),
+    "sequence cp_sat": ("sequence", {}),
+    "replenishment greedy": ("replenishment", {"method": "greedy"}),
+    "replenishment rounding": ("replenishment", {"method": "rounding"}),
+    "replenishment highs": ("replenishment", {}),
+}
+"""Family of each arm of the design, and what it changes in how a question was asked."""
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the study and publish it."""
+    options = parser("offline-online", __doc__)
+    options.add_argument("--library", type=Path, default=LIBRARY, help="folder of the library")
+    options.add_argument("--size", default="small", help="size of the questions (default: small)")
+    given = options.parse_args(arguments)
+    study = done(given)
+    library = Library.load(given.library)
+    named = list(dict.fromkeys(study.frame[SOLVER]))
+    unknown = [name for name in named if name not in ASKED]
+    if unknown:
+        raise InputError(f"{SOLVER}: {unknown[0]}: no such arm; known: {', '.join(ASKED)}")
+    gaps = {name: offline_gaps(library, name, given.size) for name in named}
+    columns = (SOLVER, *COLUMNS)
+    study.publish(beside(study.frame, gaps), "offline-online", columns, size=given.size)
+    found = correlations(study.frame, {name: float(np.mean(one)) for name, one in gaps.items()})
+    study.publish(found, "offline-online-correlations", columns, size=given.size)
+
+
+def offline_gaps(library: Library, arm: str, size: str) -> list[float]:
+    """Answer the questions of a family and size as an arm would, and return the primal gaps.
+
+    Parameters
+    ----------
+    library
+        The library.
+    arm
+        A key of `ASKED`.
+    size
+        Of the questions.
+    """
+    family, changes = ASKED[arm]
+    gaps = []
+    for row in library.rows.values():
+        if (row.family, row.size) == (family, size):
+            found = asked_again(asked_otherwise(read(library.path(row)), changes))
+            gaps.append(primal_gap(found.objective, row.value))
+    return gaps
+
+
+def asked_otherwise(decision: Decision, changes: Mapping[str, Any]) -> Decision:
+    """Change how a question was asked; tables within are changed key by key.
+
+    Parameters
+    ----------
+    decision
+        The question.
+    changes
+        What is changed.
+    """
+    asked = dict(decision.asked)
+    for key, value in changes.items():
+        asked[key] = {**asked[key], **value} if isinstance(value, dict) else value
+    return replace(decision, asked=asked)
+
+
+def beside(frame: pd.DataFrame, gaps: Mapping[str, list[float]]) -> Table:
+    """Put offline gaps and online means side by side.
+
+    Parameters
+    ----------
+    frame
+        Results of the runs.
+    gaps
+        Offline gaps by arm.
+    """
+    rows: dict[str, dict[tuple[str, str], float]] = {}
+    for arm, offline in gaps.items():
+        runs = frame[frame[SOLVER] == arm]
+        row = {(GAP, "mean"): 100.0 * float(np.mean(offline))}
+        for column in COLUMNS:
+            found = interval(runs[column])
+            row[column, "mean"], row[column, HALF] = found.mean, found.half_width
+        rows[arm] = row
+    decimals = dict.fromkeys([(GAP, "mean")], 2) | {
+        (column, part): 1 if column == "units_per_h" else 3
+        for column in COLUMNS
+        for part in ("mean", HALF)
+    }
+    caption = "Mean offline gap to the best known value, and the warehouse, by method."
+    return Table(rows_frame(rows, SOLVER), decimals, caption)
+
+
+def correlations(frame: pd.DataFrame, gaps: Mapping[str, float]) -> Table:
+    """Correlate offline gaps with online measures, paired by seed, within each family.
+
+    Parameters
+    ----------
+    frame
+        Results of the runs.
+    gaps
+        Mean offline gap by arm.
+
+    Returns
+    -------
+    Rank correlation per family and measure, of the measure less its mean over the family's arms
+    with the same seed; and the number of arms. With two arms it tells a sign, and how steadily.
+    """
+    rows: dict[str, dict[tuple[str, str], float]] = {}
+    of = frame[SOLVER].map(lambda arm: ASKED[arm][0])
+    for family in dict.fromkeys(of):
+        runs = frame[of == family]
+        row: dict[tuple[str, str], float] = {("arms", ""): float(runs[SOLVER].nunique())}
+        row["largest gap, %", ""] = 100.0 * max(gaps[arm] for arm in runs[SOLVER].unique())
+        for column in COLUMNS:
+            apart = runs[column] - runs.groupby("replication")[column].transform("mean")
+            offline = runs[SOLVER].map(gaps)
+            varies = offline.max() > offline.min() and apart.abs().max() > 0.0
+            row[column, "rank correlation"] = (
+                float(spearmanr(offline, apart).statistic) if varies else float("nan")
+            )
+        rows[str(family)] = row
+    decimals = {key: 2 for row in rows.values() for key in row}
+    decimals["arms", ""] = 0
+    caption = "Rank correlation of offline gap and online measures, paired by seed, by family."
+    return Table(rows_frame(rows, "family"), decimals, caption)
+
+
+if __name__ == "__main__":
+    sys.exit(command(main))
