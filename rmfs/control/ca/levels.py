@@ -25,7 +25,7 @@ class PlaceParameters(Parameters):
     """Parameters of all rules that send robots to places."""
 
     place: PlaceRule = "least-queued"
-    """Which place: the `least-queued`, or the `nearest`."""
+    """Which place: the `least-queued`, the `nearest`, or the one that is free `soonest`."""
     hand_over_share: Level | None = None
     """A robot that charges gives up its place to one that waits there and has less by this share of
     the capacity; default: never."""

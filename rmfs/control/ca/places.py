@@ -6,17 +6,32 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from rmfs.layout.charging import Charger
+
 if TYPE_CHECKING:
     from rmfs.control.view import View
     from rmfs.world.charging import RecoveryStation
     from rmfs.world.robots import Robot
 
-PlaceRule = Literal["least-queued", "nearest"]
+PlaceRule = Literal["least-queued", "nearest", "soonest"]
 
 
 def has_room(view: View, station: RecoveryStation) -> bool:
     """Whether another robot may be sent there: its queue has a place."""
     return len(station.tasks) < len(view.layout.stations[station.index].queue)
+
+
+def busy_s(view: View, station: RecoveryStation) -> float:
+    """Time that all who are bound for a station, or there, take one after the other, s."""
+    kind, batteries = view.layout.stations[station.index].kind, view.batteries
+    if not isinstance(kind, Charger) or batteries is None:
+        return len(station.tasks) * float(getattr(kind.parameters, "swap_s", 0.0))
+    return sum(
+        batteries.seconds(
+            batteries.share(robot), min(task.until_share, batteries.given.full_share), kind.head_w
+        )
+        for robot, task in station.tasks.items()
+    )
 
 
 def choose(view: View, robot: Robot, rule: PlaceRule, *, full_too: bool = False) -> int:
@@ -26,7 +41,8 @@ def choose(view: View, robot: Robot, rule: PlaceRule, *, full_too: bool = False)
     ----------
     rule
         `least-queued`: fewest robots there and on their way, then the nearest; `nearest`: shortest
-        unhindered time, then the fewest robots.
+        unhindered time, then the fewest robots; `soonest`: least time until those who are there,
+        or on their way, have what they came for, then the nearest.
     full_too
         Whether the robot may be sent where the queue has no place left, to wait outside.
     """
@@ -36,6 +52,7 @@ def choose(view: View, robot: Robot, rule: PlaceRule, *, full_too: bool = False)
     at = view.travel.robot_waypoint(robot.index)
     away = [float(view.travel.to(s.waypoint, loaded=False)[at]) for s in found]
     bound = [len(station.tasks) for station in found]
-    keys = (away, bound) if rule == "least-queued" else (bound, away)
+    busy = [busy_s(view, station) for station in found] if rule == "soonest" else bound
+    keys = (bound, away) if rule == "nearest" else (away, busy)
     best = int(np.lexsort(keys)[0])
     return found[best].index if np.isfinite(away[best]) else -1

@@ -42,7 +42,7 @@ DECISIONS = (
         "When a controller was asked that came to a decision, or when it asked an optimiser, since "
         "the start of the run",
     ),
-    Column("problem", TEXT, "", "Decision problem: roa, poa, rps, pps, psa, ta, sa, mm"),
+    Column("problem", TEXT, "", "Decision problem: roa, poa, rps, pps, psa, ta, sa, mm, ca"),
     Column(
         "source",
         TEXT,
