@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Call
     from rmfs.layout.model import Layout
     from rmfs.scenario import Scenario
+    from rmfs.scenario.streams import OrderStream
     from rmfs.world import World
     from rmfs.world.orders import Bundle, Order
 
@@ -75,6 +76,8 @@ class Observed:
         What counts motion and knows travel times.
     disturbances
         What goes wrong.
+    order_stream
+        The orders of a file, if the scenario names one.
     """
 
     layout: Layout
@@ -82,6 +85,7 @@ class Observed:
     world: World
     traffic: MotionCounts
     disturbances: Troubles
+    order_stream: OrderStream | None
 
 
 class Observer:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Call
     from rmfs.layout.model import Layout
     from rmfs.observer import MotionCounts, Observed, Troubles
+    from rmfs.scenario.streams import OrderStream
     from rmfs.world.orders import Bundle, Order
     from rmfs.world.world import World
 
@@ -40,6 +41,8 @@ class Recorder(Observer):
     ----------
     start_s, end_s
         The measured time.
+    order_stream
+        The orders of a file, if the scenario names one.
     units
         Picked units.
     lines
@@ -88,6 +91,7 @@ class Recorder(Observer):
     def __init__(self) -> None:
         self.layout: Layout
         self.world: World
+        self.order_stream: OrderStream | None = None
         self.traffic: MotionCounts
         self.start_s = 0.0
         self.end_s = nan
@@ -100,7 +104,7 @@ class Recorder(Observer):
             **{"order": "i4", "robot": "i2", "assigned_s": "f8", "end_s": "f8"},
         )
         self.orders = Log(
-            **{"order": "i4", "station": "i2", "lines": "i4", "units": "i4"},
+            **{"order": "i4", "station": "i2", "lines": "i4", "units": "i4", "in_file": "i4"},
             **{"created_s": "f8", "due_s": "f8", "assigned_s": "f8", "completed_s": "f8"},
         )
         self.open_orders: dict[int, Order] = {}
@@ -144,6 +148,7 @@ class Recorder(Observer):
     def run_started(self, run: Observed) -> None:
         """Keep hold of the world and the traffic."""
         self.layout, self.world, self.traffic = run.layout, run.world, run.traffic
+        self.order_stream = run.order_stream
         self._disturbances = run.disturbances
         if run.scenario.energy is not None:
             self.energy.begin(run.traffic, run.layout.robots, run.world.batteries)
@@ -284,12 +289,13 @@ class Recorder(Observer):
 
 
 def order_row(order: Order) -> tuple[Any, ...]:
-    """Return what the tables need of an order: the first columns of the table `orders`."""
+    """Return what the tables need of an order."""
     return (
         order.index,
         order.station,
         len(order.all_lines),
         sum(line.units for line in order.all_lines),
+        order.in_file,
         order.created_s,
         order.due_s,
         order.assigned_s,

@@ -66,10 +66,10 @@ def check(scenario: Name, settings: Settings = None) -> None:
     bundle_intake(config, skus, anywhere, seed=0)
     typer.echo(f"{scenario}: ok, {summary(skus)}")
     if isinstance(config.demand, StreamDemand):
-        orders = order_stream(config.demand, skus)
+        orders = order_stream(config, skus)
         typer.echo(f"{len(orders)} orders, digest {digest(orders, skus)}")
     if isinstance(config.replenishment, StreamReplenishment):
-        bundles = bundle_stream(config.replenishment, skus, math.inf)
+        bundles = bundle_stream(config, skus, math.inf)
         typer.echo(f"{len(bundles)} bundles, digest {digest(bundles, skus)}")
 
 

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from datetime import datetime, timedelta
 from typing import TYPE_CHECKING
 
 from rmfs import foreign
 from rmfs.errors import InputError
 from rmfs.scenario import exact
-from rmfs.scenario.parameters import LetterSkus, SkuFile
+from rmfs.scenario.clock import US_PER_S
+from rmfs.scenario.parameters import LetterSkus, SkuFile, StreamDemand, StreamReplenishment
 from rmfs.scenario.skus import SkuSet, draw_sku_set, read_sku_set
 from rmfs.scenario.skus.csv_file import read_sku_table
 from rmfs.scenario.skus.drawing import draw_bundle_units, draw_space
 from rmfs.scenario.skus.letters import letter_sku_set
-from rmfs.scenario.streams import digest, read_bundles, read_orders
+from rmfs.scenario.streams import digest, first_moment, read_bundles, read_orders
+from rmfs.scenario.streams.times import midnight
 
 if TYPE_CHECKING:
-    from rmfs.scenario.parameters import Skus, StreamDemand, StreamReplenishment
+    from rmfs.scenario.parameters import Scenario, Skus
     from rmfs.scenario.skus.content import SkuFileContent
     from rmfs.scenario.streams import BundleStream, OrderStream
 
@@ -42,24 +45,30 @@ def sku_set(config: Skus) -> SkuSet:
     return _completed(foreign.read(config.file), config)
 
 
-def order_stream(config: StreamDemand, skus: SkuSet) -> OrderStream:
-    """Return the orders of a file.
+def order_stream(scenario: Scenario, skus: SkuSet) -> OrderStream:
+    """Return the orders of the file that a scenario names as its demand.
 
     Raises
     ------
     InputError
-        If the file is broken, or its digest is another one.
+        If the file is broken, its digest is another one, or its orders have dates and none of
+        them comes in the run.
     """
+    config = scenario.demand
+    assert isinstance(config, StreamDemand)
     if config.file.suffix.lower() == ".xitem":
         stream: OrderStream = foreign.read(config.file).orders(skus)
     else:
-        stream = read_orders(config.file, skus)
+        zero = time_zero(scenario)
+        stream = read_orders(config.file, skus, zero)
+        if zero is not None and len(stream):
+            _check_comes(int(stream.time_us[0]), scenario, zero)
     _check_digest(config, digest(stream, skus) if config.digest else None)
     return stream
 
 
-def bundle_stream(config: StreamReplenishment, skus: SkuSet, largest_pod: float) -> BundleStream:
-    """Return the bundles of a file.
+def bundle_stream(scenario: Scenario, skus: SkuSet, largest_pod: float) -> BundleStream:
+    """Return the bundles of the file that a scenario names as its replenishment.
 
     Parameters
     ----------
@@ -71,12 +80,51 @@ def bundle_stream(config: StreamReplenishment, skus: SkuSet, largest_pod: float)
     InputError
         If the file is broken, a bundle fits into no pod, or the digest is another one.
     """
+    config = scenario.replenishment
+    assert isinstance(config, StreamReplenishment)
     if config.file.suffix.lower() == ".xitem":
         stream: BundleStream = foreign.read(config.file).bundles(skus, largest_pod)
     else:
-        stream = read_bundles(config.file, skus, largest_pod)
+        stream = read_bundles(config.file, skus, largest_pod, time_zero(scenario))
     _check_digest(config, digest(stream, skus) if config.digest else None)
     return stream
+
+
+def time_zero(scenario: Scenario) -> datetime | None:
+    """Return the moment of time zero of a scenario; None if nothing in it has a date.
+
+    It is what the scenario says, or what the clock shows at time zero on the day on which the first
+    row of its files comes. Orders and bundles have the same.
+
+    Raises
+    ------
+    InputError
+        If only one of two files tells its zone.
+    """
+    if scenario.start is not None:
+        return datetime.fromisoformat(scenario.start)
+    configs = (scenario.demand, scenario.replenishment)
+    files = [one.file for one in configs if isinstance(one, StreamDemand | StreamReplenishment)]
+    moments = [first_moment(path) for path in files if path.suffix.lower() != ".xitem"]
+    first = [moment for moment in moments if moment is not None]
+    if len({moment.tzinfo is None for moment in first}) > 1:
+        raise InputError(f"{files[0]}, {files[1]}: the times of one of them have no zone")
+    if not first:
+        return None
+    return midnight(min(first)) + timedelta(seconds=scenario.time_of_day_s)
+
+
+def _check_comes(first_us: int, scenario: Scenario, zero: datetime) -> None:
+    """Refuse a run that ends before the first order of its file comes."""
+    assert isinstance(scenario.demand, StreamDemand)
+    end_s = scenario.warmup_s + scenario.duration_s
+    if first_us > end_s * US_PER_S:
+        first = zero + timedelta(microseconds=first_us)
+        raise InputError(
+            f"{scenario.demand.file}: the first order comes at {first.isoformat()}, but the run "
+            f"lasts from {zero.isoformat()} to {(zero + timedelta(seconds=end_s)).isoformat()}; "
+            "set scenario.start (also by --set)"
+        )
 
 
 def _check_digest(config: StreamDemand | StreamReplenishment, found: str | None) -> None:

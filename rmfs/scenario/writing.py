@@ -56,12 +56,12 @@ def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
         changes["skus"] = scenario.skus.model_copy(update={"words": Path(target.name)})
     if isinstance(scenario.demand, StreamDemand):
         target = beside("orders.csv")
-        digest = write_stream(order_stream(scenario.demand, skus), skus, target)
+        digest = write_stream(order_stream(scenario, skus), skus, target)
         named = {"file": Path(target.name), "digest": digest}
         changes["demand"] = scenario.demand.model_copy(update=named)
     if isinstance(scenario.replenishment, StreamReplenishment):
         target = beside("bundles.csv")
-        bundles = bundle_stream(scenario.replenishment, skus, math.inf)
+        bundles = bundle_stream(scenario, skus, math.inf)
         named = {"file": Path(target.name), "digest": write_stream(bundles, skus, target)}
         changes["replenishment"] = scenario.replenishment.model_copy(update=named)
     write_text(path, to_toml(scenario.model_copy(update=changes)))

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from rmfs.layout.model import Layout
     from rmfs.scenario import BundleArrival, OrderArrival, Scenario, StreamRecorder
+    from rmfs.scenario.streams import OrderStream
     from rmfs.simulation.agenda import Agenda
     from rmfs.simulation.events import Events
     from rmfs.world import World
@@ -60,6 +61,11 @@ class ArrivalProcess:
         self._bundles = bundle_intake(scenario, world.skus, site, seed, recorder)
         self._woken_us = self._wake = -1
 
+    @property
+    def order_stream(self) -> OrderStream | None:
+        """The orders of a file, if the scenario names one."""
+        return self._orders.stream
+
     def top_up(self) -> None:
         """Make the orders and bundles that come now."""
         now_us = self._agenda.now_us
@@ -89,6 +95,7 @@ class ArrivalProcess:
         order = Order.of(
             world.orders_created, world.now_s, arrival.due_s, arrival.skus, arrival.units
         )
+        order.in_file = arrival.in_file
         world.add_order(order)
         self._events.order_created(order)
 

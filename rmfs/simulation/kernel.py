@@ -415,7 +415,14 @@ class Kernel:
 
     def observed(self) -> Observed:
         """What is to be seen of the run."""
-        return Observed(self.layout, self.scenario, self.world, self.traffic, self.disturbances)
+        return Observed(
+            self.layout,
+            self.scenario,
+            self.world,
+            self.traffic,
+            self.disturbances,
+            self.arrivals.order_stream,
+        )
 
     def __getstate__(self) -> dict[str, Any]:
         """Return everything, unless a solver is at work elsewhere."""

@@ -60,6 +60,8 @@ class Order:
         Parts split off so far; their lines are no longer among those of the order.
     slots_taken
         Slots that the order and its parts have at present.
+    in_file
+        Its place among the orders of a file, or -1.
     """
 
     index: int
@@ -76,6 +78,7 @@ class Order:
     whole: Order | None = None
     parts: list[Order] = field(default_factory=list)
     slots_taken: int = 0
+    in_file: int = -1
 
     @property
     def all_lines(self) -> tuple[OrderLine, ...]:

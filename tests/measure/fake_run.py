@@ -143,6 +143,7 @@ def order(index, created, lines, *, due=nan, station=-1, assigned=nan, completed
         station=station,
         assigned_s=assigned,
         completed_s=completed,
+        in_file=-1,
     )
 
 
@@ -183,6 +184,8 @@ class Skus:
 
     popularity = np.array([1.0, 3.0])
     space_per_unit = np.array([1.0, 2.0])
+    ids = np.array([0, 1])
+    names = ("A", "B")
 
     def __len__(self) -> int:
         return 2
@@ -198,6 +201,7 @@ def simulation(place, traffic):
         world=place,
         traffic=traffic,
         disturbances=disturbances,
+        order_stream=None,
     )
 
 

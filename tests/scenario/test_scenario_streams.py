@@ -88,7 +88,8 @@ def test_orders_and_bundles_survive_a_file(tmp_path: Path, skus: SkuSet, suffix:
     for intake_of, number in ((order_intake, orders.number), (bundle_intake, bundles.number)):
         generated = drive(intake_of(given, skus, SITE, 3), FakeState(), DAY_US)
         again = drive(intake_of(replayed, skus, SITE, 99), FakeState(), DAY_US)
-        assert again == generated
+        # what comes from a file also tells its place there
+        assert [thing[:5] for thing in again] == [thing[:5] for thing in generated]
         assert len(again) == number > 50
 
 
@@ -167,7 +168,9 @@ def test_a_table_by_pandas(tmp_path: Path, few_skus: SkuSet):
     table.loc[1, "quantity"] = -1
     table["sku"] = [0, 9, 2]
     table.to_parquet(tmp_path / "a.parquet")
-    with pytest.raises(InputError, match=r"a.parquet: row 2: sku 9 is unknown$"):
+    with pytest.raises(
+        InputError, match=r"a.parquet: row 2: sku 9 is unknown; valid: 0, 1, 2, ... \(5 SKUs\)$"
+    ):
         read_orders(tmp_path / "a.parquet", few_skus)
 
 
@@ -198,9 +201,9 @@ HEAD = "time,order,sku,quantity,due\n"
 WRONG = {
     "": "empty; line 1 must hold the names of the columns",
     "time,order,sku\n": "line 1: column quantity is missing; valid: time, order, "
-    "sku, quantity, due",
+    "sku, quantity, due, separated by commas, and columns of your own (given: time, order, sku)",
     "time,order,sku,quantity,dew\n": "line 1: unknown column 'dew'; did you mean due?",
-    "time;order;sku;quantity\n": "line 1: unknown column 'time;order;sku;quantity'; ",
+    "time;order;sku;quantity\n": "line 1: column time is missing; valid: time, order, sku, ",
     "time,time,order,sku,quantity\n": "line 1: column time comes twice",
     HEAD + "0,A,0,1\n": "line 2: 4 fields, expected 5",
     HEAD + "0,A,0,-2,\n": "line 2: quantity must be from 1 to 1000000 (given: -2)",
@@ -209,7 +212,7 @@ WRONG = {
     HEAD + "0,A,0,many,\n": "line 2: quantity must be a number (given: 'many')",
     HEAD + "0,A,0,,\n": "line 2: quantity must be a number (empty)",
     HEAD + "0,A,0,1_0,\n": "line 2: quantity must be a number (given: '1_0')",
-    HEAD + "0,A,7,1,\n": "line 2: sku 7 is unknown",
+    HEAD + "0,A,7,1,\n": "line 2: sku 7 is unknown; valid: 0, 1, 2, ... (5 SKUs)",
     HEAD + "0,A,x,1,\n": "line 2: sku must be a number (given: 'x')",
     HEAD + "-1,A,0,1,\n": "line 2: time must be from 0 to 1e+09 s (given: -1)",
     HEAD + "nan,A,0,1,\n": "line 2: time must be a number (given: 'nan')",

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 from rawsimo_files import XITEM
+from scenario_tools import scenario
 
 from rmfs.errors import InputError
 from rmfs.scenario import sku_set
-from rmfs.scenario.parameters import SkuFile, StreamDemand
+from rmfs.scenario.parameters import SkuFile
 from rmfs.scenario.sources import order_stream
 
 BROKEN_LISTS = [
@@ -17,7 +18,7 @@ BROKEN_LISTS = [
     ('ItemDescriptionID="4"', 'ItemDescriptionID="5"', "order 1: sku 5 is unknown"),
     ('ItemDescriptionID="4"', 'ItemDescriptionID="9"', "order 1: sku 9 comes twice in order 1"),
     ('TimeStamp="3.25"', 'TimeStamp="1"', "order 2: time 1 is before that of the order before"),
-    ('TimeStamp="3.25"', "", "order 2: time must be a number (empty)"),
+    ('TimeStamp="3.25"', "", "order 2: time must be a number of s, or a time such as"),
     ('<Position ItemDescriptionID="9" Count="1" />', "", "order 2: sku must be a number (empty)"),
     ('Weight="2"', 'Weight="0"', "ItemDescription 9: Weight must be a positive number"),
     ('ID="9" Type', 'ID="4" Type', "ItemDescription 4 comes twice"),
@@ -31,5 +32,6 @@ def test_broken_order_lists(tmp_path: Path, old: str, new: str, problem: str):
     path = tmp_path / "list.xitem"
     path.write_text(XITEM.replace(old, new, 1))
     with pytest.raises(InputError) as caught:
-        order_stream(StreamDemand(file=path), sku_set(SkuFile(file=path)))
+        given = scenario(demand={"mode": "stream", "file": str(path)})
+        order_stream(given, sku_set(SkuFile(file=path)))
     assert str(caught.value).startswith(f"{path}: {problem}")

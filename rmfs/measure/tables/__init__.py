@@ -28,6 +28,8 @@ from rmfs.measure.tables.motion import HEAT as HEAT
 from rmfs.measure.tables.motion import TRIPS as TRIPS
 from rmfs.measure.tables.motion import heat as heat
 from rmfs.measure.tables.motion import trips as trips
+from rmfs.measure.tables.order_lines import ORDER_LINES as ORDER_LINES
+from rmfs.measure.tables.order_lines import order_lines as order_lines
 from rmfs.measure.tables.orders import ORDERS as ORDERS
 from rmfs.measure.tables.orders import orders as orders
 from rmfs.measure.tables.robots import ROBOTS as ROBOTS
@@ -52,6 +54,7 @@ MAKERS = {
     "series": series,
     "stations": stations,
     "orders": orders,
+    "order_lines": order_lines,
     "delays": delays,
     "picks": picks,
     "bundles": bundles,
@@ -73,6 +76,7 @@ DECLARED: dict[str, Sequence[Column]] = {
     "series": SERIES,
     "stations": STATIONS,
     "orders": ORDERS,
+    "order_lines": ORDER_LINES,
     "delays": DELAYS,
     "picks": PICKS,
     "bundles": BUNDLES,

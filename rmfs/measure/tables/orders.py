@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rmfs.measure.columns import INTEGER, REAL, Column
+from rmfs.measure.columns import INTEGER, REAL, TEXT, Column
 from rmfs.measure.energy import WH
 from rmfs.measure.tables.tidy import tidy
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 ORDERS = (
     Column("order", INTEGER, "", "Ordinal of arrival, from the start of the run"),
+    Column("name", TEXT, "", "Its name in the file of orders; empty if it was drawn"),
     Column("station", INTEGER, "", "Pick station, -1 while waiting for one"),
     Column("lines", INTEGER, "lines", "Order lines"),
     Column("units", INTEGER, "units", "Units ordered"),
@@ -41,8 +42,8 @@ ORDERS = (
 
 def orders(logs: Logs) -> pd.DataFrame:
     """Every order that was waiting, open or completed during the measured time."""
-    frame = logs.orders
-    frame = frame[~(frame["completed_s"] < logs.start_s)].reset_index(drop=True)
+    frame = seen(logs)
+    frame["name"] = _names(logs, frame.pop("in_file"))
     frame["turnover_s"] = frame["completed_s"] - frame["created_s"]
     frame["throughput_time_s"] = frame["completed_s"] - frame["assigned_s"]
     frame["lateness_s"] = frame["completed_s"] - frame["due_s"]
@@ -52,6 +53,21 @@ def orders(logs: Logs) -> pd.DataFrame:
         frame["order"].map(energy.per_order).fillna(0.0) / WH if energy.final else np.nan
     )
     return tidy("orders", ORDERS, frame)
+
+
+def seen(logs: Logs) -> pd.DataFrame:
+    """Orders that were waiting, open or completed during the measured time."""
+    frame = logs.orders
+    return frame[~(frame["completed_s"] < logs.start_s)].reset_index(drop=True)
+
+
+def _names(logs: Logs, in_file: pd.Series[int]) -> NDArray[Any]:
+    """Return the names of orders by their places in the file."""
+    stream = logs.recorder.order_stream
+    if stream is None or stream.file is None:
+        return np.full(len(in_file), "", dtype=object)
+    # an order that was drawn has place -1: the last of these
+    return np.array([*stream.file.names, ""], dtype=object)[in_file.to_numpy()]
 
 
 def _pods(logs: Logs, order: pd.Series[int]) -> NDArray[np.int64]:

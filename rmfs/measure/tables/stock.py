@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rmfs.measure.columns import INTEGER, REAL, Column
+from rmfs.measure.columns import INTEGER, REAL, TEXT, Column
 from rmfs.measure.tables.logs import count
 from rmfs.measure.tables.tidy import tidy
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from rmfs.measure.tables.logs import Logs
+    from rmfs.scenario.skus import SkuSet
 
 
 PODS = (
@@ -30,6 +31,7 @@ PODS = (
 
 SKUS = (
     Column("sku", INTEGER, "", "SKU"),
+    Column("name", TEXT, "", "Its name in the file of SKUs, or its number where it has none"),
     Column("popularity", REAL, "", "Weight in the scenario"),
     Column("space", REAL, "space units", "Space of one unit"),
     Column("lines_picked", INTEGER, "lines", "Order lines finished"),
@@ -69,6 +71,7 @@ def skus(logs: Logs) -> pd.DataFrame:
         SKUS,
         {
             "sku": np.arange(number),
+            "name": names_of_skus(known),
             "popularity": known.popularity,
             "space": known.space_per_unit,
             "lines_picked": count(logs.lines_now["sku"], number),
@@ -78,3 +81,8 @@ def skus(logs: Logs) -> pd.DataFrame:
             "pods_end": (contained > 0).sum(axis=1),
         },
     )
+
+
+def names_of_skus(skus: SkuSet) -> list[str]:
+    """Return what each SKU is called."""
+    return list(skus.names) or [str(number) for number in skus.ids.tolist()]

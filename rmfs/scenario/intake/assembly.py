@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.parameters.calendar import DownPeriods
     from rmfs.scenario.parameters.rates import AnyRate
     from rmfs.scenario.skus import SkuSet
+    from rmfs.scenario.streams import OrderStream
 
 T = TypeVar("T")
 
@@ -44,10 +45,12 @@ class Assembly(ABC, Generic[T]):
         self._seed = seed
         self._gone_s = scenario.time_of_day_s
         self._openings = Openings(down, self._gone_s)
+        self._stream: OrderStream | None = None
 
     def intake(self, record: Callable[[T], None] | None) -> Intake[T]:
         """Return the intake, which tells `record` of all that comes."""
-        return Intake([*self._regular(), *self._batches()], record)
+        processes = [*self._regular(), *self._batches()]
+        return Intake(processes, record, self._stream)
 
     @abstractmethod
     def _regular(self) -> Iterator[Process[T]]:

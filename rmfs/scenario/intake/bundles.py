@@ -73,7 +73,7 @@ class _Bundles(Assembly[BundleArrival]):
         elif isinstance(config, NeededReplenishment):
             yield NeededBundles(config, self._skus, capacity, self._openings)
         elif isinstance(config, StreamReplenishment):
-            yield self._from_file(config)
+            yield self._from_file()
         else:
             if config.initial_bundles:
                 make = _drawn(self._source(INITIAL))
@@ -85,8 +85,8 @@ class _Bundles(Assembly[BundleArrival]):
         come = self._arrivals(config.profile, config.bundles_per_h, scale, Stream.BUNDLE_ARRIVALS)
         return Timed(come, _drawn(self._source(REGULAR)), share_of(config.tied_to))
 
-    def _from_file(self, config: StreamReplenishment) -> Timed[BundleArrival]:
-        stream = bundle_stream(config, self._skus, self._site.largest_pod)
+    def _from_file(self) -> Timed[BundleArrival]:
+        stream = bundle_stream(self._scenario, self._skus, self._site.largest_pod)
         space_per_unit: list[float] = self._skus.space_per_unit.tolist()
         make = partial(_from_stream, stream, space_per_unit)
         return Timed(self._at_times(stream.time_us.tolist()), make)

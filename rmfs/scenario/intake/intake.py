@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from rmfs.scenario.intake.state import State
     from rmfs.scenario.orders import OrderContent
+    from rmfs.scenario.streams import OrderStream
 
 
 class OrderArrival(NamedTuple):
@@ -26,6 +27,8 @@ class OrderArrival(NamedTuple):
         When it is due.
     redraws
         How often a SKU was drawn of which too little was uncommitted.
+    in_file
+        Its place among the orders of a file, or -1.
     """
 
     time_us: int
@@ -33,6 +36,7 @@ class OrderArrival(NamedTuple):
     units: tuple[int, ...]
     due_us: int
     redraws: int
+    in_file: int = -1
 
     @classmethod
     def of(cls, content: OrderContent, time_us: int) -> OrderArrival:
@@ -87,13 +91,19 @@ class Intake(Generic[T]):
         How they come into being; at one time, those of the first process come first.
     record
         Told of each.
+    stream
+        The orders of a file, if they come from one.
     """
 
     def __init__(
-        self, processes: Sequence[Process[T]], record: Callable[[T], None] | None = None
+        self,
+        processes: Sequence[Process[T]],
+        record: Callable[[T], None] | None = None,
+        stream: OrderStream | None = None,
     ) -> None:
         self._processes = processes
         self._record = record
+        self.stream = stream
 
     @property
     def next_us(self) -> int:

@@ -70,7 +70,7 @@ class _Orders(Assembly[OrderArrival]):
                 demand, self._contents(REGULAR), self._site.capacity, self._openings
             )
         elif isinstance(demand, StreamDemand):
-            yield self._from_file(demand)
+            yield self._from_file()
         else:
             if demand.initial_orders:
                 make = _drawn(self._contents(INITIAL))
@@ -82,8 +82,9 @@ class _Orders(Assembly[OrderArrival]):
         come = self._arrivals(demand.profile, demand.orders_per_h, scale, Stream.ORDER_ARRIVALS)
         return Timed(come, _drawn(self._contents(REGULAR)), share_of(demand.tied_to))
 
-    def _from_file(self, demand: StreamDemand) -> Timed[OrderArrival]:
-        stream = order_stream(demand, self._skus)
+    def _from_file(self) -> Timed[OrderArrival]:
+        stream = order_stream(self._scenario, self._skus)
+        self._stream = stream
         due = self._scenario.orders.due.sampler()
         substreams = Substreams(self._seed, Stream.ORDER_CONTENTS, DUE_TIMES)
         make = partial(_from_stream, stream, due, substreams)
@@ -127,7 +128,7 @@ def _from_stream(
     due_us = int(stream.due_us[ordinal])
     if due_us == NO_DUE_US:
         due_us = time_us + nearest_us(due(substreams.at(ordinal)()))
-    return OrderArrival(time_us, *stream.lines(ordinal), due_us, redraws=0)
+    return OrderArrival(time_us, *stream.lines(ordinal), due_us, redraws=0, in_file=ordinal)
 
 
 def _in_batch(draw: Contents, ordinal: int, now_us: int, state: State) -> OrderArrival | None:

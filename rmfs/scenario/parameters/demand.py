@@ -57,8 +57,9 @@ class StreamDemand(_Demand):
 
     mode: Literal["stream"] = Field("stream", description="orders come from a file")
     file: StreamFile = Field(
-        description=".csv or .parquet with the columns time (s), order, sku, quantity, due (s; "
-        "empty: drawn), or .xitem; relative to the scenario file"
+        description=".csv or .parquet with the columns time (s or ISO 8601), order, sku, quantity, "
+        "due (as time; empty: drawn) and others that are kept, or .xitem; relative to the scenario "
+        "file"
     )
     digest: str | None = Field(
         None, description="SHA-256 of the orders as `rmfs scenario` prints it; default: any orders"

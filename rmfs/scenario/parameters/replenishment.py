@@ -81,8 +81,8 @@ class StreamReplenishment(_Replenishment):
 
     mode: Literal["stream"] = Field("stream", description="bundles come from a file")
     file: StreamFile = Field(
-        description=".csv or .parquet with the columns time (s), order, sku, quantity: a line is "
-        "a bundle; or .xitem; relative to the scenario file"
+        description=".csv or .parquet with the columns time (s or ISO 8601), order, sku, quantity: "
+        "a line is a bundle; or .xitem; relative to the scenario file"
     )
     digest: str | None = Field(
         None, description="SHA-256 of the bundles as `rmfs scenario` prints it; default: any"

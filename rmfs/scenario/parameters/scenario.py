@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from datetime import date, datetime
+from typing import Any, Literal, Self
 
 import pydantic
 from pydantic import Field
@@ -14,6 +15,7 @@ from rmfs.scenario.parameters.orders import AnyOrders, Orders, WordOrders, not_a
 from rmfs.scenario.parameters.replenishment import BacklogReplenishment, Replenishment
 from rmfs.scenario.parameters.skus import GeneratedSkus, LetterSkus, Skus
 from rmfs.scenario.quantities import Block, NotNegative, Positive, Share
+from rmfs.scenario.streams.times import midnight
 
 
 class Stock(Block):
@@ -30,9 +32,15 @@ class Scenario(Block):
     description: str = Field("", description="what the scenario is for")
     duration_s: Positive = Field(description="s, measured, after the warm-up")
     warmup_s: NotNegative = Field(3600.0, description="s simulated first and not measured")
+    start: str | None = Field(
+        None,
+        description="date and time of time zero, such as 2026-03-01T08:00:00, for files whose "
+        "times are in ISO 8601; default: time_of_day_s after midnight before their first row",
+    )
     time_of_day_s: NotNegative = Field(
         0.0,
-        description="s of all cycles (profiles, batches, down times, shifts) gone at time zero",
+        description="s of all cycles (profiles, batches, down times, shifts) gone at time zero; "
+        "default: what the clock shows at start",
     )
     skus: Skus = Field(GeneratedSkus(), description="the SKUs, and how often each is ordered")
     orders: AnyOrders = Field(Orders(), description="what an order contains")
@@ -44,6 +52,32 @@ class Scenario(Block):
     energy: Energy | None = Field(
         None, description="what robots draw from their batteries; default: not counted"
     )
+
+    @pydantic.field_validator("start", mode="before")
+    @classmethod
+    def _moment(cls, value: Any) -> Any:
+        """Take dates and times of TOML, too, and keep the text of the moment."""
+        if isinstance(value, str):
+            try:
+                value = datetime.fromisoformat(value)
+            except ValueError:
+                raise ValueError("must be such as 2026-03-01T08:00:00") from None
+        if isinstance(value, date) and not isinstance(value, datetime):
+            value = datetime(value.year, value.month, value.day)
+        return value.isoformat() if isinstance(value, datetime) else value
+
+    @pydantic.model_validator(mode="after")
+    def _clock(self) -> Self:
+        """Let the clock show the time of day of the start."""
+        if self.start is None:
+            return self
+        moment = datetime.fromisoformat(self.start)
+        shown_s = (moment - midnight(moment)).total_seconds()
+        if "time_of_day_s" in self.model_fields_set and self.time_of_day_s != shown_s:
+            raise ValueError(f"time_of_day_s must be {shown_s:g}, as start says, or be left out")
+        if self.time_of_day_s != shown_s:
+            object.__setattr__(self, "time_of_day_s", shown_s)
+        return self
 
     @pydantic.field_validator("orders", "demand", "replenishment", mode="before")
     @classmethod

@@ -1,5 +1,7 @@
 """Orders and bundles with their times: kept as arrays, read, written, recorded, exported."""
 
+from rmfs.scenario.streams.order_file import OrderFile as OrderFile
+from rmfs.scenario.streams.reading import first_moment as first_moment
 from rmfs.scenario.streams.reading import read_bundles as read_bundles
 from rmfs.scenario.streams.reading import read_orders as read_orders
 from rmfs.scenario.streams.recorder import StreamRecorder as StreamRecorder

@@ -17,33 +17,44 @@ MOST_ROWS = 5_000_000
 class Columns:
     """Where in a row each column is.
 
+    Columns of other names are the user's own; one without a name, as pandas writes for its index,
+    is left out.
+
     Parameters
     ----------
     names
         As the file gives them.
     rows
-        What is to read the rows.
+        What is to read the rows; it is told the names of the user's own columns.
 
     Raises
     ------
     ValueError
-        If a column is unknown, missing or there twice.
+        If a column is missing, there twice, or looks like a slip of the pen.
     """
 
     def __init__(self, names: Sequence[str], rows: Rows) -> None:
         valid = ", ".join(rows.columns)
+        missing = [name for name in rows.columns if name not in names]
+        further = [at for at, name in enumerate(names) if name and name not in rows.columns]
+        for name in (names[at] for at in further):
+            near = difflib.get_close_matches(name, missing, n=1)
+            if near:
+                raise ValueError(f"unknown column {name!r:.40}; did you mean {near[0]}?")
         for name in names:
-            if name not in rows.columns:
-                near = difflib.get_close_matches(name, rows.columns, n=1)
-                hint = f"did you mean {near[0]}?" if near else f"valid: {valid}"
-                raise ValueError(f"unknown column {name!r:.40}; {hint}")
-            if names.count(name) > 1:
+            if name and names.count(name) > 1:
                 raise ValueError(f"column {name} comes twice")
-        missing = [name for name in rows.columns if name in rows.required - set(names)]
-        if missing:
-            raise ValueError(f"column {missing[0]} is missing; valid: {valid}")
+        needed = [name for name in missing if name in rows.required]
+        if needed:
+            found = ", ".join(names) or "none"
+            raise ValueError(
+                f"column {needed[0]} is missing; valid: {valid}, separated by commas, and columns "
+                f"of your own (given: {found:.100})"
+            )
         self._width = len(names)
-        self._at = [names.index(name) if name in names else -1 for name in rows.columns]
+        known = [names.index(name) if name in names else -1 for name in rows.columns]
+        self._at = [*known, *further]
+        rows.begin([names[at] for at in further])
 
     def arranged(self, fields: Sequence[str]) -> list[str]:
         """Return the fields of a row in the order that is expected, empty where there is none.

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rmfs.errors import InputError
 from rmfs.scenario.problems import Problems
 from rmfs.scenario.streams.csv_file import read_csv
 from rmfs.scenario.streams.rows import BundleRows, OrderRows
+from rmfs.scenario.streams.times import is_number, parsed
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from datetime import datetime
     from pathlib import Path
 
     from rmfs.scenario.skus import SkuSet
@@ -18,11 +22,18 @@ if TYPE_CHECKING:
     from rmfs.scenario.streams.stream import BundleStream, OrderStream
 
 
-def read_orders(path: Path, skus: SkuSet) -> OrderStream:
+def read_orders(path: Path, skus: SkuSet, zero: datetime | None = None) -> OrderStream:
     """Read orders from a .csv or .parquet file.
 
-    The columns are time (s, not decreasing), order (any name), sku (its id), quantity (units) and
-    due (s; may be empty or missing), in any order. An order's lines follow each other.
+    The columns are time (s or ISO 8601, not decreasing), order (any name), sku (its name or id),
+    quantity (units) and due (as time; may be empty or missing), in any order. An order's lines
+    follow each other. Further columns are kept (`OrderStream.file`).
+
+    Parameters
+    ----------
+    zero
+        The moment of time zero. Default: midnight before the first order, where times are in ISO
+        8601.
 
     Raises
     ------
@@ -30,21 +41,26 @@ def read_orders(path: Path, skus: SkuSet) -> OrderStream:
         One line that names the wrong lines, each with its column and the reason.
     """
     problems = Problems(path)
-    rows = OrderRows(skus, problems, _word(path))
+    rows = OrderRows(skus, problems, _word(path), zero)
     _read(path, rows, problems)
-    return rows.builder.build()
+    return replace(rows.builder.build(), file=rows.file.build())
 
 
-def read_bundles(path: Path, skus: SkuSet, largest: float = math.inf) -> BundleStream:
+def read_bundles(
+    path: Path, skus: SkuSet, largest: float = math.inf, zero: datetime | None = None
+) -> BundleStream:
     """Read bundles from a .csv or .parquet file.
 
-    The columns are time (s, not decreasing), sku (its id) and quantity (units), in any order; order
-    (any name) may be there, due must be empty. Each line is a bundle.
+    The columns are time (s or ISO 8601, not decreasing), sku (its name or id) and quantity (units),
+    in any order; order (any name) may be there, due must be empty. Each line is a bundle. Further
+    columns are left alone.
 
     Parameters
     ----------
     largest
         Space units of the largest pod.
+    zero
+        As for `read_orders`.
 
     Raises
     ------
@@ -52,9 +68,44 @@ def read_bundles(path: Path, skus: SkuSet, largest: float = math.inf) -> BundleS
         One line that names the wrong lines, each with its column and the reason.
     """
     problems = Problems(path)
-    rows = BundleRows(skus, problems, _word(path), largest)
+    rows = BundleRows(skus, problems, _word(path), largest, zero)
     _read(path, rows, problems)
     return rows.builder.build()
+
+
+def first_moment(path: Path) -> datetime | None:
+    """Return the time of the first row of a file, if it is one in ISO 8601 that can be read."""
+    try:
+        _read(path, _FirstMoment(), Problems(path))
+    except _FoundError as found:
+        return found.moment
+    except InputError:  # is told of when the file is read
+        pass
+    return None
+
+
+class _FoundError(Exception):
+    """No further row is needed."""
+
+    def __init__(self, moment: datetime | None) -> None:
+        self.moment = moment
+
+
+class _FirstMoment:
+    """Rows of which only the first is looked at."""
+
+    columns = ("time",)
+    required = frozenset(("time",))
+
+    def begin(self, further: Sequence[str]) -> None:
+        """Further columns are left alone (see `Rows`)."""
+
+    def take(self, number: int, fields: Sequence[str]) -> None:
+        """Stop at once (see `Rows`)."""
+        raise _FoundError(parsed(fields[0]) if not is_number(fields[0]) else None)
+
+    def end(self) -> None:
+        """There is no row."""
 
 
 def _word(path: Path) -> str:

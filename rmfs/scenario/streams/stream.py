@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from rmfs.scenario.streams.order_file import OrderFile
+
 NO_DUE_US = -1
 """Due time of an order for which none is given."""
 
@@ -20,7 +22,9 @@ NO_DUE_US = -1
 class _Frozen:
     def __post_init__(self) -> None:
         for field in fields(self):  # type: ignore[arg-type]
-            getattr(self, field.name).setflags(write=False)
+            column = getattr(self, field.name)
+            if isinstance(column, np.ndarray):
+                column.setflags(write=False)
 
 
 @dataclass(frozen=True)
@@ -37,6 +41,8 @@ class OrderStream(_Frozen):
         Line at which each order begins, and at last m, shape (n + 1,).
     sku, units
         SKU (index) and units of each line, shape (m,).
+    file
+        What the file they come from says beside that, if they come from one.
     """
 
     time_us: NDArray[np.int64]
@@ -44,6 +50,7 @@ class OrderStream(_Frozen):
     first_line: NDArray[np.int64]
     sku: NDArray[np.int64]
     units: NDArray[np.int64]
+    file: OrderFile | None = None
 
     def __len__(self) -> int:
         return len(self.time_us)

@@ -1,0 +1,92 @@
+"""The table of the lines of orders from a file, with all that the file says of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.measure.columns import INTEGER, REAL, TEXT, Column
+from rmfs.measure.tables.orders import seen
+from rmfs.measure.tables.stock import names_of_skus
+from rmfs.measure.tables.tidy import tidy
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    from rmfs.measure.tables.logs import Logs
+    from rmfs.scenario.streams import OrderStream
+
+ORDER_LINES = (
+    Column("order", INTEGER, "", "Order, as in the table of orders"),
+    Column("sku", INTEGER, "", "SKU, as in the table of SKUs"),
+    Column("units", INTEGER, "units", "Units ordered"),
+    Column("picked_s", REAL, "s", "When the pick of its last unit ended; empty if not yet"),
+    Column("file_line", INTEGER, "", "Line (CSV) or row (Parquet) of the file of orders"),
+    Column("file_order", TEXT, "", "The order's name in the file"),
+    Column("file_sku", TEXT, "", "The SKU's name, or its number where it has none"),
+)
+"""Further columns of the file follow, each as `file_NAME`."""
+
+
+def order_lines(logs: Logs) -> pd.DataFrame:
+    """Every line of the orders in the table of orders that come from a file; else nothing."""
+    import pandas as pd
+
+    stream = logs.recorder.order_stream
+    orders = seen(logs)
+    orders = orders[orders["in_file"] >= 0]
+    if stream is None or stream.file is None or orders.empty:
+        return tidy("order_lines", ORDER_LINES, {column.name: [] for column in ORDER_LINES})
+    order, line = _lines(orders, stream)
+    file, sku = stream.file, stream.sku[line]
+    names = np.array(file.names, dtype=object)
+    frame = tidy(
+        "order_lines",
+        ORDER_LINES,
+        {
+            "order": order,
+            "sku": sku,
+            "units": stream.units[line],
+            "picked_s": _picked_s(logs, order, sku),
+            "file_line": file.line[line],
+            "file_order": names[np.repeat(orders["in_file"], _counts(orders, stream))],
+            "file_sku": np.array(names_of_skus(logs.world.skus), dtype=object)[sku],
+        },
+    )
+    for name, (codes, texts) in file.columns.items():
+        given = pd.Series(np.array(texts, dtype=object)[codes[line]])
+        frame[f"file_{name}"] = given.astype("str")
+    return frame
+
+
+def _lines(
+    orders: pd.DataFrame, stream: OrderStream
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the order of each line to be shown, and the line's place in the stream."""
+    counts = _counts(orders, stream)
+    begins = np.cumsum(counts) - counts
+    within = np.arange(counts.sum()) - np.repeat(begins, counts)
+    first = stream.first_line[orders["in_file"].to_numpy()]
+    return np.repeat(orders["order"].to_numpy(), counts), np.repeat(first, counts) + within
+
+
+def _counts(orders: pd.DataFrame, stream: OrderStream) -> NDArray[np.int64]:
+    """Return how many lines each order has."""
+    counts: NDArray[np.int64] = np.diff(stream.first_line)[orders["in_file"].to_numpy()]
+    return counts
+
+
+def _picked_s(logs: Logs, order: NDArray[np.int64], sku: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return when each line was finished, nan if it was not; an order has a SKU only once."""
+    skus, done = len(logs.world.skus), logs.lines
+    keys = done["order"].to_numpy(np.int64) * skus + done["sku"].to_numpy(np.int64)
+    by_key = np.argsort(keys, kind="stable")
+    found = np.searchsorted(keys[by_key], order * skus + sku)
+    at = by_key[np.minimum(found, len(keys) - 1)] if len(keys) else np.zeros(len(sku), np.int64)
+    picked = np.full(len(sku), np.nan)
+    if len(keys):
+        same = keys[at] == order * skus + sku
+        picked[same] = done["end_s"].to_numpy()[at[same]]
+    return picked

@@ -1,0 +1,69 @@
+"""What a file of orders says beside SKUs, units and times: kept, so that results can be joined."""
+
+from __future__ import annotations
+
+from array import array
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class OrderFile:
+    """Names and further columns of n orders with m lines in all, as their file has them.
+
+    Attributes
+    ----------
+    names
+        Of each order, n of them.
+    line
+        Line (CSV) or row (Parquet) of the file in which each order line stands, shape (m,).
+    columns
+        Per further column of the file its m texts: the place of each, shape (m,), in a tuple of
+        those that occur.
+    """
+
+    names: tuple[str, ...]
+    line: NDArray[np.int64]
+    columns: dict[str, tuple[NDArray[np.int32], tuple[str, ...]]]
+
+
+class OrderFileBuilder:
+    """Collects an `OrderFile`; a text that comes again takes 4 bytes.
+
+    Parameters
+    ----------
+    columns
+        Names of the further columns.
+    """
+
+    def __init__(self, columns: Sequence[str]) -> None:
+        self._columns = columns
+        self._names: list[str] = []
+        self._line = array("q")
+        self._codes = [array("i") for _ in columns]
+        self._texts: list[dict[str, int]] = [{} for _ in columns]
+
+    def add_order(self, name: str) -> None:
+        """Begin an order."""
+        self._names.append(name)
+
+    def add_line(self, number: int, further: Sequence[str]) -> None:
+        """Add a line to the last order: its number in the file, and its further fields."""
+        self._line.append(number)
+        for codes, texts, text in zip(self._codes, self._texts, further, strict=True):
+            codes.append(texts.setdefault(text, len(texts)))
+
+    def build(self) -> OrderFile:
+        """Return what has been added."""
+        columns = {
+            name: (np.array(codes, dtype=np.int32), tuple(texts))
+            for name, codes, texts in zip(self._columns, self._codes, self._texts, strict=True)
+        }
+        return OrderFile(tuple(self._names), np.array(self._line, dtype=np.int64), columns)
