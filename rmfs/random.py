@@ -30,6 +30,7 @@ class Stream(IntEnum):
     VISITS = 13
     LOOK_AHEAD = 14
     BATTERIES = 20
+    TRAINING = 16
 
 
 def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:

@@ -23,6 +23,7 @@ SUB_COMMANDS = {
 
 COMMANDS = {
     "demonstrate": ("rmfs.demonstrator.commands", "Run a warehouse with real robots."),
+    "learn": ("rmfs.learning.commands", "Train linear rules on simulated runs."),
     "emulate": ("rmfs.demonstrator.commands", "Emulate a room with robots like real ones."),
 }
 """The same of commands that are no groups."""

@@ -34,6 +34,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "due-time": "rmfs.control.poa.order_rules:DueTime",
         "frequency-age": "rmfs.control.poa.order_rules:FrequencyAge",
         "random": "rmfs.control.poa.order_rules:RandomOrder",
+        "linear": "rmfs.control.poa.linear:Linear",
         "rollout": "rmfs.control.poa.rollout:Rollout",
         "dummy": "rmfs.control.dummies:DummyPOA",
     },
@@ -55,6 +56,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
     Problem.PPS: {
         "lexicographic": "rmfs.control.pps.lexicographic:Lexicographic",
         "random": "rmfs.control.pps.random:RandomPod",
+        "linear": "rmfs.control.pps.linear:Linear",
         "dummy": "rmfs.control.dummies:DummyPPS",
     },
     Problem.PSA: {
@@ -65,6 +67,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "turnover": "rmfs.control.psa.turnover:Turnover",
         "cache": "rmfs.control.psa.cache:Cache",
         "utility": "rmfs.control.psa.utility:Utility",
+        "linear": "rmfs.control.psa.linear:Linear",
         "dummy": "rmfs.control.dummies:DummyPSA",
     },
     Problem.TA: {

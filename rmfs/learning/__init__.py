@@ -1,28 +1,58 @@
-"""Every decision as an environment: Gymnasium, PettingZoo, rewards, and policies that are trained.
+"""Every decision as an environment: Gymnasium, PettingZoo, rewards, and rules that are trained.
 
-Needs the extra `learning` (`pip install rmfs[learning]`); nothing else of rmfs imports this.
+Needs the extra `learning` (`pip install rmfs[learning]`); nothing of the simulator imports this.
 `import rmfs.learning` registers `rmfs/Decision-v0` with Gymnasium.
 """
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 from rmfs.errors import InputError
 
-try:
-    import gymnasium as _gymnasium
-    import pettingzoo as _pettingzoo  # noqa: F401
-except ImportError as error:  # pragma: no cover
-    raise InputError(
-        "rmfs.learning needs Gymnasium and PettingZoo: pip install rmfs[learning]"
-    ) from error
-
-from rmfs.learning.environment import DecisionEnv as DecisionEnv
-from rmfs.learning.rewards import Reward as Reward
-from rmfs.learning.robots import RobotsEnv as RobotsEnv
+if TYPE_CHECKING:
+    from rmfs.learning.environment import DecisionEnv as DecisionEnv
+    from rmfs.learning.rewards import Reward as Reward
+    from rmfs.learning.robots import RobotsEnv as RobotsEnv
+    from rmfs.learning.training import Task as Task
+    from rmfs.learning.training import train as train
 
 NAME = "rmfs/Decision-v0"
 
-if NAME not in _gymnasium.registry:
-    _gymnasium.register(id=NAME, entry_point="rmfs.learning.environment:DecisionEnv")
+_PLACES = {
+    "DecisionEnv": "rmfs.learning.environment",
+    "Reward": "rmfs.learning.rewards",
+    "RobotsEnv": "rmfs.learning.robots",
+    "Task": "rmfs.learning.training",
+    "train": "rmfs.learning.training",
+}
 
-__all__ = ["NAME", "DecisionEnv", "Reward", "RobotsEnv"]
+__all__ = ["NAME", "DecisionEnv", "Reward", "RobotsEnv", "Task", "train"]
+
+
+def __getattr__(name: str) -> Any:
+    """Load what is exported when it is first used: training needs no Gymnasium."""
+    if name not in _PLACES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    import importlib
+
+    try:
+        return getattr(importlib.import_module(_PLACES[name]), name)
+    except ModuleNotFoundError as error:
+        if str(error.name).partition(".")[0] not in ("gymnasium", "pettingzoo"):
+            raise
+        raise InputError(
+            "rmfs.learning needs Gymnasium and PettingZoo: pip install rmfs[learning]"
+        ) from error
+
+
+def _register() -> None:
+    try:
+        import gymnasium
+    except ModuleNotFoundError:
+        return
+    if NAME not in gymnasium.registry:
+        gymnasium.register(id=NAME, entry_point="rmfs.learning.environment:DecisionEnv")
+
+
+_register()

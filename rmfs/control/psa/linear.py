@@ -1,0 +1,41 @@
+"""PSA linear: the storage place whose features have the greatest weighted sum."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.candidates import candidates_for
+from rmfs.control.linear import Weights, best_of, checked, default_weights
+from rmfs.control.problems import Problem
+from rmfs.control.psa import PodStorageAssignment
+from rmfs.control.questions import Question
+
+if TYPE_CHECKING:
+    from rmfs.world.robots import Robot
+
+
+class LinearParameters(Parameters):
+    """Parameters of PSA linear."""
+
+    weights: Weights = pydantic.Field(default_factory=lambda: default_weights("place"))
+    """Of the features of storage places, scaled (docs: learning)."""
+
+    @pydantic.field_validator("weights")
+    @classmethod
+    def _check(cls, weights: Weights) -> Weights:
+        return checked("place", weights)
+
+
+class Linear(PodStorageAssignment[LinearParameters]):
+    """Takes the empty place with the greatest weighted sum; ties: the lowest waypoint."""
+
+    parameters_model = LinearParameters
+
+    def place(self, robot: Robot) -> int:
+        """Choose a place."""
+        found = candidates_for(self.view, Question(Problem.PSA, "place", robot.index))
+        row = best_of(found, "place", self.view, self.parameters.weights)
+        return int(found[row]) if row >= 0 else -1

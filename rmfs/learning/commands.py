@@ -1,0 +1,71 @@
+"""`rmfs learn`: weights of linear rules, trained on simulated runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rmfs.errors import InputError
+
+app = typer.Typer(context_settings={"help_option_names": ["-h", "--help"]})
+
+
+@app.command()
+def learn(
+    out: Annotated[Path, typer.Option(help="Controllers file to write (.toml).")],
+    layout: Annotated[str, typer.Option(help="Layout.")] = "small",
+    scenario: Annotated[str, typer.Option(help="Scenario.")] = "small",
+    controllers: Annotated[str, typer.Option(help="Who decides the other problems.")] = "default",
+    problems: Annotated[str, typer.Option(help="Of poa, pps, psa; with commas.")] = "poa,pps",
+    objective: Annotated[
+        str, typer.Option(help="Columns of the footprint with weights, COLUMN=W,...; maximised.")
+    ] = "units_picked=1",
+    seeds: Annotated[str, typer.Option(help="Seeds of the runs, with commas.")] = "1,2,3",
+    generations: Annotated[int, typer.Option(min=1, help="Generations.")] = 20,
+    population: Annotated[int, typer.Option(min=4, help="Sets of weights of each.")] = 10,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the search.")] = 1,
+    jobs: Annotated[int, typer.Option(min=1, help="Processes.")] = 1,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Override a parameter.")
+    ] = None,
+) -> None:
+    """Train linear rules by CMA-ES; write a controllers file that `rmfs run` takes."""
+    from rmfs.config import parse_override
+    from rmfs.control.toml import to_toml
+    from rmfs.files import write_text
+    from rmfs.learning.training import Task, named, train
+
+    if out.suffix != ".toml":
+        raise InputError(f"--out {out}: must be a .toml file")
+    given = [parse_override(one) for one in set_ or []]
+    task = Task(
+        layout,
+        scenario,
+        controllers,
+        problems.split(","),
+        dict(_weight(one) for one in objective.split(",")),
+        [_number(one) for one in seeds.split(",")],
+        {".".join(path): value for path, value in given},
+    )
+    found = train(
+        task, generations=generations, population=population, seed=seed, jobs=jobs, told=print
+    )
+    told = f"Trained by rmfs learn on {layout}, {scenario}: {objective}, seeds {seeds}."
+    write_text(out, to_toml(named(found, out.stem, told)))
+    print(f"{out}: {found.value:.6g} (at the start {found.start_value:.6g}), seeds of the training")
+
+
+def _weight(text: str) -> tuple[str, float]:
+    column, _, weight = text.partition("=")
+    try:
+        return column.strip(), float(weight or 1.0)
+    except ValueError:
+        raise InputError(f"--objective {text}: must be COLUMN=WEIGHT") from None
+
+
+def _number(text: str) -> int:
+    if not text.strip().isdigit():
+        raise InputError(f"--seeds {text}: must be numbers, 0 or greater, with commas")
+    return int(text)

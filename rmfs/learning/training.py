@@ -1,0 +1,242 @@
+"""Training of linear rules by CMA-ES: weights that make runs good, found without gradients.
+
+Every set of weights is a controllers file; what it is worth is read off the footprints of runs with
+several seeds, the same for all sets (common random numbers).
+"""
+
+from __future__ import annotations
+
+import warnings
+from concurrent.futures import Executor, ProcessPoolExecutor
+from dataclasses import dataclass, field, replace
+from math import isfinite
+from multiprocessing import get_context
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from rmfs import control
+from rmfs.control.choices import check_together, choose
+from rmfs.control.linear import default_weights
+from rmfs.control.problems import Problem
+from rmfs.control.settings import ControllerSettings
+from rmfs.errors import InputError
+from rmfs.measure.dictionary import names
+from rmfs.random import Stream, generator
+from rmfs.simulation.run import simulate
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+TRAINED: dict[Problem, dict[str, str]] = {
+    Problem.POA: {"weights": "poa"},
+    Problem.PPS: {"pick_pod": "pick pod", "replenishment_pod": "replenishment pod"},
+    Problem.PSA: {"weights": "place"},
+}
+"""Per problem, the parameters of its linear rule that are trained, and their kind of question."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is to be trained, and for what.
+
+    Attributes
+    ----------
+    layout, scenario, controllers
+        The runs; the controllers decide all problems that are not trained.
+    problems
+        Of `TRAINED`.
+    objective
+        Weights of columns of the footprint; the sum is maximised.
+    seeds
+        Of the runs of every set of weights.
+    set
+        Parameters by dotted key, as `rmfs.simulate` takes them.
+
+    Raises
+    ------
+    InputError
+        If a problem cannot be trained or a column does not exist.
+    """
+
+    layout: str
+    scenario: str
+    controllers: str = "default"
+    problems: Sequence[str] = ("poa", "pps")
+    objective: Mapping[str, float] = field(default_factory=lambda: {"units_picked": 1.0})
+    seeds: Sequence[int] = (1, 2, 3)
+    set: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        valid = [str(problem) for problem in TRAINED]
+        for problem in self.problems:
+            if problem not in valid:
+                raise InputError(f"problem {problem}: valid: {', '.join(valid)}")
+        for column in self.objective:
+            if column not in names("footprint"):
+                raise InputError(f"objective {column}: no column of the footprint")
+        if not self.problems or not self.objective or not self.seeds:
+            raise InputError("training needs a problem, an objective and a seed")
+
+    def start(self) -> NDArray[np.float64]:
+        """Return the weights of the linear rules as they are by default, as one vector.
+
+        Each kind of question counts alike: its weights are divided by the greatest of them.
+        """
+        found = [list(default_weights(kind).values()) for kind in self._kinds()]
+        return np.concatenate([np.array(one) / max(map(abs, one)) for one in found])
+
+    def settings(self, weights: NDArray[np.float64]) -> ControllerSettings:
+        """Return the controllers with these weights."""
+        overrides = [
+            (key.split(".")[1:], value)
+            for key, value in self.set.items()
+            if key.startswith("controllers.")
+        ]
+        base = control.load(self.controllers, overrides)
+        choices, rest = dict(base.choices), weights.tolist()
+        for name in self.problems:
+            problem = Problem(name)
+            table: dict[str, Any] = {"name": "linear"}
+            for parameter, kind in TRAINED[problem].items():
+                columns = list(default_weights(kind))
+                table[parameter] = dict(zip(columns, rest, strict=False))
+                rest = rest[len(columns) :]
+            choices[problem] = choose(problem, table, "training")
+        check_together(choices, "training")
+        told = f"Linear rules for {', '.join(self.problems)}, the rest as {base.name}."
+        return ControllerSettings("linear", told, choices)
+
+    def worth(self, weights: NDArray[np.float64], seed: int) -> float:
+        """Simulate once; return the value of the objective."""
+        given = {k: v for k, v in self.set.items() if not k.startswith("controllers.")}
+        run = simulate(self.layout, self.scenario, self.settings(weights), seed=seed, set=given)
+        values = [float(run.footprint[name]) * weight for name, weight in self.objective.items()]
+        return sum(value if isfinite(value) else 0.0 for value in values)
+
+    def _kinds(self) -> list[str]:
+        return [kind for one in self.problems for kind in TRAINED[Problem(one)].values()]
+
+
+@dataclass(frozen=True)
+class Trained:
+    """What training found.
+
+    Attributes
+    ----------
+    settings
+        The controllers, to be written by `rmfs.control.toml.to_toml` and run.
+    value, start_value
+        Mean of the objective over the seeds of the training, at the end and at the start.
+    history
+        One row per generation: `generation`, `best`, `mean`, `runs` and `wall_s` so far.
+    """
+
+    settings: ControllerSettings
+    value: float
+    start_value: float
+    history: pd.DataFrame
+
+
+def train(
+    task: Task,
+    *,
+    generations: int = 20,
+    population: int = 10,
+    spread: float = 0.3,
+    seed: int = 1,
+    jobs: int = 1,
+    told: Callable[[str], None] | None = None,
+) -> Trained:
+    """Train the weights of linear rules.
+
+    Parameters
+    ----------
+    generations, population
+        Of the evolution: so many sets of weights are simulated, each with all seeds.
+    spread
+        Standard deviation of the first weights around their start, which are 1 at most.
+    seed
+        Of the evolution: the same seed, the same weights, whatever the number of processes.
+    jobs
+        Processes.
+    told
+        Called with one line per generation.
+
+    Raises
+    ------
+    InputError
+        If a number is out of range, or the package `cma` is not there.
+    """
+    if min(generations, population - 3, jobs) < 1 or not spread > 0:
+        raise InputError("training needs 1 generation, a population of 4, 1 process, spread > 0")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of packages that cma would like to have
+            import cma
+    except ImportError as error:
+        raise InputError("training needs the package cma: pip install rmfs[learning]") from error
+    began, start = perf_counter(), task.start()
+    drawn = int(generator(seed, Stream.TRAINING).integers(1, 2**31))
+    options = {"popsize": population, "seed": drawn, "verbose": -9}
+    search = cma.CMAEvolutionStrategy(start, spread, options)
+    best, runs, rows = start, 0, []
+    with _executor(jobs) as executor:
+        first = best_value = _worth(executor, task, [start])[0]
+        for number in range(generations):
+            asked = [np.asarray(one) for one in search.ask()]
+            values = _worth(executor, task, asked)
+            search.tell(asked, [-value for value in values])
+            runs += population * len(task.seeds)
+            top = int(np.argmax(values))
+            if values[top] > best_value:
+                best, best_value = asked[top], values[top]
+            mean, wall_s = float(np.mean(values)), perf_counter() - began
+            rows.append((number + 1, max(values), mean, runs, wall_s))
+            if told is not None:
+                told(f"generation {number + 1}: best {max(values):.4g}, mean {mean:.4g}")
+        middle = np.asarray(search.result.xfavorite)
+        value = _worth(executor, task, [middle])[0]
+    if value >= best_value:  # the middle of the search is less of an accident than one of its sets
+        best, best_value = middle, value
+    columns = ["generation", "best", "mean", "runs", "wall_s"]
+    history = pd.DataFrame(rows, columns=columns)
+    scaled = best / np.abs(best).max()
+    return Trained(task.settings(scaled), best_value, first, history)
+
+
+def named(trained: Trained, name: str, description: str) -> ControllerSettings:
+    """Return the controllers under a name."""
+    return replace(trained.settings, name=name, description=description)
+
+
+def _worth(
+    executor: Executor | None, task: Task, sets: Sequence[NDArray[np.float64]]
+) -> list[float]:
+    """Return the mean value of sets of weights over all seeds."""
+    calls = [(weights, seed) for weights in sets for seed in task.seeds]
+    each = map if executor is None else executor.map
+    values = list(each(_one, [task] * len(calls), *zip(*calls, strict=True)))
+    return [float(one) for one in np.reshape(values, (len(sets), -1)).mean(axis=1)]
+
+
+def _one(task: Task, weights: NDArray[np.float64], seed: int) -> float:
+    return task.worth(weights, seed)
+
+
+class _Here:
+    """No processes: everything is done in this one."""
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, *_: object) -> None:
+        return None
+
+
+def _executor(jobs: int) -> Any:
+    return _Here() if jobs == 1 else ProcessPoolExecutor(jobs, get_context("spawn"))

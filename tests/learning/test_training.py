@@ -1,0 +1,88 @@
+"""Linear rules, and their training."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import rmfs
+from rmfs import control
+from rmfs.cli import main
+from rmfs.control.linear import default_weights
+from rmfs.errors import InputError
+from rmfs.learning.training import Task, train
+
+KEYS = {"scenario.duration_s": 300, "layout.robots": 4}
+TASK = Task("small", "small", set=KEYS | {"scenario.duration_s": 100}, seeds=(1, 2))
+
+
+def units(*, seed: int = 1, **rules: Any) -> int:
+    keys = KEYS | {f"controllers.{problem}": rule for problem, rule in rules.items()}
+    return int(rmfs.simulate("small", "small", seed=seed, set=keys).footprint["units_picked"])
+
+
+def test_linear_rules_decide_everything() -> None:
+    keys = KEYS | {f"controllers.{problem}": "linear" for problem in ("poa", "pps", "psa")}
+    run = rmfs.simulate("small", "small", seed=1, set=keys, trace=True)
+    assert run.footprint["units_picked"] > 20
+    assert run.check().ok
+
+
+def test_weights_matter() -> None:
+    far = {"name": "linear", "weights": {"away_s": 1.0}}
+    near = {"name": "linear", "weights": {"away_s": -1.0}}
+    assert units(psa=near) > units(psa=far)
+    nearest = rmfs.simulate("small", "small", seed=1, set=KEYS | {"controllers.psa": "nearest"})
+    assert units(psa=near) == nearest.footprint["units_picked"]
+
+
+def test_training_repeats_and_improves_what_it_was_trained_on() -> None:
+    found = [train(TASK, generations=2, population=4, seed=5, jobs=jobs) for jobs in (1, 1, 2)]
+    assert found[0].settings == found[1].settings == found[2].settings
+    assert found[0].value >= found[0].start_value
+    assert list(found[0].history["generation"]) == [1, 2]
+    again = [train_value(found[0].settings, seed) for seed in TASK.seeds]
+    assert found[0].value == sum(again) / len(again)
+
+
+def train_value(settings: control.ControllerSettings, seed: int) -> int:
+    run = rmfs.simulate("small", "small", settings, seed=seed, set=dict(TASK.set))
+    return int(run.footprint["units_picked"])
+
+
+def test_the_command_writes_a_file_that_runs(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "mine.toml"
+    arguments = [
+        *("learn", "--out", str(out), "--problems", "psa", "--seeds", "1", "--generations", "1"),
+        *("--population", "4", "--set", "scenario.duration_s=120"),
+    ]
+    assert main(arguments) == 0
+    assert "generation 1: best" in capsys.readouterr().out
+    settings = control.load(out)
+    assert settings.name == "mine"
+    weights = settings.to_table()["psa"]["weights"]
+    assert weights.keys() == default_weights("place").keys()
+    run = rmfs.simulate("small", "small", out, seed=1, set={"scenario.duration_s": 60})
+    assert run.footprint["controllers"] == "mine"
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"problems": ["ta"]}, "problem ta: valid: poa, pps, psa"),
+        ({"objective": {"profit": 1.0}}, "objective profit: no column"),
+        ({"seeds": ()}, "needs a problem, an objective and a seed"),
+    ],
+)
+def test_wrong_tasks_are_refused(given: dict[str, Any], told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        Task("small", "small", **given)
+
+
+def test_a_feature_that_does_not_exist_is_named() -> None:
+    with pytest.raises(InputError, match=r"price is no feature here; valid: away_s, back_s"):
+        units(psa={"name": "linear", "weights": {"price": 1.0}})
