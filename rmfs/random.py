@@ -29,8 +29,8 @@ class Stream(IntEnum):
     DISTURBANCES = 12
     VISITS = 13
     LOOK_AHEAD = 14
+    TRAINING = 15
     BATTERIES = 20
-    TRAINING = 16
 
 
 def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:
