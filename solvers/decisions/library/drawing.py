@@ -58,7 +58,8 @@ _EASIER: Mapping[tuple[str, str], Mapping[str, Any]] = {
         "layout.pick_stations.east": 1,
         "controllers.ta.visits": 2,
     },
-    ("sequence", "small"): {"layout.robots": 5},
+    ("sequence", "small"): {"layout.robots": 3, "controllers.ta.pods_per_station": 1},
+    ("replenishment", "small"): {"controllers.rps.bundles": 8},
 }
 """What is changed so that small questions can be solved to proven optimality."""
 
