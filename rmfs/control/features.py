@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 LIMIT = 10.0
 """No feature is greater, or less than the negative of it."""
 
+FAR = 1e9
+"""What is greater counts as this in rankings."""
+
 KINDS: dict[Problem, tuple[str, ...]] = {
     Problem.POA: ("poa",),
     Problem.ROA: ("roa",),
@@ -35,6 +38,7 @@ KINDS: dict[Problem, tuple[str, ...]] = {
     Problem.PPS: ("pick pod", "replenishment pod", "next station"),
     Problem.PSA: ("place",),
     Problem.REPOSITIONING: ("move",),
+    Problem.CA: ("ca",),
 }
 """The kinds of question of each problem; a problem decided in turns has one of its own name."""
 
@@ -48,6 +52,7 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "sa": ("active", "robots"),
     "mm": (),
     "ta": ("work", "store", "move", "rest", "away_s", "units", "robots"),
+    "ca": ("level_share", "away_s", "robots"),
     "pick pod": ("units", "orders", "reach_s", "bring_s"),
     "replenishment pod": ("bundles", "reach_s", "bring_s"),
     "next station": ("away_s", "units", "robots"),
@@ -82,6 +87,7 @@ SCALES: dict[str, float] = {
     "bring_s": 30.0,
     "orders": 3.0,
     "distance_m": 30.0,
+    "level_share": 1.0,
 }
 """What each feature is divided by, in the unit of its column."""
 
@@ -101,6 +107,7 @@ RANKINGS: dict[str, dict[str, float]] = {
     "sa": {"active": -1.0},
     "mm": {},
     "ta": {"work": 1000.0, "store": 500.0, "rest": -1000.0, "away_s": -1.0},
+    "ca": {"level_share": -300.0, "away_s": -1.0, "robots": -10.0},
     "pick pod": {"orders": 60.0, "units": 15.0, "reach_s": -1.0, "bring_s": -1.0},
     "replenishment pod": {"bundles": 15.0, "reach_s": -1.0, "bring_s": -1.0},
     "next station": {"units": 5.0, "away_s": -1.0},
@@ -145,7 +152,8 @@ def matrix(columns: Mapping[str, NDArray[np.float64]], names: Sequence[str]) -> 
     for place, name in enumerate(names):
         if name in columns:
             found[:, place] = columns[name] / SCALES[name]
-    return np.clip(np.nan_to_num(found, posinf=LIMIT, neginf=-LIMIT), -LIMIT, LIMIT)
+    clipped: NDArray[np.float64] = found.clip(-LIMIT, LIMIT)
+    return clipped
 
 
 def best_rows(
@@ -158,7 +166,8 @@ def best_rows(
     count = len(next(iter(columns.values()))) if columns else 0
     score = np.zeros(count)
     for name, weight in weights.items():
-        score -= weight * np.nan_to_num(columns[name], posinf=1e9, neginf=-1e9)
+        # times are at most far away: an order without a due time is due never
+        score -= weight * columns[name].clip(-FAR, FAR)
     if count > 4 * k:
         # the k-th best score bounds those that are sorted; equals of it are kept
         bound = np.partition(score, k - 1)[k - 1]

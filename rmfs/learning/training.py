@@ -25,6 +25,7 @@ from rmfs.control.settings import ControllerSettings
 from rmfs.errors import InputError
 from rmfs.measure.dictionary import names
 from rmfs.random import Stream, generator
+from rmfs.simulation.idle_rules import IdleRuleWarning
 from rmfs.simulation.run import simulate
 
 if TYPE_CHECKING:
@@ -114,7 +115,9 @@ class Task:
     def worth(self, weights: NDArray[np.float64], seed: int) -> float:
         """Simulate once; return the value of the objective."""
         given = {k: v for k, v in self.set.items() if not k.startswith("controllers.")}
-        run = simulate(self.layout, self.scenario, self.settings(weights), seed=seed, set=given)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", IdleRuleWarning)  # some of the sets are bad ones
+            run = simulate(self.layout, self.scenario, self.settings(weights), seed=seed, set=given)
         values = [float(run.footprint[name]) * weight for name, weight in self.objective.items()]
         return sum(value if isfinite(value) else 0.0 for value in values)
 

@@ -26,6 +26,17 @@ assert _spec is not None and _spec.loader is not None
 every_rule: Any = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(every_rule)
 
+CHARGERS = {
+    "layout.robots": 8,
+    "scenario.energy": {
+        "battery": {"capacity_wh": 150.0, "initial_least_share": 0.3, "initial_most_share": 0.6}
+    },
+    "layout.other_stations.charger": {
+        "kind": "charger",
+        "north": 3,
+        "parameters": {"power_w": 600.0},
+    },
+}
 PROBLEMS = ["poa", "roa", "rps", "pps", "psa", "ta", "sa", "mm", "repositioning"]
 ASKED = {
     "mm": {"controllers.mm": {"name": "random", **every_rule.PARAMETERS["mm", "random"]}},
@@ -50,6 +61,17 @@ def test_gymnasium_accepts_the_environment_of_every_problem(problem: str) -> Non
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         check_env(made(problem, rule=problem == "mm"), skip_render_check=True)
+
+
+def test_charging_is_decided_like_all_else() -> None:
+    """CA needs a site with batteries; who follows its rule gets its footprint."""
+    keys = CHARGERS | {"scenario.duration_s": 400, "scenario.warmup_s": 0}
+    env = DecisionEnv("default", "default", problems=["ca"], set=keys, rule=True)
+    check_env(env, skip_render_check=True)
+    _, _, outside = played(env, 2, lambda env, info: env.decline + 1)
+    inside = rmfs.simulate("default", "default", seed=2, set=keys)
+    assert same(outside, inside.footprint)
+    assert inside.footprint["charges"] > 0
 
 
 def test_all_problems_at_once_and_flat() -> None:
