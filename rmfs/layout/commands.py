@@ -1,4 +1,4 @@
-"""`rmfs layout`: new, show, check, import.
+"""`rmfs layout`: new, list, show, check, import, convert.
 
 The command line prints an `InputError` as one line and exits with code 2; these functions just
 raise it.
@@ -16,15 +16,19 @@ from rmfs.config import apply_overrides, parse_override, validate
 from rmfs.errors import InputError
 from rmfs.files import write_text
 from rmfs.layout.checks import IMPOSSIBLE, check
+from rmfs.layout.explicit import save_json
 from rmfs.layout.loading import load, load_with_notes
 from rmfs.layout.parameters import LayoutParameters
 from rmfs.layout.toml import to_toml
 from rmfs.rawsimo.layout.writing import SUFFIXES, import_layout
 
-app = typer.Typer(help="Layouts: make, look at, check, import.", no_args_is_help=True)
+app = typer.Typer(help="Layouts: make, look at, check, import, convert.", no_args_is_help=True)
 
 LayoutArgument = Annotated[
-    str, typer.Argument(metavar="LAYOUT", help="A shipped name or a .toml, .json, .xinst, .xlayo.")
+    str,
+    typer.Argument(
+        metavar="LAYOUT", help="A shipped name, or a .toml, .json, .txt, .map, .xinst or .xlayo."
+    ),
 ]
 Settings = Annotated[
     list[str] | None,
@@ -124,6 +128,25 @@ def import_command(
     target = out if out is not None else Path(path.stem + SUFFIXES.get(path.suffix.lower(), ""))
     _vacant(target, force=force)
     notes = import_layout(path, target)
+    _print_notes(notes)
+    typer.echo(f"{target}: written")
+
+
+@app.command()
+def convert(
+    layout: LayoutArgument,
+    out: Annotated[
+        Path | None, typer.Option(help="The .json file to write; default: NAME.json.")
+    ] = None,
+    settings: Settings = None,
+    force: Force = False,
+) -> None:
+    """Write any layout waypoint by waypoint: drawn, generated, a map or an import."""
+    loaded, notes = load_with_notes(layout, _overrides(settings))
+    target = out if out is not None else Path(f"{Path(layout).stem}.json")
+    _suffix(target, ".json")
+    _vacant(target, force=force)
+    save_json(loaded, target)
     _print_notes(notes)
     typer.echo(f"{target}: written")
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rmfs import foreign, instances
 from rmfs.config import Table, apply_overrides, read_toml, validate
 from rmfs.errors import InputError
+from rmfs.layout.drawn import read_picture, read_station_map, stations_file
 from rmfs.layout.explicit import read_json
 from rmfs.layout.generator import generate
 from rmfs.layout.mapf import read_map
@@ -41,8 +42,9 @@ def load_with_notes(
     Parameters
     ----------
     name_or_path
-        A shipped layout, or a file: `.toml` (parameters), `.json` (explicit layout), `.xlayo` or
-        `.xinst` (RAWSim-O), `.map` (grid map without pods and stations, for traffic alone).
+        A shipped layout, or a file: `.toml` (parameters), `.json` (explicit layout), `.txt` (drawn
+        as text), `.xlayo` or `.xinst` (RAWSim-O), `.map` (grid map: with the stations and storage
+        places of `NAME.map.toml` beside it, or without any, for traffic alone).
     overrides
         (path, value) pairs such as `(["robots"], 16)`, applied to the parameters before they are
         validated. On explicit layouts only the keys of `ExplicitOverrides`; its `FACTORS` serve
@@ -70,10 +72,16 @@ def load_with_notes(
         case ".xinst":
             layout, notes = foreign.read(path)
             return override(layout, overrides, source), notes
+        case ".txt":
+            own, factors = split_factors(overrides)
+            return override(read_picture(path, own), factors, source), []
+        case ".map" if stations_file(path).is_file():
+            own, factors = split_factors(overrides)
+            return override(read_station_map(path, own), factors, source), []
         case ".map":
             return override(read_map(path), overrides, source), []
     raise InputError(
-        f"{path}: unknown kind of layout; expected .toml, .json, .xlayo, .xinst or .map"
+        f"{path}: unknown kind of layout; expected .toml, .json, .txt, .map, .xlayo or .xinst"
     )
 
 

@@ -108,7 +108,14 @@ def waypoint_at(number: NDArray[np.int64], cell: int, source: str) -> int:
     return int(number.flat[cell])
 
 
-def _free(path: Path) -> NDArray[np.bool_]:
+def read_rows(path: Path) -> list[str]:
+    """Return the rows of a map, the top one first, a sign for each cell.
+
+    Raises
+    ------
+    InputError
+        If the file is not a grid map.
+    """
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
@@ -123,7 +130,12 @@ def _free(path: Path) -> NDArray[np.bool_]:
     rows = [line.rstrip() for line in lines[4:] if line.strip()]
     if len(rows) != height or any(len(row) != width for row in rows):
         raise InputError(f"{path}: expected {height} rows of {width} cells")
+    return rows
+
+
+def _free(path: Path) -> NDArray[np.bool_]:
+    rows = read_rows(path)
     free = np.array([[sign not in BLOCKED for sign in row] for row in rows], np.bool_)
     if free.sum() < 2:
         raise InputError(f"{path}: has no two free cells")
-    return free.reshape(height, width)
+    return free

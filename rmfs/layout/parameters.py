@@ -22,10 +22,10 @@ Radius = Annotated[float, Field(gt=0, lt=0.5)]
 class PerSide(Strict):
     """How many of something stand on each side of a tier."""
 
-    west: Amount = 0
-    east: Amount = 0
-    south: Amount = 0
-    north: Amount = 0
+    west: Amount = Field(0, description="where x is least")
+    east: Amount = Field(0, description="where x is greatest")
+    south: Amount = Field(0, description="where y is least")
+    north: Amount = Field(0, description="where y is greatest")
 
     @property
     def total(self) -> int:
@@ -36,8 +36,8 @@ class PerSide(Strict):
 class OtherStations(PerSide):
     """Stations of another kind: how many stand on each side of a tier, and what is set of them."""
 
-    kind: str
-    parameters: dict[str, Any] = Field(default_factory=dict)
+    kind: str = Field(description="its class: module:Class, path/to/file.py:Class, or a name")
+    parameters: dict[str, Any] = Field(default_factory=dict, description="those of the class")
 
 
 class LayoutParameters(Strict):

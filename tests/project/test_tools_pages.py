@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -9,7 +10,15 @@ import pytest
 
 from rmfs.measure.dictionary import TABLES, markdown
 from rmfs.rawsimo.footprint import COLUMNS, FILES
-from tests.tools.pages import DICTIONARY, FROM_RAWSIMO, with_measures, write_pages
+from tests.tools.fields import sections
+from tests.tools.pages import (
+    DICTIONARY,
+    FORMATS,
+    FROM_RAWSIMO,
+    with_fields,
+    with_measures,
+    write_pages,
+)
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "../shared/reference/rawsimo-inputs-outputs.md"
@@ -26,6 +35,38 @@ def test_the_dictionary_page_is_up_to_date():
 def test_the_page_for_users_of_rawsimo_is_up_to_date():
     page = (ROOT / "docs" / FROM_RAWSIMO).read_text(encoding="utf-8")
     assert page == with_measures(page), "run: python -m tests.tools.pages"
+
+
+def test_the_fields_of_file_formats_are_up_to_date():
+    page = (ROOT / "docs" / FORMATS).read_text(encoding="utf-8")
+    assert page == with_fields(page), "run: python -m tests.tools.pages"
+
+
+@pytest.mark.parametrize("name", sections())
+def test_every_field_says_what_it_means(name):
+    rows = [line for line in sections()[name].splitlines() if line.startswith("| `")]
+    assert len(rows) >= 4
+    assert all(row.split(" | ")[-1].strip(" |") for row in rows)
+
+
+def test_the_explicit_layout_is_described_to_its_last_key():
+    """All keys of a file as it is written are on the page, those of tables within tables too."""
+    told = sections()["explicit layout"]
+    layout = json.loads((ROOT / "instances/layouts/demonstrator.json").read_text())
+    keys = {key for key, _ in _keys(layout)}
+    assert {"to", "waypoint", "travel_s", "unit_pick_s", "heading_rad"} - {"travel_s"} <= keys
+    assert all(f"| `{key}` |" in told for key in keys)
+    assert "`elevators[].rides[]`: seconds from one boarding waypoint" in told
+
+
+def _keys(value):
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield key, item
+            yield from _keys(item)
+    elif isinstance(value, list):
+        for item in value:
+            yield from _keys(item)
 
 
 def test_what_others_wrote_around_the_generated_part_stays(tmp_path):

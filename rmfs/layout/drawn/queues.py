@@ -1,0 +1,91 @@
+"""Queues of stations: as they are drawn, or straight where none is drawn."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.layout.drawn.drawing import NEIGHBOURS, Drawing, Ground, neighbours
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rmfs.layout.drawn.drawing import Cell
+
+PLACE = "q"
+NUMBERS = "123456789"
+
+
+class ForkError(ValueError):
+    """Several cells could be the next place of a queue: the one behind which, and its rank."""
+
+    def __init__(self, cell: Cell, rank: int) -> None:
+        self.cell, self.rank = cell, rank
+        super().__init__(f"{cell}: {rank}")
+
+
+def drawn_queue(head: Cell, sign: Callable[[Cell], str], taken: set[Cell]) -> tuple[Cell, ...]:
+    """Follow a queue from the station to its entrance.
+
+    The next place is the neighbour with the next number, or else the one neighbour with a q.
+
+    Parameters
+    ----------
+    sign
+        What is drawn at a cell.
+    taken
+        Cells of other queues; those of this one are added.
+
+    Raises
+    ------
+    ForkError
+        If several neighbours could be next.
+    """
+    places = [head]
+    while True:
+        near = [cell for cell in neighbours(places[-1]) if cell not in taken]
+        rank = str(len(places))
+        numbered = [cell for cell in near if rank in NUMBERS and sign(cell) == rank]
+        found = numbered or [cell for cell in near if sign(cell) == PLACE]
+        if not found:
+            return tuple(places)
+        if len(found) > 1:
+            raise ForkError(places[-1], len(places))
+        places += found
+        taken.update(found)
+
+
+def straight_queue(drawing: Drawing, head: Cell, length: int) -> tuple[Cell, ...]:
+    """Lay a queue over aisles straight away from a station, and make its cells a queue.
+
+    The longest way wins, of equal ones the first of east, north, west, south. One-way cells, cells
+    beside storage places, cells where robots stand and the last way out of the station are left
+    alone.
+
+    Parameters
+    ----------
+    length
+        Places, the station left out; fewer where there is no room for so many.
+    """
+    taken = set(drawing.robots)
+
+    def free(cell: Cell) -> bool:
+        if drawing.at(cell) != Ground.AISLE or cell in drawing.one_way or cell in taken:
+            return False
+        return all(drawing.at(beside) != Ground.STORAGE for beside in neighbours(cell))
+
+    def way(step: Cell) -> list[Cell]:
+        places: list[Cell] = []
+        while len(places) < length:
+            last = places[-1] if places else head
+            ahead = (last[0] + step[0], last[1] + step[1])
+            if not free(ahead):
+                break
+            places.append(ahead)
+        return places
+
+    exits = sum(drawing.at(cell) == Ground.AISLE for cell in neighbours(head))
+    ways = [way(step) for step in NEIGHBOURS] if exits > 1 else []
+    places = max(ways, key=len, default=[])
+    for cell in places:
+        drawing.ground[cell] = Ground.QUEUE
+    return (head, *places)
