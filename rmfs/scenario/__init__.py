@@ -6,6 +6,7 @@ world is what answers.
 
 from rmfs.scenario.bundles import BundleContent as BundleContent
 from rmfs.scenario.bundles import BundleSource as BundleSource
+from rmfs.scenario.cover import bundles_to_cover as bundles_to_cover
 from rmfs.scenario.intake import BundleArrival as BundleArrival
 from rmfs.scenario.intake import ExportedStream as ExportedStream
 from rmfs.scenario.intake import Intake as Intake

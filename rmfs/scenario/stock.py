@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rmfs.errors import InputError
 from rmfs.random import Stream, generator
 from rmfs.scenario.bundles import bundle_of_each
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -56,6 +57,7 @@ def initial_stock(
     share: float,
     seed: int,
     choose: ChoosePod | None = None,
+    first: Sequence[int] = (),
 ) -> InitialStock:
     """Fill the pods with bundles, their SKUs drawn by popularity, until a share is reached.
 
@@ -73,11 +75,13 @@ def initial_stock(
     choose
         Given a bundle and the free space of each pod (P,), returns a pod that has room for it;
         only asked if there is one. Default: any such pod, all equally likely.
+    first
+        SKUs of which a bundle each is stored before any is drawn; a SKU may come several times.
 
     Raises
     ------
     InputError
-        If a bundle of some SKU fits into no empty pod.
+        If a bundle of some SKU fits into no empty pod, or one of the `first` finds no room.
     ValueError
         If `choose` returns a pod without room.
     """
@@ -89,6 +93,17 @@ def initial_stock(
     bundles = bundle_of_each(skus)
     placed: list[tuple[int, int, int]] = []
     stored = 0.0
+    for needed in first:
+        pod = place(bundles[needed], free)
+        if pod is None:
+            raise InputError(
+                f"stock.order_cover: only {len(placed)} of {len(first)} bundles that orders need "
+                f"fit into the pods, which hold {capacity:g} space units; they take "
+                f"{math.fsum(skus.bundle_space[list(first)].tolist()):g}"
+            )
+        free[pod] -= bundles[needed].space
+        stored += bundles[needed].space
+        placed.append((pod, needed, bundles[needed].units))
     # free space only shrinks: what did not fit once never will, nor will anything larger
     too_large = math.inf
     while stored < share * capacity:

@@ -11,7 +11,7 @@ from rmfs.control.travel import Travel
 from rmfs.control.view import View
 from rmfs.errors import InputError
 from rmfs.observer import Observed, Observer
-from rmfs.scenario import initial_stock, sku_set
+from rmfs.scenario import bundles_to_cover, initial_stock, sku_set
 from rmfs.simulation.agenda import LAST, Agenda, us_at
 from rmfs.simulation.alarms import Alarms
 from rmfs.simulation.applying import Applying
@@ -492,6 +492,8 @@ def _stocked_world(layout: Layout, scenario: Scenario, seed: int) -> World:
     """Build the world at time zero."""
     skus = sku_set(scenario.skus)
     world = World(layout, skus)
-    stock = initial_stock(skus, layout.pod_capacity, scenario.stock.initial_share, seed)
+    needed = bundles_to_cover(scenario, skus)
+    share = scenario.stock.initial_share
+    stock = initial_stock(skus, layout.pod_capacity, share, seed, first=needed)
     world.stock(stock.pod.tolist(), stock.sku.tolist(), stock.units.tolist())
     return world

@@ -8,7 +8,7 @@ from typing import Any, Literal, Self
 import pydantic
 from pydantic import Field
 
-from rmfs.scenario.parameters.demand import BacklogDemand, Demand
+from rmfs.scenario.parameters.demand import BacklogDemand, Demand, StreamDemand
 from rmfs.scenario.parameters.disturbances import Disturbances
 from rmfs.scenario.parameters.energy import Energy
 from rmfs.scenario.parameters.orders import AnyOrders, Orders, WordOrders, not_above_skus
@@ -22,6 +22,11 @@ class Stock(Block):
     """What the pods hold at time zero."""
 
     initial_share: Share = Field(0.7, description="share of the pods' capacity filled at time zero")
+    order_cover: NotNegative = Field(
+        0.0,
+        description="of each SKU so many times the units that the file of orders asks for in the "
+        "run are stored first, in whole bundles; needs demand.mode = stream",
+    )
 
 
 class Scenario(Block):
@@ -85,6 +90,16 @@ class Scenario(Block):
         """Let a table that does not name its kind be of the default kind."""
         key, kind = ("content", "skus") if info.field_name == "orders" else ("mode", "backlog")
         return {key: kind, **value} if isinstance(value, dict) else value
+
+    @pydantic.field_validator("demand")
+    @classmethod
+    def _covers(cls, value: Demand, info: pydantic.ValidationInfo) -> Demand:
+        stock = info.data.get("stock")
+        if stock is not None and stock.order_cover and not isinstance(value, StreamDemand):
+            raise ValueError(
+                'must be of mode "stream": stock.order_cover is about a file of orders'
+            )
+        return value
 
     @pydantic.field_validator("orders")
     @classmethod

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+from collections import Counter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,7 +29,8 @@ def read_sku_table(path: Path) -> SkuFileContent:
     """Read a SKU table: `sku` and, if they are there, the other `COLUMNS`.
 
     SKUs that are whole numbers keep them as ids; others are numbered from 0 and keep their text as
-    names. Without `popularity` all are ordered alike.
+    names. Without `popularity` all are ordered alike. A file of orders (with columns `order` and
+    `quantity`) will do: its SKUs, each as popular as it has order lines.
 
     Raises
     ------
@@ -52,6 +54,8 @@ def read_sku_table(path: Path) -> SkuFileContent:
             found[column].append(fields[place])
     if not lines:
         raise InputError(f"{path}: holds no SKU")
+    if {"order", "quantity"} <= set(head) and known.keys() == {"sku"}:
+        found, lines = _ordered(found["sku"], lines)
     ids, names = _named(found["sku"], lines, path)
     popularity = _numbers(found, "popularity", lines, path, least=0.0)
     if popularity is not None and not popularity.any():
@@ -65,6 +69,16 @@ def read_sku_table(path: Path) -> SkuFileContent:
         bundle_units=None if units is None else units.astype(np.int64),
         names=names,
     )
+
+
+def _ordered(skus: list[str], lines: list[int]) -> tuple[dict[str, list[str]], list[int]]:
+    """Return the columns of the SKUs of order lines, and where each of them comes first."""
+    first: dict[str, int] = {}
+    for sku, line in zip(skus, lines, strict=True):
+        first.setdefault(sku, line)
+    often = Counter(skus)
+    columns = {"sku": list(first), "popularity": [str(often[sku]) for sku in first]}
+    return columns, list(first.values())
 
 
 def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
