@@ -1,7 +1,7 @@
 """How many robots the large site needs: rules, visits planned by search, and its start rule.
 
-Units per hour over the size of the fleet in the third hour, stock level kept, with the proven bound
-in the picture; the smallest fleet that reaches 95 % of what the stations can do; and what the
+Units per hour over the size of the fleet, the stock kept at its level, with the proven bound in the
+picture; the smallest fleet that reaches 95 % of what the stations can do; and what the
 search adds to the start rule of the same controller, seed by seed.
 """
 

@@ -3,7 +3,8 @@
 The small site with six robots and split orders. `fixed`: an answer takes its whole limit, as if
 the solver used all of it. `work`: it takes the work it was; a solver that has proven its optimum
 stops. Both repeat. About 0.1 CPU hours; with `--wall` the same under wall time at four limits,
-which does not repeat, to be run on a machine with nothing else to do (0.02 CPU hours).
+which does not repeat, to be run on a machine with nothing else to do (0.02 CPU hours). With
+`--planning`: TA planning with four robots, whose questions are big enough for a search to matter.
 """
 
 from __future__ import annotations
@@ -54,16 +55,20 @@ def picture(study: Study, frame: pd.DataFrame) -> Path:
 def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("price-of-thinking", __doc__)
-    options.add_argument("--wall", action="store_true", help="wall time at four limits instead")
+    other = options.add_mutually_exclusive_group()
+    other.add_argument("--wall", action="store_true", help="wall time at four limits instead")
+    other.add_argument("--planning", action="store_true", help="plans of several visits instead")
     given = options.parse_args(arguments)
     if given.wall:
         given.design = "price-of-thinking-wall"
+    if given.planning:
+        given.design = "price-of-thinking-planning"
     study = done(given)
     frame = paced(completed(study.frame, station_units_per_h(study)))
     level = LIMIT if LIMIT in frame and THINKING not in frame else THINKING
     name = study.plan.design.name
     study.publish(overview(frame, (level,), COLUMNS), name, ["units_per_h", "paced_s"])
-    if level == THINKING:
+    if level == THINKING and not given.planning:
         print(picture(study, frame))
     require_optimised(study)
 

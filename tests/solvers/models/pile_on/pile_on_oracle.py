@@ -61,7 +61,7 @@ def tiny(seed: int, variant: Variant, *, fractions: bool = False) -> PileOn:
 
 
 def order_options(
-    data: PileOn, order: int
+    data: PileOn, order: int, *, as_printed: bool = False
 ) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, float]]:
     """All ways to treat an order: (units taken (S, K), SKUs served (S, K), slots (S,), cost)."""
     weights, variant = data.weights, data.variant
@@ -71,7 +71,7 @@ def order_options(
     zero = np.zeros(shape, dtype=np.int64)
     options = [(zero, zero > 0, np.zeros(data.stations, dtype=np.int64), 0.0)]
     if weights.prospects:
-        for station in np.flatnonzero(data.slots > 0):
+        for station in np.flatnonzero((data.slots > 0) | as_printed):
             taken = zero.copy()
             np.add.at(taken[station], data.line_sku[lines], data.line_units[lines])
             options.append((taken, zero > 0, options[0][2], -reward))
@@ -107,14 +107,17 @@ def order_options(
     return options
 
 
-def combined_orders(data: PileOn) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def combined_orders(
+    data: PileOn, *, as_printed: bool = False
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """All combinations of the options of all orders, as arrays with a leading axis."""
     taken = np.zeros((1, data.stations, data.skus), dtype=np.int64)
     served = np.zeros((1, data.stations, data.skus), dtype=bool)
     slots = np.zeros((1, data.stations), dtype=np.int64)
     cost = np.zeros(1)
     for order in range(data.orders):
-        t, v, n, c = (np.stack(part) for part in zip(*order_options(data, order), strict=True))
+        options = order_options(data, order, as_printed=as_printed)
+        t, v, n, c = (np.stack(part) for part in zip(*options, strict=True))
         taken = (taken[:, None] + t).reshape(-1, *taken.shape[1:])
         served = (served[:, None] | v).reshape(-1, *served.shape[1:])
         slots = (slots[:, None] + n).reshape(-1, data.stations)
@@ -140,10 +143,10 @@ def robot_cost(data: PileOn, called: list[int]) -> float:
     )
 
 
-def optimum(data: PileOn) -> float:
-    """The least objective over all decisions."""
+def optimum(data: PileOn, *, as_printed: bool = False) -> float:
+    """The least objective over all decisions; as printed, stations without slots have prospects."""
     weights = data.weights
-    taken, served, _, cost = combined_orders(data)
+    taken, served, _, cost = combined_orders(data, as_printed=as_printed)
     coming = np.zeros((data.stations, data.skus), dtype=np.int64)
     for pod in range(data.pods):
         if data.inbound[pod] >= 0:

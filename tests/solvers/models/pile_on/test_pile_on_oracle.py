@@ -1,5 +1,7 @@
 """Both back ends against brute force, in every variant; heuristics between them and the worst."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pile_on_oracle import optimum, small_site, tiny
@@ -113,3 +115,19 @@ def test_deciding_nothing_is_always_allowed() -> None:
         for seed in range(20):
             data = tiny(seed, variant)
             assert violations(data, nothing(data)) == []
+
+
+def test_the_programme_is_m1g_but_for_what_its_text_says() -> None:
+    """M1G as printed is worth more only where a station without free slots has prospects."""
+    others = 0
+    for seed in range(200):
+        drawn = tiny(seed, Variant.WHOLE)
+        data = replace(drawn, weights=replace(drawn.weights, prospects=True), worth=None)
+        least, printed = optimum(data), optimum(data, as_printed=True)
+        assert cp_sat.solve(data).objective == pytest.approx(least, abs=1e-6)
+        if (data.slots > 0).all():
+            assert printed == least
+        else:
+            assert printed <= least
+            others += printed < least
+    assert others > 0
