@@ -11,9 +11,11 @@ import numpy as np
 import pandas as pd
 
 from rmfs.errors import InputError
+from rmfs.experiments.complete import lacking
 from rmfs.experiments.design import planning as plans
 from rmfs.experiments.results import load
 from rmfs.experiments.statistics.paired import paired, unpaired
+from rmfs.experiments.store import Store
 from rmfs.measure.dictionary import FOOTPRINT, learnt, names, reproducible
 from rmfs.measure.folder import PARAMETERS, load_run
 
@@ -46,11 +48,14 @@ class Side:
         Footprints, one row per seed.
     inputs
         What is known of its input: dotted key and value.
+    note
+        What runs its experiment lacks; empty if it is complete, or no experiment.
     """
 
     name: str
     rows: pd.DataFrame
     inputs: Mapping[str, Any] = field(default_factory=dict)
+    note: str = ""
 
 
 @dataclass(frozen=True)
@@ -76,6 +81,11 @@ class Comparison:
     outputs: pd.DataFrame
     pairs: int
     identical: bool
+
+    @property
+    def notes(self) -> list[str]:
+        """What the experiments of both sides lack, each told once."""
+        return list(dict.fromkeys(one.note for one in (self.baseline, self.other) if one.note))
 
 
 def compare(sources: Sequence[str | Path], *, confidence: float = 0.95) -> list[Comparison]:
@@ -172,7 +182,7 @@ def _sides(source: str) -> list[Side]:
     if (path / PARAMETERS).is_file():
         return [_run_side(path)]
     if (path / plans.FILE).is_file():
-        return _experiment_sides(path, arm)
+        return _experiment_sides(path, arm, source)
     if path.is_file() and path.suffix.lower() in (".csv", ".parquet"):
         return _table_sides(path, arm)
     raise InputError(
@@ -186,10 +196,12 @@ def _run_side(path: Path) -> Side:
     return Side(str(path), run.table("footprint"), dict(_flat(told)))
 
 
-def _experiment_sides(path: Path, arm: str) -> list[Side]:
+def _experiment_sides(path: Path, arm: str, source: str) -> list[Side]:
     plan = plans.load(path)
     chosen = [plan.arm(arm)] if arm else plan.arms
     frame = load(path)
+    missing = lacking(plan, Store(path), {one.name for one in chosen})
+    note = f"{source}: {missing}" if missing else ""
     return [
         Side(
             f"{path}{ARM_SIGN}{one.name}",
@@ -200,6 +212,7 @@ def _experiment_sides(path: Path, arm: str) -> list[Side]:
                 "pacing": one.pacing,
                 "digest": one.digest[:12],
             },
+            note,
         )
         for one in chosen
         if (frame["arm"] == one.name).any()

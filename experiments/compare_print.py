@@ -33,6 +33,8 @@ def print_comparisons(found: list[Comparison], columns: list[str], *, everything
         shown = chosen_columns(one, columns, everything=everything)
         console.print(_outputs(one, shown))
         console.print(_how(one))
+        for note in one.notes:
+            console.print(f"Note: {note}.", markup=False)
 
 
 def _print_inputs(console: Any, one: Comparison) -> None:
@@ -79,7 +81,10 @@ def _outputs(one: Comparison, columns: list[str]) -> Any:
 
 def _how(one: Comparison) -> str:
     if one.pairs:
-        return f"paired by {one.pairs} common seed{'s' if one.pairs > 1 else ''}"
+        told = f"paired by {one.pairs} common seed{'s' if one.pairs > 1 else ''}"
+        there = len(one.baseline.rows), len(one.other.rows)
+        alone = max(there) > one.pairs
+        return f"{told}, of {there[0]} and {there[1]}" if alone else told
     counts = f"{len(one.baseline.rows)} and {len(one.other.rows)}"
     return f"no common seed: {counts} runs taken as independent (Welch)"
 

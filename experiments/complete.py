@@ -8,32 +8,42 @@ from rmfs.experiments.design.stages import schedule
 from rmfs.experiments.results import assigned, failed_pairs
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from rmfs.experiments.design.planning import Plan
     from rmfs.experiments.store import Store
 
 
-def lacking(plan: Plan, store: Store) -> str:
-    """Say what an experiment lacks, with the counts; nothing if all of its runs are finished."""
+def lacking(plan: Plan, store: Store, only: Collection[str] = ()) -> str:
+    """Say what an experiment lacks, with the counts; nothing if all of its runs are finished.
+
+    Parameters
+    ----------
+    only
+        Arms that are looked at. Default: all.
+    """
     lost = failed_pairs(plan, store)
     rows = assigned(plan, store)
     now = schedule(plan, rows, lost)
+    runs = [run for run in now.runs if not only or run.arm in only]
     finished = store.finished(plan.design.keep)
     arms = {arm.name: arm for arm in plan.arms}
     done = {
         (run.arm, run.replication)
-        for run in now.runs
+        for run in runs
         if plan.job(arms[run.arm], run.replication).key in finished
     }
-    wanted = len(now.runs)
+    wanted = len(runs)
     if len(done) == wanted and now.complete:
         return ""
     said = [f"incomplete: {len(done)} of {wanted} runs are in"]
-    failed = len(lost & {(run.arm, run.replication) for run in now.runs})
+    failed = len(lost & {(run.arm, run.replication) for run in runs})
     if failed:
         said.append(f"{failed} failed")
-    empty = len({run.arm for run in now.runs} - {arm for arm, _ in done})
+    known = {run.arm for run in runs}
+    empty = len(known - {arm for arm, _ in done})
     if empty:
-        said.append(f"{empty} of {len({run.arm for run in now.runs})} arms have none")
+        said.append(f"{empty} of {len(known)} arms have none")
     if not now.complete and may_grow(plan):
         said.append("stages may ask for more")
     return ", ".join(said)

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rmfs.errors import InputError
+from rmfs.experiments.complete import lacking
 from rmfs.experiments.design.planning import plan_of
 from rmfs.experiments.results import load
+from rmfs.experiments.store import Store
 from rmfs.experiments.tables import differences, means
 from rmfs.references import reference_of
 
@@ -50,6 +52,11 @@ class Study:
         """Every run a row: `arm`, the factors, `replication`, the footprint."""
         return load(self.folder)
 
+    @property
+    def lacking(self) -> str:
+        """What runs are lacking, with the counts; tables say so, too. Empty if all are in."""
+        return lacking(self.plan, Store(self.folder))
+
     def table(self, *columns: str, by: str | None = None, confidence: float = 0.95) -> Table:
         """Return means over the seeds with confidence intervals.
 
@@ -67,7 +74,8 @@ class Study:
             If there is no such column or factor.
         """
         chosen = self._columns(columns)
-        return means(self._rows(by, chosen), chosen, confidence=confidence, by=by or "arm")
+        made = means(self._rows(by, chosen), chosen, confidence=confidence, by=by or "arm")
+        return made.noted(self.lacking)
 
     def compare(
         self,
@@ -98,7 +106,8 @@ class Study:
         first = known[0] if baseline is None else baseline
         if first not in known:
             raise InputError(f"baseline {first}: valid: {', '.join(map(str, known))}")
-        return differences(rows, chosen, first, confidence=confidence, by=by or "arm")
+        made = differences(rows, chosen, first, confidence=confidence, by=by or "arm")
+        return made.noted(self.lacking)
 
     def plot(
         self, column: str = COLUMN, *, by: str | None = None, confidence: float = 0.95

@@ -109,11 +109,22 @@ def compare(
         bool, typer.Option("--all", help="Show every column that differs.")
     ] = False,
     confidence: Annotated[float, typer.Option(min=0.5, max=0.999, help="Of the intervals.")] = 0.95,
+    allow_incomplete: Annotated[
+        bool,
+        typer.Option(
+            "--allow-incomplete", help="Exit with code 0 although runs are lacking; the note stays."
+        ),
+    ] = False,
 ) -> None:
-    """Say in what runs, arms or tables differ: input and output, paired by seed."""
+    """Say in what runs, arms or tables differ: input and output, paired by seed.
+
+    Exit code 3 if runs of an experiment are lacking: a note says how many.
+    """
+    from rmfs.experiments.commands import INCOMPLETE
     from rmfs.experiments.compare import compare as compared
     from rmfs.experiments.compare_print import print_comparisons
 
-    print_comparisons(
-        compared(sources, confidence=confidence), columns or [], everything=everything
-    )
+    found = compared(sources, confidence=confidence)
+    print_comparisons(found, columns or [], everything=everything)
+    if any(one.notes for one in found) and not allow_incomplete:
+        raise typer.Exit(INCOMPLETE)

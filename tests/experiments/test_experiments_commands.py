@@ -111,6 +111,20 @@ def test_tables_and_pictures_say_what_runs_are_lacking(design, tmp_path, monkeyp
     assert main(["experiment", "plot", path, "-f", "p.svg"]) == 3
     assert json.loads(Path("p.svg.provenance.json").read_text())["note"] == note
     assert main(["experiment", "plot", path, "-f", "q.svg", "--allow-incomplete"]) == 0
+    arm = "results/tiny#robots=16,psa=random"
+    for sources in (["results/tiny"], ["results/tiny", "results/tiny"]):
+        assert main(["compare", *sources, "-c", "units_per_h"]) == 3
+        out = " ".join(told(capsys).split())
+        assert "Note: results/tiny: incomplete: 10 of 12 runs are in, 2 failed." in out
+    assert main(["compare", "results/tiny", "--allow-incomplete"]) == 0
+    assert "Note: " in capsys.readouterr().out
+    whole = "results/tiny#robots=8,psa=nearest"
+    assert main(["compare", arm, whole, "-c", "units_per_h"]) == 3
+    out = " ".join(told(capsys).split())
+    assert "paired by 2 common seeds, of 2 and 3" in out
+    assert f"Note: {arm}: incomplete: 2 of 3 runs are in, 1 failed." in out
+    assert main(["compare", whole, "results/tiny#robots=16,psa=nearest"]) == 0
+    assert "Note: " not in told(capsys)
     assert main(["experiment", "table", str(design())]) == 3
     assert "10 of 12 runs are in, 2 failed" in capsys.readouterr().err
     design(seeds=[1])
