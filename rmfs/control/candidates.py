@@ -226,13 +226,14 @@ def _charges(view: View) -> Candidates:
     found: list[tuple[Charge | Unplug, int, float]] = []
     full = 1.0 if batteries is None else batteries.given.full_share
     enough = 1.0 if batteries is None else batteries.enough_share
+    leaving = {station.robot for station in view.recovery_stations}
     for station in view.recovery_stations:
         if has_room(view, station):
             away = view.travel.to(station.waypoint, loaded=False)
             found += [
                 (Charge(robot, station.index, full), station.index, float(away[at]))
                 for robot in robots
-                if robot.pod < 0
+                if robot.pod < 0 and robot.index not in leaving
                 for at in (view.travel.robot_waypoint(robot.index),)
             ]
     for station in view.chargers:

@@ -199,6 +199,8 @@ def _charge(decision: say.Charge, view: View) -> str:
         return wrong
     if robot.pod >= 0:
         return f"robot {robot.index} carries pod {robot.pod}"
+    if any(other.robot == robot.index for other in view.recovery_stations):
+        return f"robot {robot.index} stands at a station for energy: it goes elsewhere first"
     places = [other.index for other in view.recovery_stations]
     if station not in places:
         return f"station {station} gives no energy (those that do: {places})"

@@ -34,8 +34,12 @@ class PerSide(Strict):
 
 
 class OtherStations(PerSide):
-    """Stations of another kind: how many stand on each side of a tier, and what is set of them."""
+    """Stations of another kind: how many stand on each side of a tier, and what is set of them.
 
+    Plug-in places may stand within the storage area, too, each in the place of a storage place.
+    """
+
+    within: Amount = Field(0, description="how many stand within the storage area of a tier")
     kind: str = Field(description="its class: module:Class, path/to/file.py:Class, or a name")
     parameters: dict[str, Any] = Field(default_factory=dict, description="those of the class")
 

@@ -3,7 +3,8 @@
 W3 of the deadlock argument asks that a station admits no more robots than its queue has places.
 Traffic gives out places one by one and lets everybody else wait where it stands, so the number of
 robots is no matter of the layout, with one exception: where a queue is nothing but the station
-itself, two robots that go on to each other's station would wait for each other for ever.
+itself, two robots that go on to each other's station would wait for each other for ever. Nobody
+goes on from one station for energy to another.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rmfs.layout.charging import RecoveryKind
 from rmfs.layout.checks.violation import (
     NOT_WELL_FORMED,
     Violation,
@@ -39,12 +41,15 @@ class Queue:
         From the head to the entrance.
     of_elevator
         Whether an elevator is at its head.
+    is_left
+        Whether robots never go on from there to another such place: those that give energy.
     """
 
     label: str
     head: int
     places: tuple[int, ...]
     of_elevator: bool
+    is_left: bool = False
 
     @property
     def entrance(self) -> int:
@@ -56,7 +61,11 @@ def all_queues(layout: Layout) -> list[Queue]:
     """Return the queues of all stations and elevators; an empty list counts as its head alone."""
     queues = [
         Queue(
-            station_label(layout, s), station.waypoint, station.queue or (station.waypoint,), False
+            station_label(layout, s),
+            station.waypoint,
+            station.queue or (station.waypoint,),
+            False,
+            isinstance(station.kind, RecoveryKind),
         )
         for s, station in enumerate(layout.stations)
     ]
@@ -84,7 +93,7 @@ def queue_lists(layout: Layout) -> Iterator[Violation]:
 def _length(layout: Layout, queue: Queue) -> Iterator[Violation]:
     """Yield a queue too short for robots that go from station to station."""
     several = layout.robots > 1 and len(layout.stations) > 1
-    if several and not queue.of_elevator and len(queue.places) == 1:
+    if several and not (queue.of_elevator or queue.is_left) and len(queue.places) == 1:
         message = (
             "its queue is too short: with one place, robots that go on to each other's station "
             "wait for each other (W3)"

@@ -13,6 +13,7 @@ import numpy as np
 from rmfs.layout.generator.buffers import Buffer, buffer
 from rmfs.layout.generator.compass import SIDES
 from rmfs.layout.generator.placement import draw_pods, draw_robots
+from rmfs.layout.generator.pockets import pockets
 from rmfs.layout.generator.sites import sites
 from rmfs.layout.generator.tiles import ROAD, Kind, tile_kinds
 from rmfs.layout.generator.traffic_rules import TrafficRules
@@ -55,6 +56,9 @@ class Assembly:
         for zone in self._buffers:
             for tile in zone.tiles:
                 self._kinds[tile] = Kind.BUFFER
+        self._pockets = pockets(parameters, self._kinds)
+        for pocket in self._pockets:
+            self._kinds[pocket.tile] = Kind.BUFFER
         self._number = np.full(self._kinds.shape, -1, dtype=np.int32)
         self._used = self._kinds != Kind.NOTHING
         self._per_tier = int(self._used.sum())
@@ -116,6 +120,8 @@ class Assembly:
         steps = [step for row, column in outside for step in rules.steps((row, column))]
         for zone in self._buffers:
             steps += [*zone.steps, *zone.entrances]
+        for pocket in self._pockets:
+            steps += [(pocket.tile, pocket.aisle), (pocket.aisle, pocket.tile)]
         number = self._number
         edges = [(int(number[tail]), int(number[head])) for tail, head in steps]
         offsets = [self._offset(tier) for tier in range(self._parameters.tiers)]
@@ -158,8 +164,14 @@ class Assembly:
             OtherStation(kind, queue[0], queue, parameters.station_radius_m)
             for name, given in parameters.other_stations.items()
             for kind in [station_kind(name, given.kind, given.parameters, self._folder)]
-            for queue in self._stations(name)
+            for queue in (*self._stations(name), *self._within(name))
         )
+
+    def _within(self, kind: str) -> list[tuple[int, ...]]:
+        """Return the queues, of one place each, of the stations of a kind in the storage area."""
+        tiles = [pocket.tile for pocket in self._pockets if pocket.kind == kind]
+        tiers = range(self._parameters.tiers)
+        return [(int(self._number[tile]) + self._offset(tier),) for tier in tiers for tile in tiles]
 
     def _stations(self, kind: str) -> list[tuple[int, ...]]:
         """Return the queues of the stations of a kind, tier by tier, side by side."""

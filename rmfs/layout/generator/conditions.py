@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rmfs.layout.generator.compass import SIDES, Direction
 from rmfs.layout.generator.extent import (
     aisles_at,
+    blocks,
     extent,
     lanes,
     road_tiles,
@@ -123,6 +124,16 @@ def _robots(p: LayoutParameters) -> list[str]:
     return problems
 
 
+def _within(p: LayoutParameters) -> list[str]:
+    wanted = sum(group.within for group in p.other_stations.values())
+    if wanted > blocks(p):
+        return [
+            f"other_stations: the storage area has room for {blocks(p)} stations within, one per "
+            f"block (given: {wanted})"
+        ]
+    return []
+
+
 def _pods(p: LayoutParameters) -> list[str]:
     if math.floor(p.pod_share * storage_places(p)) == 0:
         return [
@@ -145,5 +156,6 @@ RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (
         _queues_fit,
     ),
     ((*SIZE, "hall_pattern", "robots"), _robots),
+    ((*AISLES, "other_stations"), _within),
     ((*AISLES, "block_length", "pod_share"), _pods),
 )

@@ -97,8 +97,13 @@ def extent(parameters: LayoutParameters) -> Extent:
 
 def storage_places(parameters: LayoutParameters) -> int:
     """Return the number of storage places of a tier."""
-    blocks = (parameters.vertical_aisles + 1) * (parameters.horizontal_aisles + 1)
-    return blocks * parameters.block_length * BLOCK_DEPTH
+    within = sum(group.within for group in parameters.other_stations.values())
+    return blocks(parameters) * parameters.block_length * BLOCK_DEPTH - within
+
+
+def blocks(parameters: LayoutParameters) -> int:
+    """Return the number of storage blocks of a tier."""
+    return (parameters.vertical_aisles + 1) * (parameters.horizontal_aisles + 1)
 
 
 def road_tiles(parameters: LayoutParameters) -> int:

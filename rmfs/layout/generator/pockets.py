@@ -1,0 +1,101 @@
+"""Stations within the storage area: pockets beside an aisle, each in the place of a storage place.
+
+They are spread evenly over the blocks, and over the kinds in turn. A pocket is entered from the
+aisle beside it and left to it, and leads nowhere else, so that nobody drives through.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.layout.generator.compass import Direction, Tile
+from rmfs.layout.generator.extent import BLOCK_DEPTH, blocks, extent, lanes
+from rmfs.layout.generator.tiles import Kind
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.layout.parameters import LayoutParameters
+
+
+GOLDEN = 0.618033988749895
+"""Steps of this size fill a circle evenly."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pocket:
+    """One station within the storage area.
+
+    Attributes
+    ----------
+    kind
+        Of station.
+    tile, aisle
+        Where it stands, and the tile of the aisle beside it.
+    """
+
+    kind: str
+    tile: Tile
+    aisle: Tile
+
+
+def pockets(parameters: LayoutParameters, kinds: NDArray[np.int8]) -> list[Pocket]:
+    """Return the stations within the storage area of a tier.
+
+    Parameters
+    ----------
+    kinds
+        Kind of each tile, shape (rows, columns).
+    """
+    wanted = [
+        name for name, group in parameters.other_stations.items() for _ in range(group.within)
+    ]
+    total = blocks(parameters)
+    if not wanted or len(wanted) > total:
+        return []
+    chosen = _spread(len(wanted), total)
+    return [
+        _pocket(parameters, kinds, kind, block)
+        for kind, block in zip(_in_turn(wanted), chosen, strict=True)
+    ]
+
+
+def _spread(count: int, total: int) -> list[int]:
+    """Choose blocks evenly: by an irrational step, so that no line of blocks is preferred."""
+    chosen: list[int] = []
+    place = 0.5
+    while len(chosen) < count:
+        block = int(place % 1.0 * total)
+        while block in chosen:
+            block = (block + 1) % total
+        chosen.append(block)
+        place += GOLDEN
+    return sorted(chosen)
+
+
+def _in_turn(wanted: list[str]) -> list[str]:
+    """Order kinds so that those of each are spread among the others."""
+    seen: dict[str, int] = {}
+    ranked = []
+    for kind in wanted:
+        seen[kind] = seen.get(kind, 0) + 1
+        ranked.append(((seen[kind] - 0.5) / wanted.count(kind), kind))
+    return [kind for _, kind in sorted(ranked)]
+
+
+def _pocket(parameters: LayoutParameters, kinds: NDArray[np.int8], kind: str, block: int) -> Pocket:
+    """Take the middle of the northern row of a block; the aisle, or ring road, is north of it."""
+    size, across = extent(parameters), parameters.vertical_aisles + 1
+    row, column = divmod(block, across)
+    tile = (
+        size.top + 1 + row * (BLOCK_DEPTH + lanes(parameters)),
+        size.left
+        + 1
+        + column * (parameters.block_length + lanes(parameters))
+        + parameters.block_length // 2,
+    )
+    assert kinds[tile] == Kind.STORAGE
+    return Pocket(kind, tile, Direction.NORTH.step(tile))
