@@ -46,7 +46,8 @@ def solve(
         seed=seed,
         start=first,
     )
-    bound = max(least, float(math.ceil(found.bound - 1e-6)))
+    # a limit that comes very soon leaves no bound at all
+    bound = max(least, float(math.ceil(max(found.bound, 0.0) - 1e-6)))
     status = Status.OPTIMAL if bound >= found.objective else found.status
     return replace(
         found,

@@ -94,3 +94,10 @@ def test_returning_to_the_same_pod_at_once_is_one_visit() -> None:
     plan = VisitSequence(np.array([0, 0]), np.array([0, 1]))
     assert violations(data, plan) == []
     assert objective(data, plan) == 1.0
+
+
+def test_a_limit_that_comes_at_once_leaves_the_bound_of_the_covering() -> None:
+    """CP-SAT may end before it has any bound of its own."""
+    data = station(orders=12, pods=12, skus=12, capacity=3, seed=2)
+    found = cp_sat.solve(data, Limits(deterministic_s=1e-9))
+    assert 1.0 <= found.bound <= found.objective
