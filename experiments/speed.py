@@ -48,7 +48,7 @@ CASES = [
         ("study-32", "pp-minimal", "random"),
         ("study-128", "pp-minimal", "random"),
         ("study-tiers", "pp-minimal", "random"),
-        ("default", "default", "default"),
+        ("default-32", "default", "default"),
     ]
     for duration_s in (7_200.0, 28_800.0)
 ]
