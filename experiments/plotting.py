@@ -70,9 +70,9 @@ def draw(
     frame: pd.DataFrame,
     folder: Path,
     columns: list[str],
-    path: Path,
+    path: Path | None,
     wish: Wish | None = None,
-) -> None:
+) -> Figure:
     """Draw a picture.
 
     Parameters
@@ -86,50 +86,54 @@ def draw(
     columns
         What is shown.
     path
-        The .png, .pdf or .svg file to write.
+        The .png, .pdf or .svg file to write; None for none.
 
     Raises
     ------
     InputError
-        If the picture cannot be drawn of these results.
+        If there is no such picture, or it cannot be drawn of these results.
     """
+    if kind not in KINDS:
+        raise InputError(f"{kind}: no such picture; valid: {', '.join(KINDS)}")
     if len(columns) > MOST_COLUMNS:
         raise InputError(f"a picture shows at most {MOST_COLUMNS} columns")
     wish = wish or Wish()
     match kind:
         case "intervals":
-            _intervals(frame, columns, path, wish)
+            return _intervals(frame, columns, path, wish)
         case "effects":
-            _effects(plan, frame, columns, path, wish)
+            return _effects(plan, frame, columns, path, wish)
         case "interaction":
-            _interaction(plan, frame, columns, path, wish)
+            return _interaction(plan, frame, columns, path, wish)
         case "pareto":
-            _pareto(frame, columns, path, wish)
-        case "progression":
-            _progression(folder, columns, path, wish)
+            return _pareto(frame, columns, path, wish)
+    return _progression(folder, columns, path, wish)
 
 
-def _intervals(frame: pd.DataFrame, columns: list[str], path: Path, wish: Wish) -> None:
+def _intervals(frame: pd.DataFrame, columns: list[str], path: Path | None, wish: Wish) -> Figure:
     rows = frame["arm"].nunique()
     with saving(path, 3.5 + 3.5 * len(columns), 1.2 + 0.28 * rows, note=wish.note) as figure:
         axes = figure.subplots(1, len(columns), sharey=True, squeeze=False)[0]
         for column, ax in zip(columns, axes, strict=True):
             intervals(frame, column, ax, confidence=wish.confidence)
+    return figure
 
 
-def _effects(plan: Plan, frame: pd.DataFrame, columns: list[str], path: Path, wish: Wish) -> None:
+def _effects(
+    plan: Plan, frame: pd.DataFrame, columns: list[str], path: Path | None, wish: Wish
+) -> Figure:
     factors = varying_factors(frame, plan.factors)
     if not factors:
         raise InputError("effects: no factor has more than one level")
     names = [plan.short_names[factor] for factor in factors]
     if wish.interactions and tell_apart(frame, factors):
-        _matrix(frame, columns, factors, names, path, wish)
-        return
+        return _matrix(frame, columns, factors, names, path, wish)
     width, height = 1.0 + 1.6 * len(factors), 0.6 + 2.8 * len(columns)
     with saving(path, width, height, note=wish.note) as figure:
         grid = figure.subplots(len(columns), len(factors), sharey="row", squeeze=False)
         for column, axes in zip(columns, grid, strict=True):
             effects(frame, column, factors, list(axes), names=names, confidence=wish.confidence)
+    return figure
 
 
 def _matrix(
@@ -137,9 +141,9 @@ def _matrix(
     columns: list[str],
     factors: list[str],
     names: list[str],
-    path: Path,
+    path: Path | None,
     wish: Wish,
-) -> None:
+) -> Figure:
     """Draw main effects on the diagonal; elsewhere the row's factor gives the lines."""
     count = len(factors)
     width, height = 2.2 + 1.9 * count, (0.6 + 1.8 * count) * len(columns)
@@ -167,11 +171,12 @@ def _matrix(
                     fontsize=7,
                     title_fontsize=7,
                 )
+    return figure
 
 
 def _interaction(
-    plan: Plan, frame: pd.DataFrame, columns: list[str], path: Path, wish: Wish
-) -> None:
+    plan: Plan, frame: pd.DataFrame, columns: list[str], path: Path | None, wish: Wish
+) -> Figure:
     varying = varying_factors(frame, plan.factors)
     keys = {name: key for key, name in plan.short_names.items()} | {key: key for key in varying}
     unknown = [name for name in wish.factors if keys.get(name) not in varying]
@@ -200,6 +205,7 @@ def _interaction(
                 interaction(frame, column, *pair, ax, names=names, confidence=wish.confidence)
             for ax in axes[len(pairs) :]:
                 ax.set_axis_off()
+    return figure
 
 
 def _parts(figure: Figure, columns: list[str]) -> Iterator[tuple[str, SubFigure]]:
@@ -208,16 +214,17 @@ def _parts(figure: Figure, columns: list[str]) -> Iterator[tuple[str, SubFigure]
     yield from zip(columns, parts, strict=True)
 
 
-def _pareto(frame: pd.DataFrame, columns: list[str], path: Path, wish: Wish) -> None:
+def _pareto(frame: pd.DataFrame, columns: list[str], path: Path | None, wish: Wish) -> Figure:
     if len(columns) != 2:
         raise InputError("pareto: needs two columns")
     x, y = columns
     goals = {"x_goal": goal_of(x, wish.goals.get(x)), "y_goal": goal_of(y, wish.goals.get(y))}
     with saving(path, note=wish.note) as figure:
         pareto(frame, x, y, figure.subplots(), **goals, confidence=wish.confidence)
+    return figure
 
 
-def _progression(folder: Path, columns: list[str], path: Path, wish: Wish) -> None:
+def _progression(folder: Path, columns: list[str], path: Path | None, wish: Wish) -> Figure:
     series = load(folder, table="series")
     end_s = float(series["time_s"].max())
     with saving(path, 7.0, 0.6 + 2.4 * len(columns), note=wish.note) as figure:
@@ -228,6 +235,7 @@ def _progression(folder: Path, columns: list[str], path: Path, wish: Wish) -> No
             ax.label_outer()
             if number == 0 and series["arm"].nunique() <= 2 * len(COLOURS):
                 ax.legend(fontsize=8)
+    return figure
 
 
 def bin_of(end_s: float) -> float:

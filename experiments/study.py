@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rmfs.experiments.design.planning import Plan
+    from rmfs.experiments.figures.pareto import Goal
     from rmfs.experiments.running.driver import Watcher
     from rmfs.experiments.tables import Table
     from rmfs.measure.base import Measure
@@ -110,26 +111,49 @@ class Study:
         return made.noted(self.lacking)
 
     def plot(
-        self, column: str = COLUMN, *, by: str | None = None, confidence: float = 0.95
+        self,
+        *columns: str,
+        kind: str = "intervals",
+        by: str | None = None,
+        factors: Sequence[str] = (),
+        goals: Mapping[str, Goal] | None = None,
+        confidence: float = 0.95,
     ) -> Figure:
-        """Draw a dot for every seed, and means with their intervals; parameters as in `table`.
+        """Draw a picture.
+
+        Parameters
+        ----------
+        columns
+            Of the footprint. Default: those of the kind of picture.
+        kind
+            `intervals` (a dot for every seed, means with their intervals), `effects` (of factors
+            and pairs of them), `interaction` (of pairs of factors), `pareto` (two columns),
+            `progression` (over time; needs `keep=["series"]`).
+        by
+            Of `intervals`: as in `table`.
+        factors
+            Of `interaction`: two or more factors. Default all.
+        goals
+            Of `pareto`: whether "more" or "less" of a column is better. Default as the data
+            dictionary says.
 
         Raises
         ------
         InputError
-            If there is no such column or factor.
+            If there is no such picture, column or factor, or it cannot be drawn of these results.
         """
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from rmfs.experiments.plotting import KINDS, Wish, draw
 
-        from rmfs.experiments.figures import intervals
-        from rmfs.measure.pictures import Picture
-
-        rows = self._rows(by, self._columns([column]))
-        levels = rows[by or "arm"].nunique()
-        figure = Picture(figsize=(7.0, 1.2 + 0.28 * levels), layout="constrained")
-        FigureCanvasAgg(figure)
-        intervals(rows, column, figure.subplots(), confidence=confidence, by=by or "arm")
-        return figure
+        if kind not in KINDS:
+            raise InputError(f"kind {kind}: no such picture; valid: {', '.join(KINDS)}")
+        chosen = list(columns or KINDS[kind])
+        rows = self.frame if kind == "progression" else self._rows(by, self._columns(chosen))
+        if by is not None:
+            if kind != "intervals":
+                raise InputError(f"by {by}: for intervals; {kind} shows factors by itself")
+            rows = rows.rename(columns={by: "arm"})
+        wish = Wish(confidence, factors=tuple(factors), goals=goals or {})
+        return draw(kind, self.plan, rows, self.folder, chosen, None, wish)
 
     def __repr__(self) -> str:
         return (

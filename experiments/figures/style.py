@@ -10,6 +10,7 @@ import pandas as pd
 from rmfs.errors import InputError
 from rmfs.experiments.wording import axis_label as axis_label
 from rmfs.files import replacing
+from rmfs.measure.pictures import Picture
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,14 +35,14 @@ def levels(frame: pd.DataFrame, factor: str) -> dict[str, pd.DataFrame]:
 
 @contextmanager
 def saving(
-    path: Path, width: float = 7.0, height: float = 4.3, *, note: str = "", **layout: Any
+    path: Path | None, width: float = 7.0, height: float = 4.3, *, note: str = "", **layout: Any
 ) -> Iterator[Figure]:
-    """Yield a figure and save it.
+    """Yield a figure, and save it if it is to be a file.
 
     Parameters
     ----------
     path
-        A .png, .pdf or .svg file; the same content gives the same bytes.
+        A .png, .pdf or .svg file, the same content gives the same bytes; None for no file.
     width, height
         Inches.
     note
@@ -53,22 +54,20 @@ def saving(
         If the file has another ending.
     """
     import matplotlib as mpl
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    mpl.use("Agg")
-    from matplotlib import pyplot as plt
-
-    form = path.suffix.lower().removeprefix(".")
-    if form not in FORMATS:
+    form = "" if path is None else path.suffix.lower().removeprefix(".")
+    if path is not None and form not in FORMATS:
         raise InputError(f"{path}: unknown kind of picture; valid: .{', .'.join(FORMATS)}")
     with mpl.rc_context({"svg.hashsalt": "rmfs", "axes.grid": True, "grid.alpha": 0.3}):
-        figure = plt.figure(figsize=(width, height), layout="constrained", **layout)
-        try:
-            yield figure
-            if note:
-                figure.supxlabel(note, fontsize=8, color=COLOURS[1])
+        # not by pyplot: it would change the back end of who calls from a notebook
+        figure = Picture(figsize=(width, height), layout="constrained", **layout)
+        FigureCanvasAgg(figure)
+        yield figure
+        if note:
+            figure.supxlabel(note, fontsize=8, color=COLOURS[1])
+        if path is not None:
             # no date in the file: it would be another one each time
             metadata = {"png": {}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}[form]
             with replacing(path) as temporary:
                 figure.savefig(temporary, format=form, dpi=150, metadata=metadata)
-        finally:
-            plt.close(figure)

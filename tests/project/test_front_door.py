@@ -65,6 +65,9 @@ def test_a_study_of_a_few_runs(here: Path) -> None:
         rates["Quick"] - rates["pod-match"]
     )
     assert study.plot("units_per_h")._repr_png_().startswith(b"\x89PNG")
+    for kind in ("intervals", "effects", "interaction", "pareto"):
+        assert study.plot(kind=kind)._repr_png_().startswith(b"\x89PNG")
+    assert len(study.plot("units_per_h", "distance_m", by="layout.robots").axes) == 2
     assert "4 arms, 8 runs" in repr(study) and "<table" in study._repr_html_()
     again = rmfs.experiment(factors, seeds=range(2), base=base, processes=2)
     assert again.folder == study.folder and again.frame.equals(study.frame)
@@ -72,6 +75,8 @@ def test_a_study_of_a_few_runs(here: Path) -> None:
         (lambda: study.table("units"), "units: no such column"),
         (lambda: study.table(by="robots"), "no such factor; factors: layout.robots"),
         (lambda: study.compare(baseline="x"), "baseline x: valid: "),
+        (lambda: study.plot(kind="bars"), "kind bars: no such picture; valid: intervals, effects"),
+        (lambda: study.plot(kind="pareto", by="layout.robots"), "by layout.robots: for intervals"),
     ):
         with pytest.raises(InputError, match=message):
             wrong()
