@@ -6,6 +6,8 @@ import difflib
 import tomllib
 import types
 import typing
+from collections.abc import Iterator
+from math import inf
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -18,10 +20,52 @@ LARGEST_MIB = 4
 """Most that a TOML file may have: they are written by hand."""
 
 
+LARGEST = 1e9
+"""No parameter is larger: 1e9 s are 31 years; times are kept in microseconds of 64 bits."""
+SMALLEST = 1e-9
+"""No parameter but 0 is smaller in size: one over it would be beyond the largest."""
+LARGEST_SEED = 2**63 - 1
+"""Seeds may be as large as an integer of 64 bits."""
+
+
 class Model(pydantic.BaseModel):
-    """Base of every configuration block: unknown keys are errors, values cannot change."""
+    """Base of every configuration block: unknown keys are errors, values cannot change.
+
+    Numbers are 0, or between `SMALLEST` and `LARGEST` in size; a field may be narrower. True and
+    false are written as such.
+    """
 
     model_config = pydantic.ConfigDict(extra="forbid", frozen=True, validate_default=True)
+
+    @pydantic.model_validator(mode="before")
+    @classmethod
+    def _truth_is_written_as_such(cls, data: Any) -> Any:
+        if isinstance(data, dict):
+            for key, field in cls.model_fields.items():
+                if field.annotation is bool and not isinstance(data.get(key, True), bool):
+                    raise ValueError(f"{key} must be true or false (given: {data[key]!r})")
+        return data
+
+    @pydantic.field_validator("*")
+    @classmethod
+    def _numbers_are_of_a_sensible_size(cls, value: Any, info: pydantic.ValidationInfo) -> Any:
+        most = LARGEST_SEED if info.field_name == "seed" else LARGEST
+        for number in _numbers(value):
+            size = abs(number)
+            if most < size < inf:
+                raise ValueError(f"must be at most {most:g} in size")
+            if 0 < size < SMALLEST:
+                raise ValueError(f"must be 0, or at least {SMALLEST:g} in size")
+        return value
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    """Yield a number, or those of a tuple or list."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        yield value
+    elif isinstance(value, tuple | list):
+        for item in value:
+            yield from _numbers(item)
 
 
 M = TypeVar("M", bound=pydantic.BaseModel)
@@ -41,7 +85,7 @@ def read_toml(path: Path) -> Table:
         return tomllib.loads(content.decode("utf-8"))
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: cannot be read ({error})") from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # also of integers with thousands of digits
         raise InputError(f"{path}: not valid TOML: {error!s:.200}") from None
 
 
@@ -60,6 +104,8 @@ def parse_override(text: str) -> tuple[list[str], Any]:
         parsed = tomllib.loads(f"value = {value.strip()}")["value"]
     except tomllib.TOMLDecodeError:
         parsed = value.strip()
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"--set {key}: {error!s:.200}") from None
     return key.strip().split("."), parsed
 
 

@@ -54,6 +54,8 @@ def replacing(path: Path) -> Iterator[Path]:
     InputError
         If the folder cannot be written.
     """
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder, not a file to write")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")

@@ -29,12 +29,15 @@ def locate(kind: Kind, name_or_path: str) -> Path:
         If neither exists; the message lists the shipped names.
     """
     path = Path(name_or_path)
-    if path.is_file():
-        return path
-    for suffix in (".toml", ".json"):
-        shipped = ROOT / kind / f"{name_or_path}{suffix}"
-        if shipped.is_file():
-            return shipped
+    try:
+        if path.is_file():
+            return path
+        for suffix in (".toml", ".json"):
+            shipped = ROOT / kind / f"{name_or_path}{suffix}"
+            if shipped.is_file():
+                return shipped
+    except (OSError, ValueError) as error:  # too long for a file, or not to be had
+        raise InputError(f"{name_or_path:.80}: {error.args[-1]}") from None
     known = names(kind)
     near = difflib.get_close_matches(name_or_path, known, n=1)
     hint = f"did you mean {near[0]}? " if near else ""

@@ -187,7 +187,9 @@ def _exists(name: str) -> bool:
 def _import(name: str, reference: str) -> ModuleType:
     try:
         return importlib.import_module(name)
-    except Exception as error:  # whatever a user's file does when it is read
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # whatever a user's file does when it is read, `exit()` too
         line = str(error).splitlines()[0] if str(error) else ""
         raise InputError(
             f"{reference}: cannot be loaded ({type(error).__name__}: {line})"

@@ -86,6 +86,8 @@ def load_with_notes(
 
 
 def _generated(table: Table, overrides: Sequence[Override], path: Path) -> Layout:
+    if not table:
+        raise InputError(f'{path}: says nothing; it begins with format = "rmfs-layout/1"')
     own, factors = split_factors(overrides)
     parameters = validate(LayoutParameters, apply_overrides(table, own), str(path))
     try:

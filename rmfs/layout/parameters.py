@@ -7,16 +7,14 @@ where a parameter is explained: `rmfs layout new` writes it into the file as a c
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, cast
+from typing import Any, Literal, cast
 
 import pydantic
 from pydantic import Field
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from rmfs.layout.generator.conditions import RULES
-from rmfs.layout.values import Amount, Count, Positive, Strict
-
-Radius = Annotated[float, Field(gt=0, lt=0.5)]
+from rmfs.layout.values import Amount, Metres, Radius, Rate, Seconds, Some, Space, Strict
 
 
 class PerSide(Strict):
@@ -55,34 +53,34 @@ class LayoutParameters(Strict):
     name: str = Field("unnamed", min_length=1, description="name shown in results")
     seed: Amount = Field(0, description="random seed for the places of pods and robots")
 
-    tiers: Count = Field(1, description="floors; more than one needs elevators")
-    tier_height_m: Positive = Field(4.0, description="m from floor to floor, for drawing only")
+    tiers: Some = Field(1, description="floors; more than one needs elevators")
+    tier_height_m: Metres = Field(4.0, description="m from floor to floor, for drawing only")
 
-    robots: Count = Field(32, description="robots per tier")
+    robots: Some = Field(16, description="robots per tier")
     robot_radius_m: Radius = Field(0.35, description="m")
-    acceleration_m_s2: Positive = Field(1.0, description="m/s2")
-    deceleration_m_s2: Positive = Field(1.0, description="m/s2")
-    top_speed_m_s: Positive = Field(1.5, description="m/s")
-    full_turn_s: Positive = Field(2.5, description="s for a turn of 360 degrees on the spot")
-    pod_transfer_s: Positive = Field(2.2, description="s to lift or to set down a pod")
+    acceleration_m_s2: Rate = Field(1.0, description="m/s2")
+    deceleration_m_s2: Rate = Field(1.0, description="m/s2")
+    top_speed_m_s: Rate = Field(1.5, description="m/s")
+    full_turn_s: Seconds = Field(2.5, description="s for a turn of 360 degrees on the spot")
+    pod_transfer_s: Seconds = Field(2.2, description="s to lift or to set down a pod")
 
     pod_share: float = Field(
         0.85, gt=0, lt=1, description="pods per storage place (rounded down per tier)"
     )
     pod_radius_m: Radius = Field(0.45, description="m")
-    pod_capacity: Positive = Field(500.0, description="space units per pod")
+    pod_capacity: Space = Field(500.0, description="space units per pod")
 
     station_radius_m: Radius = Field(0.45, description="m")
-    unit_transfer_s: Positive = Field(10.0, description="s one picked unit keeps the station busy")
-    unit_pick_s: Positive = Field(3.0, description="s one picked unit keeps the robot")
-    order_slots: Count = Field(12, description="orders open at once at a pick station")
-    bundle_transfer_s: Positive = Field(
+    unit_transfer_s: Seconds = Field(10.0, description="s one picked unit keeps the station busy")
+    unit_pick_s: Seconds = Field(3.0, description="s one picked unit keeps the robot")
+    order_slots: Some = Field(12, description="orders open at once at a pick station")
+    bundle_transfer_s: Seconds = Field(
         10.0, description="s one bundle keeps robot and replenishment station"
     )
-    replenishment_station_capacity: Positive = Field(
+    replenishment_station_capacity: Space = Field(
         1000.0, description="space units of bundles assigned at once to a replenishment station"
     )
-    elevator_s_per_tier: Positive = Field(10.0, description="s an elevator needs for one tier")
+    elevator_s_per_tier: Seconds = Field(10.0, description="s an elevator needs for one tier")
 
     hall_pattern: Literal["tim", "highway"] = Field(
         "tim", description='hall in front of the stations: "tim" (lanes and loops) or "highway"'
@@ -90,18 +88,24 @@ class LayoutParameters(Strict):
     two_directional_aisles: bool = Field(False, description="all aisles both ways")
     single_lane: bool = Field(True, description="aisles one tile wide, otherwise two")
     horizontal_aisles: int = Field(
-        8, ge=2, description='even, unless two-directional with "tim" halls or two lanes'
+        8, ge=2, le=1000, description='even, unless two-directional with "tim" halls or two lanes'
     )
     vertical_aisles: int = Field(
-        6, ge=2, description='even, unless two-directional with "tim" halls or two lanes'
+        6, ge=2, le=1000, description='even, unless two-directional with "tim" halls or two lanes'
     )
     block_length: int = Field(
-        4, ge=2, multiple_of=2, description="tiles (1 m) a storage block is long; it is 2 deep"
+        4,
+        ge=2,
+        le=1000,
+        multiple_of=2,
+        description="tiles (1 m) a storage block is long; it is 2 deep",
     )
-    hall_width: int = Field(6, ge=2, description='tiles; even for "highway"')
-    buffer_width: int = Field(4, ge=2, description="tiles a segment of a station's queue is long")
+    hall_width: int = Field(6, ge=2, le=1000, description='tiles; even for "highway"')
+    buffer_width: int = Field(
+        4, ge=2, le=1000, description="tiles a segment of a station's queue is long"
+    )
     entry_exit_distance: int = Field(
-        3, ge=1, description="tiles from a queue's entrance to its exit; odd"
+        3, ge=1, le=1000, description="tiles from a queue's entrance to its exit; odd"
     )
     counter_clockwise_ring: bool = Field(
         True, description="sense of the ring road, seen with x to the right and y upward"

@@ -13,6 +13,15 @@ Positive = Annotated[float, Field(gt=0)]
 Count = Annotated[int, Field(ge=1)]
 Amount = Annotated[int, Field(ge=0)]
 Index = Amount
+Radius = Annotated[float, Field(ge=0.01, lt=0.5)]
+Metres = Annotated[float, Field(ge=0.01, le=1000)]
+Rate = Annotated[float, Field(ge=0.001, le=1000)]
+"""Speeds and accelerations: what drives; none is as slow as a millimetre, or as fast as sound."""
+Seconds = Annotated[float, Field(ge=1e-6, le=86400)]
+"""Of one motion or one unit: a microsecond, in which times are kept, to a day."""
+Space = Annotated[float, Field(ge=1e-3, le=1e6)]
+"""Space units: a pod of the largest holds as many units as the smallest take."""
+Some = Annotated[int, Field(ge=1, le=100_000)]
 
 
 class Strict(Model):

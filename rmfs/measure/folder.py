@@ -223,6 +223,10 @@ class RunFolder(Results):
         return frame
 
 
+NEEDED = ("layout", "scenario", "controllers", "seed", "warmup_s", "duration_s")
+"""Without these keys run.json tells of no run."""
+
+
 def load_run(path: str | Path) -> RunFolder:
     """Open a run folder.
 
@@ -244,6 +248,9 @@ def load_run(path: str | Path) -> RunFolder:
     told = parameters.get("format") if isinstance(parameters, dict) else None
     if told != FORMAT:
         raise InputError(f"{file}: format {told!r}, expected {FORMAT!r}")
+    lacking = [key for key in NEEDED if key not in parameters]
+    if lacking:
+        raise InputError(f"{file}: corrupted ({', '.join(lacking)} is missing)")
     run = RunFolder(path, parameters)
     learn(run.own_columns)
     return run

@@ -58,7 +58,7 @@ def _waits(problem: Problem, world: World, *, after_rps: bool) -> str:
     Parameters
     ----------
     after_rps
-        Whether bundles can be decided about only when they have a pod.
+        Whether bundles can be decided about only when RPS has released them.
     """
     if problem is Problem.POA:
         slots = sum(station.free_slots for station in world.pick_stations if station.active)
@@ -66,13 +66,15 @@ def _waits(problem: Problem, world: World, *, after_rps: bool) -> str:
             len(world.orders) and slots
         )
     if problem is Problem.RPS:
-        count = len(world.bundles.without_pod)
+        room = float((world.inventory.capacity - world.inventory.load).max(initial=0.0))
+        count = sum(bundle.space <= room for bundle in world.bundles.without_pod.values())
         return f"{count} bundles wait for a pod" * bool(count)
     if problem is Problem.ROA:
         stations = [station for station in world.replenishment_stations if station.active]
         room = max((station.free_space for station in stations), default=0.0)
-        bundles = world.bundles.without_station.values()
-        count = sum(b.space <= room and (b.pod >= 0 or not after_rps) for b in bundles)
+        released = [bundle for held in world.bundles.released.values() for bundle in held]
+        bundles = released if after_rps else world.bundles.without_station.values()
+        count = sum(bundle.space <= room for bundle in bundles)
         return f"{count} bundles wait for a station with room for them" * bool(count)
     idle = len(world.asking) + len(world.resting)
     work = any(station.has_open_work for station in world.work_stations)

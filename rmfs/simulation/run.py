@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from rmfs import layout as layouts
 from rmfs import measure
+from rmfs.config import LARGEST_SEED
 from rmfs.control.pp import planner_settings
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
@@ -165,8 +166,8 @@ streams, remark, allow_not_well_formed, traffic_maker
         allow_not_well_formed: bool = False,
         traffic_maker: Callable[..., Traffic] = Traffic,
     ) -> None:
-        if seed < 0:
-            raise InputError(f"seed {seed}: must be 0 or greater")
+        if not 0 <= seed <= LARGEST_SEED:
+            raise InputError(f"seed {seed}: must be between 0 and {LARGEST_SEED}")
         changes = [*overrides, *as_overrides(set or {})]
         inputs = load_inputs(layout, scenario, controllers, changes)
         plan, work, rules = inputs.layout, inputs.scenario, inputs.controllers
@@ -297,4 +298,6 @@ def _with_answers(pacing: PacingSettings) -> Paced:
     if not isinstance(pacing, ReplayPacing):
         return pacing
     answers = measure.load_run(pacing.run).table("answers").to_dict("records")
+    if not answers:
+        raise InputError(f"pacing replay: {pacing.run}: that run asked no optimiser")
     return Replay(pacing, answers)  # type: ignore[arg-type]

@@ -122,7 +122,7 @@ def test_counts_of_highway_layouts(name):
 
 
 def test_default_layout():
-    layout = load("default")
+    layout = load("default-32")
     assert (layout.waypoints, len(layout.edge_target), layout.pods) == (1472, 3934, 428)
     assert (layout.robots, int(layout.is_storage.sum())) == (32, 504)
     assert [len(station.queue) for station in layout.stations] == [13] * 8

@@ -46,7 +46,7 @@ def test_colours_and_counts():
     counts = faces(drawn(load("default")))
     assert counts[to_rgba(colours.PICK_STATION)] == 4
     assert counts[to_rgba(colours.REPLENISHMENT_STATION)] == 4
-    assert counts[to_rgba(colours.ROBOT)] == 32
+    assert counts[to_rgba(colours.ROBOT)] == 16
     assert counts[to_rgba(colours.STORAGE)] == 428
     assert counts[to_rgba(colours.FREE_STORAGE)] == 504 - 428
 

@@ -49,7 +49,7 @@ class PlannedExchange(Rules):
 class ScheduledParameters(Parameters):
     """Parameters of MM scheduled."""
 
-    exchanges: tuple[PlannedExchange, ...] = ()
+    exchanges: Annotated[tuple[PlannedExchange, ...], pydantic.Field(min_length=1)]
     """What is installed when: `at_s` (s) or `at_share` (of warm-up and duration), and a table for
     each new rule, for example `{ at_share = 0.5, psa = { name = "nearest" } }`; in order of
     time."""

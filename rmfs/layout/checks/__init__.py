@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from rmfs.errors import LayoutError
 from rmfs.layout.checks.connection import connection
 from rmfs.layout.checks.occupancy import occupancy
+from rmfs.layout.checks.population import population
 from rmfs.layout.checks.queues import queue_lists
 from rmfs.layout.checks.separation import separation
 from rmfs.layout.checks.violation import IMPOSSIBLE as IMPOSSIBLE
@@ -17,15 +18,16 @@ from rmfs.layout.checks.ways import ways
 if TYPE_CHECKING:
     from rmfs.layout.model import Layout
 
-CHECKS = (occupancy, connection, separation, queue_lists, ways)
+CHECKS = (population, occupancy, connection, separation, queue_lists, ways)
 
 
 def check(layout: Layout) -> list[Violation]:
     """Return everything that is wrong with a layout, the impossible first.
 
-    Verified are: every endpoint (storage place, station, elevator) can be reached and left, with
-    and without load; the aisles are strongly connected; queue lists are chains; every robot has a
-    place to rest; bodies stay apart; the conditions W1-W3 of deadlock freedom.
+    Verified are: there are robots, pods and stations of both kinds; every endpoint (storage place,
+    station, elevator) can be reached and left, with and without load; the aisles are strongly
+    connected; queue lists are chains; every robot has a place to rest; bodies stay apart; the
+    conditions W1-W3 of deadlock freedom.
     """
     found = [violation for checks in CHECKS for violation in checks(layout)]
     return sorted(found, key=lambda violation: violation.severity != IMPOSSIBLE)

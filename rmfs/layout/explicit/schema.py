@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from rmfs.layout.values import Count, Index, Positive, Strict
+from rmfs.layout.values import Count, Index, Positive, Rate, Seconds, Some, Space, Strict
 
 FORMAT = "rmfs-layout-explicit/1"
 
@@ -46,9 +46,9 @@ class ExplicitPickStation(Strict):
         min_length=1, description="waypoints from the station to the entrance of its queue"
     )
     radius_m: Positive = Field(description="m")
-    order_slots: Count = Field(description="orders open at once")
-    unit_transfer_s: Positive = Field(description="s one picked unit keeps the station busy")
-    unit_pick_s: Positive = Field(description="s one picked unit keeps the robot")
+    order_slots: Some = Field(description="orders open at once")
+    unit_transfer_s: Seconds = Field(description="s one picked unit keeps the station busy")
+    unit_pick_s: Seconds = Field(description="s one picked unit keeps the robot")
     activation: Count = Field(description="rank in which stations are switched on")
 
 
@@ -59,8 +59,8 @@ class ExplicitReplenishmentStation(Strict):
         min_length=1, description="waypoints from the station to the entrance of its queue"
     )
     radius_m: Positive = Field(description="m")
-    capacity: Positive = Field(description="space units of bundles assigned at once")
-    bundle_transfer_s: Positive = Field(description="s one bundle keeps robot and station")
+    capacity: Space = Field(description="space units of bundles assigned at once")
+    bundle_transfer_s: Seconds = Field(description="s one bundle keeps robot and station")
     activation: Count = Field(description="rank in which stations are switched on")
 
 
@@ -86,7 +86,7 @@ class ExplicitRide(Strict):
 
     origin: Index = Field(description="boarding waypoint")
     destination: Index = Field(description="boarding waypoint on another tier")
-    travel_s: Positive = Field(description="s of the ride")
+    travel_s: Seconds = Field(description="s of the ride")
 
 
 class ExplicitElevator(Strict):
@@ -102,18 +102,18 @@ class ExplicitRobotKind(Strict):
     """Size and motion of robots."""
 
     radius_m: Positive = Field(description="m")
-    acceleration_m_s2: Positive = Field(description="m/s2")
-    deceleration_m_s2: Positive = Field(description="m/s2")
-    top_speed_m_s: Positive = Field(description="m/s")
-    full_turn_s: Positive = Field(description="s for a turn of 360 degrees on the spot")
-    pod_transfer_s: Positive = Field(description="s to lift or to set down a pod")
+    acceleration_m_s2: Rate = Field(description="m/s2")
+    deceleration_m_s2: Rate = Field(description="m/s2")
+    top_speed_m_s: Rate = Field(description="m/s")
+    full_turn_s: Seconds = Field(description="s for a turn of 360 degrees on the spot")
+    pod_transfer_s: Seconds = Field(description="s to lift or to set down a pod")
 
 
 class ExplicitPod(Strict):
     """A pod and where it stands at the start."""
 
     waypoint: Index = Field(description="a storage place")
-    capacity: Positive = Field(description="space units")
+    capacity: Space = Field(description="space units")
 
 
 class ExplicitRobot(Strict):

@@ -81,7 +81,7 @@ def read_xlayo_table(path: Path) -> tuple[Table, list[str]]:
         If the file cannot be read or a value has the wrong form; every such value is named.
     """
     root = read_root(path, "LayoutConfiguration")
-    table: Table = {"format": "rmfs-layout/1", "name": _DEFAULT_NAME}
+    table: Table = {"format": "rmfs-layout/1", "name": _DEFAULT_NAME, "robots": 32}
     # absent means none here, not the defaults of our own format
     table |= _rawsimo_stations()
     notes: list[str] = []

@@ -11,7 +11,7 @@ from rmfs.scenario.quantities import Block, Natural, NotNegative, Positive
 
 
 class _Repeated(Block):
-    every_s: Positive = Field(description="mean s from one to the next, exponential")
+    every_s: float = Field(ge=1, description="mean s from one to the next, exponential; 1 at least")
     lasting_s: Positive = Field(
         description="mean s it lasts, drawn evenly from half of it to one and a half"
     )

@@ -85,6 +85,7 @@ MODES: dict[str, type[PacingSettings]] = {
 
 _ARGUMENTS = {"fixed": "seconds", "replay": "run"}
 """What stands behind the `=` of a mode."""
+_EXAMPLES = {"fixed": "SECONDS", "replay": "RUN_DIR"}
 
 
 def pacing_settings(mode: str, overrides: Sequence[tuple[list[str], Any]] = ()) -> PacingSettings:
@@ -113,4 +114,7 @@ def pacing_settings(mode: str, overrides: Sequence[tuple[list[str], Any]] = ()) 
             raise InputError(f"pacing {mode}: {name} takes no value after =")
         table[_ARGUMENTS[name]] = argument
     table = config.apply_overrides(table, list(overrides))
+    wanted = _ARGUMENTS.get(name, "")
+    if wanted and wanted not in table:
+        raise InputError(f"pacing {mode}: say which, {name}={_EXAMPLES[name]}")
     return config.validate(MODES[name], table, f"pacing {name}")

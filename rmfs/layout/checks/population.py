@@ -1,0 +1,25 @@
+"""Whether there is anybody in the warehouse, and anything to do."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.layout.checks.violation import IMPOSSIBLE, Violation
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.layout.model import Layout
+
+
+def population(layout: Layout) -> Iterator[Violation]:
+    """Yield what a run needs and the layout lacks."""
+    counts = {
+        "robots": layout.robots,
+        "pods": layout.pods,
+        "pick stations": len(layout.pick_stations),
+        "replenishment stations": len(layout.replenishment_stations),
+    }
+    for what, count in counts.items():
+        if count == 0:
+            yield Violation(IMPOSSIBLE, what, "there are none; a run needs one at least")
