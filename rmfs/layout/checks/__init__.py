@@ -24,7 +24,7 @@ CHECKS = (population, occupancy, connection, separation, queue_lists, ways)
 def check(layout: Layout) -> list[Violation]:
     """Return everything that is wrong with a layout, the impossible first.
 
-    Verified are: there are robots, pods and stations of both kinds; every endpoint (storage place,
+    Verified are: there are robots and stations of both kinds; every endpoint (storage place,
     station, elevator) can be reached and left, with and without load; the aisles are strongly
     connected; queue lists are chains; every robot has a place to rest; bodies stay apart; the
     conditions W1-W3 of deadlock freedom.

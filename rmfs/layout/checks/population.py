@@ -16,7 +16,6 @@ def population(layout: Layout) -> Iterator[Violation]:
     """Yield what a run needs and the layout lacks."""
     counts = {
         "robots": layout.robots,
-        "pods": layout.pods,
         "pick stations": len(layout.pick_stations),
         "replenishment stations": len(layout.replenishment_stations),
     }
