@@ -45,7 +45,7 @@ def solve(
             "--with",
             metavar="SOLVER",
             help="Instead: highs, scip, gurobi, cplex or cbc, given the exact programme as MPS; or "
-            "a command with {program}, {solution} and {seconds}.",
+            "a command with {program}, {solution} and {seconds}. [default: our own methods]",
             show_default=False,
         ),
     ] = "",

@@ -246,7 +246,8 @@ def test_missing_and_unknown_files(tmp_path):
         load_with_notes("defalt")
     other = tmp_path / "layout.yaml"
     other.write_text("")
-    with pytest.raises(InputError, match=r"expected \.toml, \.json, \.xlayo, \.xinst or \.map"):
+    endings = r"\.toml, \.json, \.txt, \.map, \.xlayo or \.xinst"
+    with pytest.raises(InputError, match=f"expected {endings}"):
         load_with_notes(other)
     assert {"default", "basic"} <= set(names())
 

@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from rmfs.layout.parameters import LayoutParameters, Radius
-from rmfs.layout.values import Amount, Count, Positive, Strict
+from rmfs.layout.parameters import LayoutParameters
+from rmfs.layout.values import Amount, Count, Positive, Radius, Strict
 
 
 def _as_generated(key: str) -> Any:
