@@ -8,7 +8,9 @@ that `checking` does not, and no bound beyond a value that somebody has.
 from __future__ import annotations
 
 import csv
+import fcntl
 import math
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.files import Decision
 
 TABLE = "best.csv"
+LOCK = ".lock"
 OPTIMAL, OPEN = "optimal", "open"
 PROVEN = 1e-4
 """Relative gap that counts as none: CP-SAT has costs in whole parts, of 1/1024 s and the like."""
@@ -145,9 +148,13 @@ class Library:
         InputError
             If the question is not of the library, or the bound is beyond the best value.
         """
-        row = self.rows.get(decision.name)
-        if row is None:
+        if decision.name not in self.rows:
             raise InputError(f"{decision.name}: is not in {self.folder}")
+        with self._alone():
+            return self._entered(decision, found, by, bound)
+
+    def _entered(self, decision: Decision, found: Found | None, by: str, bound: float) -> list[str]:
+        row = self.rows[decision.name]
         better, sign = [], decision.sign
         when = stamp()
         if found is not None and found.is_there:
@@ -169,6 +176,16 @@ class Library:
             self.rows[row.question] = row
             self.save()
         return better
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Keep other processes from entering meanwhile, and learn what they have entered."""
+        with (self.folder / LOCK).open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            for row in _rows(self.folder / TABLE):
+                if row.question in self.rows:
+                    self.rows[row.question] = row
+            yield
 
     def save(self) -> None:
         """Write the table, whole or not at all."""

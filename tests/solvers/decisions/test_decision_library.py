@@ -69,6 +69,19 @@ def test_only_what_is_allowed_and_better_is_entered(library: Library) -> None:
     assert library.rows[question.name].status == "optimal"
 
 
+def test_two_who_enter_at_a_time_lose_nothing(library: Library) -> None:
+    """Each has read the table before the other wrote it."""
+    other = Library.load(library.folder)
+    one, two = sample("matching", 0), sample("matching", 1)
+    assert library.enter(one, solve(one), "first") == ["value"]
+    assert other.enter(two, solve(two), "second") == ["value"]
+    again = Library.load(library.folder)
+    assert again.rows[one.name].value_by == "first"
+    assert again.rows[two.name].value_by == "second"
+    # and what somebody has found meanwhile is not replaced by what is no better
+    assert other.enter(one, solve(one), "second") == []
+
+
 def test_gap_and_status_of_a_row() -> None:
     row = Row("q", "matching", "small", value=10.0, bound=9.0)
     assert (row.gap, row.status) == (0.1, "open")
