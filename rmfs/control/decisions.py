@@ -142,6 +142,7 @@ class Rest(NamedTuple):
 
 
 TaskDecision = BringForPicks | BringForBundles | Visit | Park | Reposition | Rest
+"""What TA may decide."""
 
 
 class WorkFor(NamedTuple):
@@ -230,3 +231,4 @@ Decision = (
     | SwitchStation
     | Exchange
 )
+"""What any problem may decide."""

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.parameters import Battery
 
 J_PER_WH = 3600.0
+"""Joules of a watt-hour."""
 
 
 class Levels(Protocol):

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
 
 ZonePriority = Literal["drop-off", "cache", "equal"]
+"""Which zones choose their places first."""
 
 
 class ZoneParameters(Parameters):
