@@ -45,6 +45,14 @@ def _links_out(app: object, name: str, source: list[str]) -> None:
     source[0] = re.sub(r"\[([^\]]*)\]\(\.\./([^)\s]*)\)", r"\1 (`\2`)", source[0])
 
 
+def _plain_names(*told: Any) -> None:
+    """Keep names of types that end with _, such as np.bool_, from being taken for links."""
+    lines: list[str] = told[-1]
+    lines[:] = [re.sub(r"\b(np\.\w+)_(?!\w)", r"\1\\_", line) for line in lines]
+
+
 def setup(app: Any) -> None:
     """Called by Sphinx."""
     app.connect("source-read", _links_out)
+    # after napoleon, which adds the types of attributes
+    app.connect("autodoc-process-docstring", _plain_names, priority=900)
