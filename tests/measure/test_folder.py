@@ -37,7 +37,8 @@ def test_tables_are_read_back(written):
     run_folder = load_run(written)
     assert run_folder.footprint["orders_completed"] == 1
     for name in TABLES:
-        assert len(run_folder.table(name)) > 0
+        # its orders come from no file
+        assert bool(len(run_folder.table(name))) == (name != "order_lines"), name
 
 
 def test_csv_and_parquet_agree(written):
