@@ -55,12 +55,16 @@ def choice(problem: Problem, name: str) -> Choice:
 
 
 def all_choices() -> list[Choice]:
-    """Every built-in rule but those of MM, and joint ones; dummies come with these."""
+    """Every built-in rule, and joint ones; dummies come with these.
+
+    Not those of MM, nor those that look ahead: they need traffic that can be copied.
+    """
     made = [
         choice(problem, name)
         for problem in Problem
         for name in registry.built_in(problem)
-        if problem is not Problem.MM and not registry.find(problem, name).is_dummy
+        if problem is not Problem.MM and name != "rollout"
+        if not registry.find(problem, name).is_dummy
     ]
     return [*made, *(choice(problem, name) for problem, name in JOINT.items())]
 

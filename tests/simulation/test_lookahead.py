@@ -30,7 +30,7 @@ def trials_of(run: Any, count: int = 3) -> Any:
     station = next(one for one in run.view.pick_stations if one.free_slots)
     decisions = [AssignOrder(order, station.index) for order in list(run.view.orders)[:count]]
     base = run.controller_set[Problem.POA]
-    return run.controller_set._lookahead(Problem.POA, decisions, base, 120.0, GOAL)
+    return run.controller_set._lookahead(Problem.POA, decisions, base, 300.0, GOAL)
 
 
 def with_a_free_slot(**given: Any) -> Any:

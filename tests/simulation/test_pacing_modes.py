@@ -108,7 +108,7 @@ def test_an_exchanged_controller_is_not_told() -> None:
         ("wall=3", (), "wall takes no value after ="),
         ("fixed=-1", (), "pacing fixed: seconds"),
         ("fixed=soon", (), "pacing fixed: seconds"),
-        ("replay", (), "pacing replay: run: Field required"),
+        ("replay", (), "pacing replay: say which, replay=RUN_DIR"),
         ("wall", [(["sped"], 2)], "unknown key sped; did you mean speed?"),
         ("wall", [(["speed"], 0)], "pacing wall: speed"),
     ],

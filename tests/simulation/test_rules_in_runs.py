@@ -101,6 +101,7 @@ RUNS: dict[str, dict[str, Any]] = {
         }
     },
     "mm random": {"mm": {"name": "random", "period_s": 40.0}},
+    "linear": {"poa": "linear", "pps": "linear", "psa": "linear"},
     "joint controller": {"poa": "joint:Joint", "pps": DUMMY, "psa": DUMMY},
 }
 
@@ -153,6 +154,7 @@ def test_no_rule_is_left_out() -> None:
     tested = {rule for rules in RUNS.values() for rule in _pairs(rules)}
     tested |= {("repositioning", name) for name in ("none", "cache", "cache-drop-off", "utility")}
     tested |= {("mm", "none"), ("mm", "scheduled")}
+    tested |= {("ta", "rollout")}  # in test_lookahead.py
     for problem in (Problem.PPS, Problem.PSA, Problem.TA, Problem.SA, Problem.MM):
         for name in registry.built_in(problem):
             default = DEFAULTS[problem] == name
