@@ -43,10 +43,10 @@ class PhaseConsult:
         pps: PodSelection[Any] = self._controllers.consulted(Problem.PPS)
         target = self._world.work_stations[station]
         if isinstance(target, PickStation):
-            asked = Question(Problem.PPS, "pick pod", robot.index, (station,))
+            asked = (Problem.PPS, "pick pod", robot.index, (station,))
             return self._number(asked, pps, lambda: pps.pick_pod(robot, target))
         # RPS chose the pods of the bundles; which of them comes first is not left to a model
-        asked = Question(Problem.PPS, "replenishment pod", robot.index, (station,))
+        asked = (Problem.PPS, "replenishment pod", robot.index, (station,))
         return self._number(
             asked, pps, lambda: pps.replenishment_pod(robot, target), modelled=False
         )
@@ -54,13 +54,13 @@ class PhaseConsult:
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
         """Ask PPS for the next station of a carried pod."""
         pps: PodSelection[Any] = self._controllers.consulted(Problem.PPS)
-        asked = Question(Problem.PPS, "next station", robot.index, tuple(stations))
+        asked = (Problem.PPS, "next station", robot.index, tuple(stations))
         return self._number(asked, pps, lambda: pps.next_station(robot, stations))
 
     def place_for(self, robot: Robot) -> int:
         """Ask PSA for a place."""
         psa: PodStorageAssignment[Any] = self._controllers.consulted(Problem.PSA)
-        asked = Question(Problem.PSA, "place", robot.index)
+        asked = (Problem.PSA, "place", robot.index, ())
         return self._number(asked, psa, lambda: psa.place(robot))
 
     def may_move(self) -> bool:
@@ -84,20 +84,18 @@ class PhaseConsult:
 
     def _number(
         self,
-        question: Question,
+        asked: tuple[Problem, str, int, tuple[int, ...]],
         controller: Controller[Any],
         ask: Callable[[], int | By[int]],
         modelled: bool = True,
     ) -> int:
-        """Ask for a number; -1 is no decision."""
+        """Ask for a number; -1 is no decision. `asked` are the parts of the `Question`."""
         start = perf_counter_ns()
         number, call = told_by(ask(), None)
         spent_ns = perf_counter_ns() - start
         if number != -1 and is_foreign(controller):
-            self._deciding.require_possible(controller, number, question)
-        self._deciding.consulted(
-            question.problem, controller, spent_ns, number >= 0, call, modelled
-        )
+            self._deciding.require_possible(controller, number, Question(*asked))
+        self._deciding.consulted(asked[0], controller, spent_ns, number >= 0, call, modelled)
         return int(number)
 
 
