@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.streams import OrderStream
     from rmfs.world import World
     from rmfs.world.orders import Bundle, Order
+    from rmfs.world.put_wall import Parcel
 
 
 class MotionCounts(TravelTimes, Protocol):
@@ -126,6 +127,12 @@ class Observer:
 
     def slot_freed(self, order: Order) -> None:
         """A pick station handed on an order, or its part of one: the slot is free."""
+
+    def tote_held(self, station: int, from_s: float, to_s: float) -> None:
+        """A pick station could not let go an order, or a part of one, during [from_s, to_s)."""
+
+    def order_packed(self, parcel: Parcel) -> None:
+        """An order is packed (`parcel.packed_s`); only where the scenario has packing."""
 
     def bundle_created(self, bundle: Bundle) -> None:
         """A replenishment order (bundle) joined the backlog (`bundle.created_s`)."""

@@ -31,6 +31,7 @@ class Stream(IntEnum):
     LOOK_AHEAD = 14
     TRAINING = 15
     BATTERIES = 20
+    PACKING = 21
 
 
 def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:

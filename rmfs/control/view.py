@@ -11,12 +11,14 @@ from rmfs.layout.charging import Charger
 from rmfs.world.charging import RecoveryStation
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from rmfs.control.travel import Travel
     from rmfs.scenario import OrderContent
     from rmfs.world import World
     from rmfs.world.batteries import Batteries
+    from rmfs.world.orders import Order
+    from rmfs.world.put_wall import PutWall
     from rmfs.world.robots import Robot
 
 
@@ -104,6 +106,16 @@ class View:
     def batteries(self) -> Batteries | None:
         """What robots carry to draw from; None if it is as much as they need."""
         return self._world.batteries
+
+    @property
+    def put_wall(self) -> PutWall | None:
+        """Where the parts of split orders come together; None if they are done when picked."""
+        return self._world.put_wall
+
+    @property
+    def split_orders(self) -> Mapping[int, Order]:
+        """Orders with parts of which units are still to be picked, by index."""
+        return self._world.split_orders
 
     @cached_property
     def chargers(self) -> list[RecoveryStation]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from rmfs.control.solutions import to_text
 from rmfs.measure.energy import EnergyLog
 from rmfs.measure.log import Log
+from rmfs.measure.packing import PackingLog
 from rmfs.observer import Observer
 from rmfs.world import tasks
 from rmfs.world.tasks import VisitTask
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from rmfs.observer import MotionCounts, Observed, Troubles
     from rmfs.scenario.streams import OrderStream
     from rmfs.world.orders import Bundle, Order
+    from rmfs.world.put_wall import Parcel
     from rmfs.world.world import World
 
 
@@ -84,6 +86,8 @@ class Recorder(Observer):
         Every minute: time, and the fleet's totals of distance and times since the last reset.
     energy
         What robots draw.
+    packing
+        What became of orders after the pick stations.
     charge_kinds
         Numbers of the tasks in which robots go for energy.
     """
@@ -126,6 +130,7 @@ class Recorder(Observer):
         self.switches = Log(time_s="f8", station="i2", active="?")
         self.samples: list[tuple[float, dict[str, float]]] = []
         self.energy = EnergyLog()
+        self.packing = PackingLog()
         self.charge_kinds: list[int] = []
         self.stored_space_start = 0.0
         self.motion: dict[str, NDArray[Any]] = {}
@@ -152,6 +157,8 @@ class Recorder(Observer):
         self._disturbances = run.disturbances
         if run.scenario.energy is not None:
             self.energy.begin(run.traffic, run.layout.robots, run.world.batteries)
+        if run.scenario.packing is not None:
+            self.packing.begin(run.scenario.packing, run.world)
         visits = [kind.part("task", VisitTask).kind for kind in run.layout.other_kinds]
         self.charge_kinds = [n for n, kind in enumerate(visits, len(TASKS)) if kind == "charge"]
         self._task_number = {kind: number for number, kind in enumerate([*TASKS, *visits])}
@@ -171,6 +178,7 @@ class Recorder(Observer):
         if not self.samples or self.samples[-1][0] < time_s:
             self.sampled(time_s)
         self.energy.ended()
+        self.packing.ended(time_s)
         self.motion = self.traffic.motion()
         self.heat = self.traffic.heat()
         self.trips = self.traffic.trips()
@@ -202,6 +210,14 @@ class Recorder(Observer):
         """Write the order down and let it go."""
         self.orders.add(*order_row(order))
         del self.open_orders[order.index]
+
+    def tote_held(self, station: int, from_s: float, to_s: float) -> None:
+        """Write the wait down."""
+        self.packing.held.add(station, from_s, to_s)
+
+    def order_packed(self, parcel: Parcel) -> None:
+        """Write the parcel down."""
+        self.packing.packed(parcel)
 
     def unit_picked(
         self,

@@ -57,6 +57,13 @@ class Steps:
         knots = np.concatenate([[begin_s], self._times[inside], [end_s]])
         return float(np.dot(self.at(knots[:-1]), np.diff(knots)) / (end_s - begin_s))
 
+    def most(self, begin_s: float, end_s: float) -> float:
+        """Return the greatest value that lasts within an interval; nan if it is empty."""
+        if end_s <= begin_s:
+            return float("nan")
+        inside = self._times[(self._times > begin_s) & (self._times < end_s)]
+        return float(self.at(np.concatenate([[begin_s], inside])).max())
+
 
 def covered(begin_s: Floats, end_s: Floats, at_s: Floats) -> Floats:
     """Return how long disjoint intervals, sorted by begin, last up to each given time, in s."""

@@ -31,6 +31,7 @@ from rmfs.simulation.lookahead import Forks
 from rmfs.simulation.optimisers import OptimiserGateway
 from rmfs.simulation.outside import Outside, problems_outside
 from rmfs.simulation.pacing import InstantPacing, pacing_of
+from rmfs.simulation.packing.stage import packing_stage
 from rmfs.simulation.past import PastOrders
 from rmfs.simulation.phase import DecisionPhase
 from rmfs.simulation.service import services_of
@@ -143,6 +144,9 @@ class Kernel:
             controllers, self.view, seed, Forks(self._snapshot)
         )
         services = services_of(layout, agenda=agenda, world=world, events=events)
+        packing = packing_stage(
+            scenario.packing, layout, services, seed, agenda=agenda, world=world, events=events
+        )
         self.dispatch = Dispatch(layout, world, fleet, events, installed, services)
         self.chargers = Chargers(layout, services, fleet)
         visits = Visits(world, self.view, self.dispatch, seed)
@@ -210,7 +214,8 @@ class Kernel:
             layout, scenario.disturbances, seed, agenda=agenda, fleet=fleet, chargers=self.chargers
         )
         self._spectators = tuple(observers)
-        events.tell([*masses, late_binding, *visits.controllers, *observers, Triggers(due)])
+        inside = [*masses, *packing, late_binding, *visits.controllers]
+        events.tell([*inside, *observers, Triggers(due)])
         self._due = due
         self._end_us = us_at(self.end_s)
         self._moved_us = 0

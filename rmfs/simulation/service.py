@@ -33,12 +33,29 @@ class Service(Protocol):
         ...
 
 
+class Outlet(Protocol):
+    """Where the orders of pick stations go (`rmfs.simulation.packing`)."""
+
+    def takes(self, order: Order) -> bool:
+        """Whether an order may leave its station; if not, `hand_on_held` is called when it may."""
+        ...
+
+    def released(self, order: Order, *, last: bool, by_hand: bool = False) -> None:
+        """Take an order, or a part of one, that has just left its station."""
+        ...
+
+
 class PickService:
     """The picker of one station.
 
     A unit leaves its pod, and its request is fulfilled, when its pick starts. An order whose last
     unit is picked leaves its slot when the station is done with that unit. A pod with requests of
     queued orders only waits for a slot if one is about to be free, then it is let go.
+
+    Attributes
+    ----------
+    outlet
+        Where orders go from here; None if they are done with their last pick.
     """
 
     def __init__(
@@ -57,6 +74,7 @@ class PickService:
         self._busy_until_us = 0
         self._robot_until_us = 0
         self._finished: list[Order] = []
+        self.outlet: Outlet | None = None
 
     def go_on(self) -> None:
         """Do what can be done now for the robot at the head."""
@@ -123,11 +141,23 @@ class PickService:
         for order in self._finished:
             if order.unpicked_units:
                 continue  # lines have joined this part of an order meanwhile
-            complete = self._world.complete_order(order)
-            if complete is not None:
-                self._events.order_completed(complete)
-            self._events.slot_freed(order)
+            if self.outlet is None or self.outlet.takes(order):
+                self._complete(order)
         self._finished.clear()
+
+    def hand_on_held(self, order: Order, *, by_hand: bool = False) -> None:
+        """Hand on an order, or a part of one, that the outlet did not take before."""
+        self._complete(order, by_hand)
+        self._agenda.when_settled(self.go_on)
+
+    def _complete(self, order: Order, by_hand: bool = False) -> None:
+        """Let an order, or a part of one, leave its slot."""
+        complete = self._world.complete_order(order)
+        if complete is not None:
+            self._events.order_completed(complete)
+        if self.outlet is not None:
+            self.outlet.released(order, last=complete is not None, by_hand=by_hand)
+        self._events.slot_freed(order)
 
 
 class ReplenishmentService:

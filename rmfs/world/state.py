@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
     from rmfs.scenario import SkuSet
     from rmfs.world.batteries import Batteries
+    from rmfs.world.orders import Order
+    from rmfs.world.put_wall import PutWall
 
 
 class WorldState:
@@ -71,6 +73,10 @@ class WorldState:
         Orders that came although stock could not serve them.
     batteries
         What robots carry to draw from; None if it is as much as they need.
+    put_wall
+        Where the parts of split orders come together; None if orders are done with their picks.
+    split_orders
+        Orders with parts of which units are still to be picked, by index.
     tasks_dropped
         How many prepared tasks were impossible when their turn came.
     """
@@ -124,6 +130,8 @@ class WorldState:
         ]
         self.stations: list[Station[Any]] = [*self.work_stations, *self.other_stations]
         self.batteries: Batteries | None = None
+        self.put_wall: PutWall | None = None
+        self.split_orders: dict[int, Order] = {}
         self.tasks_dropped = 0
         self.orders_created = 0
         self.order_redraws = 0

@@ -38,6 +38,8 @@ def verify(world: World, orders: Iterable[Order] = ()) -> None:
     _places(world)
     for station in world.stations:
         station.verify(world.robots)
+    if world.put_wall is not None:
+        world.put_wall.verify()
     for order in orders:
         _check(order.unpicked_units == 0 and order.open_units == 0, f"order {order.index} complete")
 

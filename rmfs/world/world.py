@@ -149,6 +149,7 @@ class World(WorldState):
             )
             order.parts.append(part)
             order.slots_taken += 1
+            self.split_orders[order.index] = order
             target.orders[order.index] = part
         if isnan(order.assigned_s):
             order.assigned_s = self.now_s
@@ -195,6 +196,7 @@ class World(WorldState):
             return None
         whole.completed_s = self.now_s
         self.orders_completed += 1
+        self.split_orders.pop(whole.index, None)
         return whole
 
     # --- bundles --------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ from rmfs.measure import load_run, write_run
 from rmfs.measure.columns import TEXT
 from rmfs.measure.dictionary import TABLES
 from rmfs.measure.measures.energy import Batteries, Energy
+from rmfs.measure.measures.packing import Packing
 from rmfs.simulation.run import simulate
 
 WARMUP_S, DURATION_S = 300.0, 1500.0
@@ -50,6 +51,9 @@ NOT_IN_TABLES = {
     **dict.fromkeys(
         (column.name for column in (*Energy.columns, *Batteries.columns)),
         "empty here; tests/simulation/test_energy_use.py",
+    ),
+    **dict.fromkeys(
+        (column.name for column in Packing.columns), "empty here; tests/simulation/test_packing.py"
     ),
     **dict.fromkeys(("planning_wall_s", "wall_s", "peak_rss_mb"), "of the machine, measured once"),
 }

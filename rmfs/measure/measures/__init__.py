@@ -11,6 +11,7 @@ from rmfs.measure.measures.energy import Batteries, Energy
 from rmfs.measure.measures.heading import Heading
 from rmfs.measure.measures.motion import Motion, RobotTime
 from rmfs.measure.measures.orders import Backlog, OrderTimes
+from rmfs.measure.measures.packing import Packing
 from rmfs.measure.measures.planning import Planning, Safety
 from rmfs.measure.measures.replenishment import Inventory, Replenishment
 from rmfs.measure.measures.speed import Speed
@@ -39,6 +40,7 @@ SHIPPED: tuple[type[Measure], ...] = (
     Disturbances,
     Energy,
     Batteries,
+    Packing,
     Decisions,
     Optimisers,
     Speed,

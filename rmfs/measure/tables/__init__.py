@@ -32,6 +32,10 @@ from rmfs.measure.tables.order_lines import ORDER_LINES as ORDER_LINES
 from rmfs.measure.tables.order_lines import order_lines as order_lines
 from rmfs.measure.tables.orders import ORDERS as ORDERS
 from rmfs.measure.tables.orders import orders as orders
+from rmfs.measure.tables.packing import PARCELS as PARCELS
+from rmfs.measure.tables.packing import TOTES as TOTES
+from rmfs.measure.tables.packing import parcels as parcels
+from rmfs.measure.tables.packing import totes as totes
 from rmfs.measure.tables.robots import ROBOTS as ROBOTS
 from rmfs.measure.tables.robots import robots as robots
 from rmfs.measure.tables.series import SERIES as SERIES
@@ -56,6 +60,8 @@ MAKERS = {
     "orders": orders,
     "order_lines": order_lines,
     "delays": delays,
+    "parcels": parcels,
+    "totes": totes,
     "picks": picks,
     "bundles": bundles,
     "visits": visits,
@@ -78,6 +84,8 @@ DECLARED: dict[str, Sequence[Column]] = {
     "orders": ORDERS,
     "order_lines": ORDER_LINES,
     "delays": DELAYS,
+    "parcels": PARCELS,
+    "totes": TOTES,
     "picks": PICKS,
     "bundles": BUNDLES,
     "visits": VISITS,

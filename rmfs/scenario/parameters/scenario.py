@@ -12,6 +12,7 @@ from rmfs.scenario.parameters.demand import BacklogDemand, Demand, StreamDemand
 from rmfs.scenario.parameters.disturbances import Disturbances
 from rmfs.scenario.parameters.energy import Energy
 from rmfs.scenario.parameters.orders import AnyOrders, Orders, WordOrders, not_above_skus
+from rmfs.scenario.parameters.packing import Packing
 from rmfs.scenario.parameters.replenishment import BacklogReplenishment, Replenishment
 from rmfs.scenario.parameters.skus import GeneratedSkus, LetterSkus, Skus
 from rmfs.scenario.quantities import Block, NotNegative, Positive, Share
@@ -56,6 +57,10 @@ class Scenario(Block):
     disturbances: Disturbances = Field(Disturbances(), description="what goes wrong in the run")
     energy: Energy | None = Field(
         None, description="what robots draw from their batteries; default: not counted"
+    )
+    packing: Packing | None = Field(
+        None,
+        description="what becomes of orders after the pick stations; default: they are done then",
     )
 
     @pydantic.field_validator("start", mode="before")

@@ -1,0 +1,141 @@
+"""What became of orders after the pick stations; empty cells where the scenario has no packing."""
+
+from __future__ import annotations
+
+from math import nan
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import COUNT_OR_EMPTY, LESS, MORE, REAL, Column
+from rmfs.measure.measures.reckoning import ratio
+from rmfs.measure.steps import Steps
+from rmfs.measure.tables.logs import framed
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rmfs.measure.ended import EndedRun
+
+
+class Packing(Measure):
+    """The put wall, blocking, packers, and the time to the packed parcel."""
+
+    columns = (
+        Column(
+            "orders_packed",
+            COUNT_OR_EMPTY,
+            "orders",
+            "Orders packed; empty where the scenario has no packing, as are the following columns",
+            better=MORE,
+        ),
+        Column("orders_packed_split_share", REAL, "share", "Of these, those in several totes"),
+        Column("totes_per_order", REAL, "totes", "Totes of the packed orders, mean", better=LESS),
+        Column(
+            "order_cycle_mean_s",
+            REAL,
+            "s",
+            "Mean time from the arrival of an order until it is packed",
+            better=LESS,
+        ),
+        Column("order_cycle_p95_s", REAL, "s", "95th percentile of the same", better=LESS),
+        Column(
+            "consolidation_time_mean_s",
+            REAL,
+            "s",
+            "Mean time from the first tote of a split order at the wall to the last",
+            better=LESS,
+        ),
+        Column(
+            "wall_slots_mean",
+            REAL,
+            "slots",
+            "Slots of the put wall in use, from a tote's arrival until the last is there, time "
+            "average; what was carried there by hand counts, too",
+            better=LESS,
+        ),
+        Column("wall_slots_max", REAL, "slots", "Most slots in use at a time", better=LESS),
+        Column(
+            "totes_held_mean",
+            REAL,
+            "totes",
+            "Totes that pick stations could not let go, time average: slots of stations blocked",
+            better=LESS,
+        ),
+        Column(
+            "station_blocked_share",
+            REAL,
+            "share",
+            "totes_held_mean / slots of all pick stations",
+            better=LESS,
+        ),
+        Column(
+            "totes_by_hand",
+            COUNT_OR_EMPTY,
+            "totes",
+            "Totes carried away by hand because their station had waited for too long",
+            better=LESS,
+        ),
+        Column(
+            "packer_busy_share",
+            REAL,
+            "share",
+            "Time of packers with a parcel; empty without a number of packers",
+        ),
+        Column(
+            "packing_wait_mean_s",
+            REAL,
+            "s",
+            "Mean time for which an order that is all there waits for a packer",
+            better=LESS,
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Look at parcels and totes."""
+        given = run.recorder.packing.given
+        if given is None:
+            return {
+                column.name: None if column.dtype == COUNT_OR_EMPTY else nan
+                for column in self.columns
+            }
+        start_s, end_s = run.start_s, run.end_s
+        parcels, totes = run.tables["parcels"], run.tables["totes"]
+        packed = parcels[parcels["packed_s"] >= start_s]
+        split = packed[packed["totes"] > 1]
+        held = framed(run.recorder.packing.held)
+        held_mean = Steps.between(held["begin_s"], held["end_s"]).mean(start_s, end_s)
+        slots = sum(station.order_slots for station in run.layout.pick_stations)
+        in_use = slots_in_use(totes, per_part=given.slot_for == "part")
+        waited = parcels.loc[parcels["packing_s"] >= start_s]
+        busy = Steps.between(parcels["packing_s"], parcels["packed_s"]).mean(start_s, end_s)
+        return {
+            "orders_packed": len(packed),
+            "orders_packed_split_share": ratio(len(split), len(packed)),
+            "totes_per_order": packed["totes"].mean(),
+            "order_cycle_mean_s": packed["cycle_s"].mean(),
+            "order_cycle_p95_s": packed["cycle_s"].quantile(0.95),
+            "consolidation_time_mean_s": (split["consolidated_s"] - split["arrived_s"]).mean(),
+            "wall_slots_mean": in_use.mean(start_s, end_s),
+            "wall_slots_max": in_use.most(start_s, end_s),
+            "totes_held_mean": held_mean,
+            "station_blocked_share": ratio(held_mean, slots),
+            "totes_by_hand": int((totes["by_hand"] & (totes["released_s"] >= start_s)).sum()),
+            "packer_busy_share": nan if given.packers is None else busy / given.packers,
+            "packing_wait_mean_s": (waited["packing_s"] - waited["consolidated_s"]).mean(),
+        }
+
+
+def slots_in_use(totes: pd.DataFrame, *, per_part: bool) -> Steps:
+    """Follow the slots of the wall that are in use.
+
+    Parameters
+    ----------
+    totes
+        The table.
+    per_part
+        Whether each part takes a slot, or all parts of an order share one.
+    """
+    there = totes[totes["arrived_s"].notna()]
+    if not per_part:
+        there = there.groupby("order").agg({"arrived_s": "min", "consolidated_s": "first"})
+    return Steps.between(there["arrived_s"], there["consolidated_s"])

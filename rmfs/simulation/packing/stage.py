@@ -1,0 +1,190 @@
+"""The way from the pick stations to the packed parcel.
+
+A pick station asks before it lets an order, or a part of one, go. If the wall or the conveyor is
+full, it keeps the tote in its slot, and is called as soon as there is room. Every time that needs
+none passes at once, without an entry in the agenda: a stage that costs nothing changes nothing.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.observer import Observer
+from rmfs.random import Stream, generator
+from rmfs.simulation.packing.packers import Packers
+from rmfs.simulation.service import PickService
+from rmfs.world.put_wall import HeldTote, PutWall
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+    from rmfs.scenario.parameters import Packing
+    from rmfs.scenario.parameters.packing import ToteTravel
+    from rmfs.simulation.agenda import Agenda
+    from rmfs.simulation.service import Service
+    from rmfs.world import World
+    from rmfs.world.orders import Order
+    from rmfs.world.put_wall import Tote
+
+
+class PackingStage(Observer):
+    """Takes what pick stations hand on, and brings it to the packed parcel.
+
+    Parameters
+    ----------
+    given
+        What the scenario says.
+    services
+        Of all stations; pick stations ask this stage from now on.
+    """
+
+    def __init__(
+        self,
+        given: Packing,
+        layout: Layout,
+        services: Sequence[Service],
+        seed: int,
+        *,
+        agenda: Agenda,
+        world: World,
+        events: Observer,
+    ) -> None:
+        self._given = given
+        self._agenda, self._world, self._events = agenda, world, events
+        self._wall = world.put_wall = PutWall(given.slots, slot_per_part=given.slot_for == "part")
+        self._travel_us = [round(s * 1e6) for s in travel_s(given.travel, layout).tolist()]
+        self._on_conveyor = 0
+        self._packers = Packers(
+            given,
+            agenda=agenda,
+            world=world,
+            events=events,
+            rng=generator(seed, Stream.PACKING),
+        )
+        self._services: list[PickService] = []
+        for service in services:
+            if isinstance(service, PickService):
+                service.outlet = self
+                self._services.append(service)
+
+    def takes(self, order: Order) -> bool:
+        """Whether a pick station may let an order go; if not, it is called when it may."""
+        if self._has_room(order):
+            return True
+        after_us = round(self._given.by_hand_after_s * 1e6)
+        timer = self._agenda.after(after_us, partial(self._carry, order))
+        self._wall.held.append(HeldTote(order, self._world.now_s, timer))
+        return False
+
+    def released(self, order: Order, *, last: bool, by_hand: bool = False) -> None:
+        """An order, or a part of one, has left its pick station.
+
+        Parameters
+        ----------
+        last
+            Whether nothing of the order is left to be picked.
+        """
+        wall, now_s = self._wall, self._world.now_s
+        whole = _whole(order)
+        tote = wall.release(whole, order.station, now_s, last=last)
+        tote.by_hand = by_hand
+        if self._given.bypass and not tote.parcel.is_split:
+            self._events.order_packed(wall.pass_by(tote, now_s))
+            return
+        self._on_conveyor += not by_hand
+        if self._travel_us[tote.station]:
+            self._agenda.after(self._travel_us[tote.station], partial(self._arrive, tote))
+        else:
+            self._arrive(tote)
+        if last:
+            self._let_go()  # parts that had to wait for a slot need none any more
+
+    def order_assigned(self, order: Order) -> None:
+        """Lines that join a part at its station keep it there."""
+        for held in self._wall.held:
+            if held.order is order:
+                self._forget(held)
+                return
+
+    def _has_room(self, order: Order) -> bool:
+        last = self._is_last(order)
+        if last and self._given.bypass and _whole(order).index not in self._wall.parcels:
+            return True
+        conveyor = self._given.travel.totes
+        if conveyor is not None and self._on_conveyor >= conveyor:
+            return False
+        return self._wall.has_room(_whole(order).index, last=last)
+
+    def _is_last(self, order: Order) -> bool:
+        whole = _whole(order)
+        return whole.slots_taken == 1 and whole not in self._world.orders
+
+    def _arrive(self, tote: Tote) -> None:
+        """Let a tote reach the wall."""
+        self._on_conveyor -= not tote.by_hand
+        whole = self._wall.arrive(tote, self._world.now_s)
+        if whole:
+            self._packers.add(tote.parcel)
+        self._let_go()
+
+    def _let_go(self) -> None:
+        """Let everything go that may, longest wait first."""
+        while True:
+            # each that goes may come back here before this looks again
+            ready = next((held for held in self._wall.held if self._has_room(held.order)), None)
+            if ready is None:
+                return
+            self._forget(ready)
+            self._services[ready.order.station].hand_on_held(ready.order)
+
+    def _carry(self, order: Order) -> None:
+        """Carry a tote away that has kept its station waiting for too long."""
+        held = next(one for one in self._wall.held if one.order is order)
+        held.timer = -1
+        self._forget(held)
+        self._services[order.station].hand_on_held(order, by_hand=True)
+
+    def _forget(self, held: HeldTote) -> None:
+        """Let a tote no longer be one that waits."""
+        self._wall.held.remove(held)
+        if held.timer >= 0:
+            self._agenda.cancel(held.timer)
+        self._events.tote_held(held.order.station, held.since_s, self._world.now_s)
+
+
+def packing_stage(
+    given: Packing | None,
+    layout: Layout,
+    services: Sequence[Service],
+    seed: int,
+    *,
+    agenda: Agenda,
+    world: World,
+    events: Observer,
+) -> list[Observer]:
+    """Make the stage, if a scenario has one; returns who observes the run for it."""
+    if given is None:
+        return []
+    return [PackingStage(given, layout, services, seed, agenda=agenda, world=world, events=events)]
+
+
+def travel_s(given: ToteTravel, layout: Layout) -> NDArray[np.float64]:
+    """Return what a tote takes from each pick station to the wall, in s, shape (S,)."""
+    at = [station.waypoint for station in layout.pick_stations]
+    x_m, y_m = layout.x_m[at], layout.y_m[at]
+    if given.speed_m_s is None:
+        return np.full(len(at), given.constant_s)
+    to_x_m = float(x_m.mean()) if given.x_m is None else given.x_m
+    to_y_m = float(y_m.mean()) if given.y_m is None else given.y_m
+    distance_m = np.abs(x_m - to_x_m) + np.abs(y_m - to_y_m)
+    return given.constant_s + distance_m / given.speed_m_s
+
+
+def _whole(order: Order) -> Order:
+    return order if order.whole is None else order.whole
