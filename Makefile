@@ -63,9 +63,15 @@ bench: setup ## Measure speed
 	$(BIN)/rmfs bench
 	$(BIN)/python -m pytest -m benchmark
 
+.PHONY: spoil
+spoil: setup ## Call the program with spoilt inputs for two minutes
+	$(BIN)/python -m tests.tools.spoil --seconds 120
+
+# Spoilt inputs are new ones every day; a case that fails tells its number.
 .PHONY: soak
-soak: setup ## Run the long tests: whole days, comparisons with other systems
+soak: setup ## Run the long tests: whole days, other systems, an hour of spoilt inputs
 	$(BIN)/python -m pytest -m slow -n $(JOBS)
+	$(BIN)/python -m tests.tools.spoil --seconds 3600 --first $$(( $$(date +%s) / 86400 * 100000 ))
 
 .PHONY: docs
 docs: $(VENV)/.docs ## Build the documentation: docs/_build/html/index.html

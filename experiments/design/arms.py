@@ -371,7 +371,10 @@ def _arm_name(combination: tuple[Level, ...], keys: list[str]) -> str:
 def anchored(given: str, folder: Path) -> str:
     """Return a path for a file beside the design; a name or another path stays as it is."""
     beside = folder / given
-    return str(beside) if beside.is_file() else given
+    try:
+        return str(beside) if beside.is_file() else given
+    except OSError:  # too long for a file's name: told where the input is looked for
+        return given
 
 
 def _anchored_rule(path: list[str], value: Any, folder: Path) -> Any:

@@ -47,6 +47,11 @@ def main(arguments: list[str] | None = None) -> int:
         code = command.main(args=arguments, prog_name="rmfs", standalone_mode=False)
     except InputError as error:
         return _complain(str(error))
+    except OSError as error:  # what no part of the program has a better word for
+        where = "" if error.filename is None else f"{error.filename!s:.200}: "
+        return _complain(f"{where}{error.strerror or error}")
+    except MemoryError:
+        return _complain("there is not enough memory for this")
     except InternalError as error:
         _say(told(error, arguments))
         return DEFECT

@@ -10,11 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rmfs.errors import InputError
-from rmfs.files import replacing, replacing_folder
+from rmfs.files import read_bounded, replacing, replacing_folder
 from rmfs.measure.dictionary import TABLES, learn, names
 from rmfs.measure.registry import columns_of
 from rmfs.measure.results import Results
-from rmfs.measure.trace import read_events, read_layout, read_motion, write_trace
+from rmfs.measure.soundness import require_events, require_motion
+from rmfs.measure.told import Told, require_told
+from rmfs.measure.trace import EVENTS, TRACE, read_events, read_layout, read_motion, write_trace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -156,6 +158,11 @@ class RunFolder(Results):
     parameters: dict[str, Any]
 
     @property
+    def told(self) -> Told:
+        """What `run.json` says of every run, typed."""
+        return Told.model_validate(self.parameters)
+
+    @property
     def own_columns(self) -> list[Column]:
         """Columns of the footprint that come from measures of the user."""
         return columns_of(self.parameters.get("measures", []))
@@ -187,14 +194,28 @@ class RunFolder(Results):
         return read_layout(self.path)
 
     def check(self) -> CheckReport:
-        """Have the independent checker prove the motion safe; raises as `trace` does."""
+        """Have the independent checker prove the motion safe; raises as `replayed` does."""
         from rmfs.measure.checker import Slow, check
 
-        told = self.parameters
-        until_us = round((told["warmup_s"] + told["duration_s"]) * 1e6)
-        slow = [Slow(*one) for one in told.get("slow_robots", [])]
-        trace = {str(name): column.to_numpy() for name, column in self.trace.items()}
-        return check(self.layout, trace, until_us=until_us, slow=slow)
+        layout, motion, _ = self.replayed()
+        slow = [Slow(*one) for one in self.told.slow_robots]
+        trace = {str(name): column.to_numpy() for name, column in motion.items()}
+        return check(layout, trace, until_us=self.told.end_us, slow=slow)
+
+    def replayed(self) -> tuple[Layout, pd.DataFrame, pd.DataFrame]:
+        """Return layout, motion and events, which fit each other.
+
+        Raises
+        ------
+        InputError
+            If the run was made without a trace, a file is cut off or of another version, or names
+            robots, places, pods, stations, kinds or times that cannot be.
+        """
+        layout, motion, events = self.layout, self.trace, self.events
+        skus = len(self.table("skus"))
+        require_motion(self.path / TRACE, motion, layout, self.told.end_us)
+        require_events(self.path / EVENTS, events, layout, skus, self.told.end_us)
+        return layout, motion, events
 
     def save(self, path: str | Path, *, force: bool = False) -> RunFolder:
         """Copy the folder; see `Results.save`."""
@@ -223,10 +244,6 @@ class RunFolder(Results):
         return frame
 
 
-NEEDED = ("layout", "scenario", "controllers", "seed", "warmup_s", "duration_s")
-"""Without these keys run.json tells of no run."""
-
-
 def load_run(path: str | Path) -> RunFolder:
     """Open a run folder.
 
@@ -237,20 +254,16 @@ def load_run(path: str | Path) -> RunFolder:
     """
     path = Path(path)
     file = path / PARAMETERS
+    if not file.exists():
+        raise InputError(f"{path}: is not a run folder ({PARAMETERS} is missing)")
     try:
-        parameters = json.loads(file.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise InputError(f"{path}: is not a run folder ({PARAMETERS} is missing)") from None
-    except OSError as error:
-        raise InputError(f"{file}: cannot be read ({error.strerror})") from None
-    except ValueError as error:
-        raise InputError(f"{file}: corrupted ({error})") from None
+        parameters = json.loads(read_bounded(file))
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{file}: corrupted ({error!s:.200})") from None
     told = parameters.get("format") if isinstance(parameters, dict) else None
     if told != FORMAT:
         raise InputError(f"{file}: format {told!r}, expected {FORMAT!r}")
-    lacking = [key for key in NEEDED if key not in parameters]
-    if lacking:
-        raise InputError(f"{file}: corrupted ({', '.join(lacking)} is missing)")
+    require_told(file, parameters)
     run = RunFolder(path, parameters)
     learn(run.own_columns)
     return run

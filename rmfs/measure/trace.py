@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rmfs.errors import InputError
+from rmfs.measure.soundness import require_columns
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -120,8 +121,10 @@ def _read(path: Path) -> pd.DataFrame:
     try:
         with parquet.ParquetFile(path) as file:
             _check(path, file.schema_arrow)
-            frame: pd.DataFrame = file.read().to_pandas()
-            return frame
+            table = file.read()
+        require_columns(path, table, _COLUMNS[path.name])
+        frame: pd.DataFrame = table.to_pandas()
+        return frame
     except InputError:
         raise
     except (OSError, ValueError, pa.ArrowException) as error:

@@ -37,9 +37,9 @@ def of_run(folder: RunFolder) -> bytes:
     Raises
     ------
     InputError
-        If the run was made without trace, or a file of it is cut off or of another version.
+        As `RunFolder.replayed` does.
     """
-    layout, trace, log = folder.layout, folder.trace, folder.events
+    layout, trace, log = folder.replayed()
     told = folder.parameters
     events = {name: log[name].to_numpy() for name in ("time_us", *EVENT_NUMBERS[:-1])}
     events["kind"] = log["kind"].map({name: number for number, name in enumerate(KINDS)}).to_numpy()

@@ -50,6 +50,8 @@ def spoil(first: int, cases: int, seconds: float, out: Path) -> tuple[Counter[st
             print(f"{verdict}\n  rmfs {shlex.join(verdict.case.arguments)[:600]}", flush=True)
         if not verdict.fine:
             failed.append(verdict)
+        if counts.total() % 500 == 0:
+            print(f"{counts.total()} cases, {len(failed)} failed", flush=True)
     return counts, failed
 
 

@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rmfs import instances
 from tests.tools.spoil import mutations, samples
 from tests.tools.spoil.folders import spoil_run, spoil_study
 
@@ -72,7 +73,7 @@ def _tree_or_text(rng: Random, tree: Any, write: Callable[[Any], str]) -> bytes:
 
 
 def _layout(rng: Random, whole: Path, here: Path) -> list[str]:
-    name, tree = rng.choice([one for one in _trees("layouts") if one[0] in ("small", "basic")])
+    _, tree = rng.choice([one for one in _trees("layouts") if one[0] in ("small", "basic")])
     (here / "in.toml").write_bytes(_tree_or_text(rng, tree, mutations.toml))
     return _with_layout(rng, "in.toml")
 
@@ -96,10 +97,10 @@ def _explicit(rng: Random, whole: Path, here: Path) -> list[str]:
 
 
 def _scenario(rng: Random, whole: Path, here: Path) -> list[str]:
-    name, tree = rng.choice([one for one in _trees("scenarios") if "large" not in one[0]])
+    _, tree = rng.choice([one for one in _trees("scenarios") if "large" not in one[0]])
     content = _tree_or_text(rng, tree, mutations.toml)
     (here / "in.toml").write_bytes(content)
-    for words in (samples.instances.ROOT / "scenarios").glob("*.txt"):
+    for words in (instances.ROOT / "scenarios").glob("*.txt"):
         shutil.copy(words, here)
     if rng.random() < 0.25:
         return ["scenario", rng.choice(("check", "show", "sku-set")), "in.toml"]
@@ -107,7 +108,7 @@ def _scenario(rng: Random, whole: Path, here: Path) -> list[str]:
 
 
 def _controllers(rng: Random, whole: Path, here: Path) -> list[str]:
-    name, tree = rng.choice(_trees("controllers"))
+    _, tree = rng.choice(_trees("controllers"))
     (here / "in.toml").write_bytes(_tree_or_text(rng, tree, mutations.toml))
     if rng.random() < 0.2:
         return ["controllers", rng.choice(("check", "show")), "in.toml"]

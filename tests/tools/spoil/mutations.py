@@ -172,7 +172,11 @@ def _key(key: Any) -> str:
 def toml_value(node: Any) -> str:
     """Write a value as TOML has it on one line."""
     if isinstance(node, dict):
-        return "{" + ", ".join(f"{_key(key)} = {toml_value(below)}" for key, below in node.items()) + "}"
+        return (
+            "{"
+            + ", ".join(f"{_key(key)} = {toml_value(below)}" for key, below in node.items())
+            + "}"
+        )
     if isinstance(node, list | tuple):
         return "[" + ", ".join(toml_value(below) for below in node) + "]"
     if isinstance(node, float):

@@ -122,7 +122,9 @@ def _judged(case: Case, top: Path, before: dict[str, bytes]) -> Verdict:
     if code == 2:
         if not last.startswith("rmfs: "):
             return verdict("untold", f"exit code 2: {told!r:.200}")
-        return verdict("litter", f"{last} {sorted(after)}") if after != before else verdict("refused")
+        return (
+            verdict("litter", f"{last} {sorted(after)}") if after != before else verdict("refused")
+        )
     if odd:
         return verdict("litter", str(odd))
     if code == 0:

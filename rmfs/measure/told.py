@@ -1,0 +1,91 @@
+"""What `run.json` must say for a run to be read back; it says more, for people."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import pydantic
+from pydantic import Field
+
+from rmfs.config import LARGEST, LARGEST_SEED
+from rmfs.errors import InputError
+from rmfs.measure.columns import DTYPES
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+Index = Annotated[int, Field(ge=0)]
+Seconds = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False)]
+Share = Annotated[float, Field(gt=0, le=1)]
+SlowRobot = Annotated[tuple[Index, int, int, Share], Field(strict=False)]  # a list in JSON
+
+
+class _Told(pydantic.BaseModel):
+    model_config = pydantic.ConfigDict(strict=True, frozen=True)
+
+
+class Source(_Told):
+    """An input: what it is called. Digests, files and parameters are beside it."""
+
+    name: str
+
+
+class OwnColumn(_Told):
+    """A column of a measure of the user."""
+
+    name: str
+    dtype: str = Field(pattern="|".join(DTYPES))
+    unit: str
+    meaning: str
+    measured: bool = False
+    better: str = Field("neither", pattern="more|less|neither")
+
+
+class OwnMeasure(_Told):
+    """A measure of the user."""
+
+    columns: list[OwnColumn]
+
+
+class Told(_Told):
+    """What a run tells of itself.
+
+    Attributes
+    ----------
+    slow_robots
+        Robot, begin and end (us), and share of the top speed; see `rmfs.measure.checker.Slow`.
+    """
+
+    layout: Source
+    scenario: Source
+    controllers: Source
+    seed: int = Field(ge=0, le=LARGEST_SEED)
+    warmup_s: Seconds
+    duration_s: Seconds
+    slow_robots: list[SlowRobot] = []
+    measures: list[OwnMeasure] = []
+
+    @property
+    def end_us(self) -> int:
+        """End of the run in microseconds."""
+        return round((self.warmup_s + self.duration_s) * 1e6)
+
+
+def require_told(path: Path, parameters: dict[str, Any]) -> None:
+    """Make sure that a run.json tells of a run.
+
+    Raises
+    ------
+    InputError
+        Naming what is missing or cannot be.
+    """
+    lacking = [key for key, field in Told.model_fields.items() if field.is_required()]
+    lacking = [key for key in lacking if key not in parameters]
+    if lacking:
+        raise InputError(f"{path}: corrupted ({', '.join(lacking)} is missing)")
+    try:
+        Told.model_validate(parameters)
+    except pydantic.ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise InputError(f"{path}: corrupted ({where}: {first['msg']})") from None

@@ -1,0 +1,128 @@
+"""Traces that cannot be: one line each, from the viewer and from the checker."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pandas as pd
+import pyarrow as pa
+import pytest
+from pyarrow import parquet
+
+from rmfs.cli import main
+from rmfs.errors import InputError
+from rmfs.measure import load_run
+
+Frame = pd.DataFrame
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("runs") / "one"
+    settings = ["--set", "scenario.duration_s=120", "--set", "scenario.warmup_s=0"]
+    run = ["run", "--layout", "small", "--scenario", "small", "--trace", *settings]
+    assert main([*run, "--out", str(folder)]) == 0
+    return folder
+
+
+@pytest.fixture
+def run(whole: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(whole, tmp_path / "run"))
+
+
+def change(path: Path, how: Callable[[Frame], Frame | None]) -> None:
+    """Change the rows of a table; the file's own metadata stay."""
+    metadata = parquet.read_schema(path).metadata
+    frame = parquet.read_table(path).to_pandas()
+    new = how(frame)
+    table = pa.Table.from_pandas(frame if new is None else new, preserve_index=False)
+    parquet.write_table(table.replace_schema_metadata(metadata), path)
+
+
+def cell(name: str, value: object, row: int = 5) -> Callable[[Frame], Frame]:
+    return lambda frame: frame.assign(
+        **{name: [value if at == row else old for at, old in enumerate(frame[name])]}
+    )
+
+
+MOTION: dict[str, tuple[Callable[[Frame], Frame | None], str]] = {
+    "a robot that is not": (cell("robot", 10), "row 5: robot 10 cannot be; valid: 0 to 9"),
+    "a place that is not": (cell("to_wp", 10**6), "to_wp 1000000 cannot be"),
+    "a negative place": (cell("from_wp", -1), "from_wp -1 cannot be"),
+    "a kind that is not": (cell("kind", 6), "kind 6 cannot be; valid: 0 to 5"),
+    "a pod that is not": (cell("pod", 100), "pod 100 cannot be; valid: -1 to 99"),
+    "a time before the start": (cell("t0_us", -1), "t0_us -1 cannot be"),
+    "an end before its begin": (cell("t1_us", 0), "ends (t1_us) before it begins"),
+    "no heading": (cell("heading0_rad", float("nan")), "heading0_rad: a value is missing"),
+    "a heading without end": (cell("heading1_rad", float("inf")), "heading1_rad inf cannot be"),
+    "a gap": (lambda frame: frame.drop(index=5), "does not begin (t0_us) where the one before"),
+    "rows turned round": (lambda frame: frame[::-1], "rows are not sorted by robot"),
+    "a robot left out": (lambda frame: frame[frame["robot"] != 3], "nothing is told of robot 3"),
+    "no rows": (lambda frame: frame[:0], "nothing is told of robot 0"),
+    "words for numbers": (lambda frame: frame.astype({"robot": str}), "robot must hold whole num"),
+    "a missing number": (
+        lambda frame: frame.assign(pod=frame["pod"].astype("Int32").mask(frame["t0_us"] > 0)),
+        "a value is missing",
+    ),
+    "no column": (lambda frame: frame.drop(columns="pod"), "column pod missing"),
+}
+EVENTS: dict[str, tuple[Callable[[Frame], Frame | None], str]] = {
+    "a kind that is not": (cell("kind", "explosion"), "row 5: kind is none of stock, task"),
+    "a time before the start": (cell("time_us", -1), "time_us -1 cannot be"),
+    "a time after the end": (cell("time_us", 10**12), "time_us 1000000000000 cannot be"),
+    "a time before the row before": (
+        lambda frame: frame.assign(time_us=frame["time_us"].to_numpy()[::-1]),
+        "it is earlier than the row before",
+    ),
+    "a station that is not": (cell("station", 99), "station 99 cannot be; valid: -1 to 3"),
+    "a SKU that is not": (cell("sku", 100), "sku 100 cannot be; valid: -1 to 99"),
+    "units below none": (cell("units", -4), "units -4 cannot be"),
+    "numbers for words": (lambda frame: frame.assign(kind=1), "kind must hold words"),
+}
+FILES = {"trace.parquet": MOTION, "events.parquet": EVENTS}
+
+
+@pytest.mark.parametrize(("file", "what"), [(f, what) for f in FILES for what in FILES[f]])
+def test_what_cannot_be(file: str, what: str, run: Path, tmp_path: Path, capsys) -> None:
+    how, message = FILES[file][what]
+    change(run / file, how)
+    page = tmp_path / "page.html"
+    assert main(["view", str(run), "--export", str(page)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f"{run / file}: " in line and message in line
+    assert not page.exists()
+    with pytest.raises(InputError, match=file.replace(".", r"\.")):
+        load_run(run).check()
+
+
+def test_what_can_be(run: Path, tmp_path: Path) -> None:
+    """What nobody has touched is shown and proven safe; a robot in another's place is neither."""
+    assert load_run(run).check().ok
+    change(run / "trace.parquet", lambda frame: frame)
+    change(run / "events.parquet", lambda frame: frame)
+    assert main(["view", str(run), "--export", str(tmp_path / "page.html")]) == 0
+
+
+TOLD: dict[str, tuple[object, str]] = {
+    "layout": ("small", "layout: Input should be"),
+    "scenario": ({"name": 3}, "scenario.name"),
+    "seed": (-1, "seed"),
+    "warmup_s": ("0", "warmup_s"),
+    "duration_s": (1e300, "duration_s"),
+    "slow_robots": ([[1, 2]], "slow_robots.0"),
+    "measures": ([{"columns": [{"name": "x"}]}], "measures.0.columns.0"),
+}
+
+
+@pytest.mark.parametrize("key", TOLD)
+def test_what_a_run_cannot_tell_of_itself(key: str, run: Path, capsys) -> None:
+    value, message = TOLD[key]
+    told = json.loads((run / "run.json").read_text())
+    (run / "run.json").write_text(json.dumps({**told, key: value}))
+    assert main(["report", str(run)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "run.json: corrupted" in line and message in line
+    assert not (run / "report.html").exists()
