@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import fsum
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -55,7 +56,8 @@ class Steps:
             return float("nan")
         inside = (self._times > begin_s) & (self._times < end_s)
         knots = np.concatenate([[begin_s], self._times[inside], [end_s]])
-        return float(np.dot(self.at(knots[:-1]), np.diff(knots)) / (end_s - begin_s))
+        # the exact sum: a product of the linear algebra library rounds as the processor has it
+        return fsum(self.at(knots[:-1]) * np.diff(knots)) / (end_s - begin_s)
 
     def most(self, begin_s: float, end_s: float) -> float:
         """Return the greatest value that lasts within an interval; nan if it is empty."""
