@@ -107,18 +107,17 @@ class Plan:
         waiting = self._orders[station.index]
         if not waiting or not station.active:
             return
-        coming = set(under_way(self._view, station))
         head = self._head(station)
-        for planned in list(waiting):
+        for planned in [p for p in waiting if p.begins_with == head or p.begins_with in station.tasks]:
             if not planned.item.waits(self._view):
                 waiting.remove(planned)
                 self._stale(station.index)
-            elif planned.begins_with in coming:
-                streams = list(planned.units) == [head]
-                joins = planned.item.order.index in station.orders
-                if joins or station.free_slots > (0 if streams else 1):
-                    waiting.remove(planned)
-                    yield planned.item.decision(station.index)
+                continue
+            streams = list(planned.units) == [head]
+            joins = planned.item.order.index in station.orders
+            if joins or station.free_slots > (0 if streams else 1):
+                waiting.remove(planned)
+                yield planned.item.decision(station.index)
 
     def streams(self, pod: int, station: int) -> bool:
         """Whether orders wait that a pod serves alone."""
