@@ -24,7 +24,8 @@ def digest(value: object) -> str:
 def _feed(state: hashlib._Hash, value: object) -> None:
     if isinstance(value, np.ndarray):
         state.update(f"{value.dtype.kind}{value.shape}".encode())
-        state.update(np.ascontiguousarray(value).astype(value.dtype.newbyteorder("<")).tobytes())
+        told = np.ascontiguousarray(value, value.dtype.newbyteorder("<"))
+        state.update(told.reshape(-1).view(np.uint8))
     elif hasattr(value, "digested"):
         _feed(state, value.digested())
     elif is_dataclass(value) and not isinstance(value, type):

@@ -166,38 +166,26 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
         if view.inventory.stored_space < floor:
             needed = max(1, round(self.parameters.bundle_share * len(view.robots)))
             yield from self._replenish(needed - self._at_bundles())
-        while (free := self._free_robots()) and (station := self._short(free)) is not None:
+        while (free := self._free_robots()) and (station := self._short()) is not None:
             pod = self._plan.pods[station.index].pop(0)
-            number, _ = self._nearest(free, pod)
-            fetch = BringForPicks(keeper_of(view, free[number], pod), pod, station.index)
+            at = view.storage.pod_waypoint[[pod]]
+            near = min(free, key=lambda r: (view.travel.estimate_s(r.waypoint, at)[0], r.index))
+            fetch = BringForPicks(keeper_of(view, near, pod), pod, station.index)
             yield By(fetch, self._plan.call(station.index))
             yield from self._give_slots()
         yield from self._replenish(len(view.robots))
 
-    def _short(self, free: Sequence[Robot]) -> PickStation | None:
-        """Find the station that is to be sent a pod soonest of those that are to be sent one."""
-        given, view = self.parameters, self.view
-        soonest_s, found = 0.0, None
-        for station in view.pick_stations:
+    def _short(self) -> PickStation | None:
+        """Find the station with the least work of those that are to be sent a pod."""
+        given, found = self.parameters, []
+        for station in self.view.pick_stations:
             room = len(station.tasks) < given.robots_per_station
-            pod = self._plan.next_pod(station.index) if room else -1
-            if pod < 0:
-                continue
-            unit_s = view.layout.pick_stations[station.index].unit_transfer_s
-            left_s = self._plan.units(station) * unit_s - given.horizon_s
-            if given.ways:
-                bring_s = view.travel.to(station.waypoint, loaded=True)
-                left_s -= self._nearest(free, pod)[1] + bring_s.item(view.storage.pod_waypoint[pod])
-            if left_s < soonest_s:
-                soonest_s, found = left_s, station
-        return found
-
-    def _nearest(self, robots: Sequence[Robot], pod: int) -> tuple[int, float]:
-        """Find the robot that is soonest at a pod: its number, and the time it takes, s."""
-        at = self.view.storage.pod_waypoint[pod].item()
-        way_s = self.view.travel.estimate_s(at, np.array([robot.waypoint for robot in robots]))
-        number = int(way_s.argmin())
-        return number, float(way_s[number])
+            if room and self._plan.next_pod(station.index) >= 0:
+                unit_s = self.view.layout.pick_stations[station.index].unit_transfer_s
+                work_s = self._plan.units(station) * unit_s
+                if work_s < given.horizon_s:
+                    found.append((work_s, station.index))
+        return self.view.pick_stations[min(found)[1]] if found else None
 
     def _free_robots(self) -> list[Robot]:
         """Robots without pod and task, in order."""

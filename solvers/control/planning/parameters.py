@@ -32,8 +32,6 @@ class PlanningParameters(SearchParameters):
     """Seconds for which decisions are collected before the optimiser is asked again."""
     horizon_s: NotNegative = 90.0
     """Seconds of work, on pods under way, below which a station is sent another pod."""
-    ways: bool = False
-    """Whether the time that the next pod takes to come is added to them: far pods are sent sooner."""
     unit_s: NotNegative = 10.0
     """Seconds of a robot that a unit served is worth."""
     order_s: NotNegative = 5.0

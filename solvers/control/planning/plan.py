@@ -108,7 +108,9 @@ class Plan:
         if not waiting or not station.active:
             return
         head = self._head(station)
-        for planned in [p for p in waiting if p.begins_with == head or p.begins_with in station.tasks]:
+        for planned in [
+            p for p in waiting if p.begins_with == head or p.begins_with in station.tasks
+        ]:
             if not planned.item.waits(self._view):
                 waiting.remove(planned)
                 self._stale(station.index)

@@ -188,7 +188,7 @@ def _planning(
         line_sku=sku,
         line_units=units,
         line_worth=given.unit_s * units + given.open_s * is_open[order_of],
-        stock=view.inventory.available[wanted].T.astype(np.int64),
+        stock=np.ascontiguousarray(view.inventory.available[wanted].T, np.int64),
         cost=_cost(view, given, stations, may_come),
         visits=given.visits,
         decay=given.decay,

@@ -24,6 +24,7 @@ class Found(NamedTuple):
 def visits(data: Planning) -> Visits:
     """Hand an input over; SKUs that no line wants are left out."""
     wanted, sku = np.unique(data.line_sku, return_inverse=True)
+    stock = data.stock if len(wanted) == data.stock.shape[1] else data.stock[:, wanted]
     return Visits(
         data.under_way,
         data.kept,
@@ -34,7 +35,7 @@ def visits(data: Planning) -> Visits:
         sku.tolist(),
         data.line_units.tolist(),
         data.line_worth.tolist(),
-        np.ascontiguousarray(data.stock[:, wanted]),
+        np.ascontiguousarray(stock),
         np.ascontiguousarray(data.cost).ravel(),
         data.visits,
         data.decay,
