@@ -25,7 +25,7 @@ def _feed(state: hashlib._Hash, value: object) -> None:
     if isinstance(value, np.ndarray):
         state.update(f"{value.dtype.kind}{value.shape}".encode())
         told = np.ascontiguousarray(value, value.dtype.newbyteorder("<"))
-        state.update(told.reshape(-1).view(np.uint8))
+        state.update(told.reshape(-1).view(np.uint8).data)
     elif hasattr(value, "digested"):
         _feed(state, value.digested())
     elif is_dataclass(value) and not isinstance(value, type):
