@@ -10,6 +10,7 @@ from sequencing_sample import station
 
 from rmfs.solvers.decisions.files import Decision
 from rmfs.solvers.decisions.models import plain_data
+from rmfs.solvers.models.charging import AWAY, Charging
 from rmfs.solvers.models.pile_on import Variant, Weights
 from rmfs.solvers.models.replenishment import Replenishment
 from rmfs.solvers.models.run_bound import Orders, PickStations, Refill, RunBound, Stock
@@ -69,6 +70,33 @@ def _stays(seed: int) -> object:
     cost_s[:, :-1] = _forbidding(rng, cost_s[:, :-1])
     end_s = begin_s + rng.integers(1, 12, 4)
     return Stays(begin_s, end_s, cost_s, np.array([1, 2, 4])[-zones:])
+
+
+def _charging(seed: int) -> object:
+    rng = _rng(seed)
+    robots, groups, slots, swaps = 3, 1 + seed % 2, 4, seed % 3 == 1
+    here = np.full(robots, AWAY)
+    here[0] = AWAY if swaps else 0
+    way_s = rng.uniform(5.0, 60.0, (robots, groups))
+    way_s[:, 1:] = _forbidding(rng, way_s[:, 1:])
+    return Charging(
+        level=rng.uniform(0.1, 0.9, robots),
+        drain=rng.uniform(0.0, 0.1, robots),
+        ready=rng.integers(0, 3, robots),
+        waits=np.array([False, seed % 4 == 1, False]),
+        here=here,
+        way_s=way_s,
+        places=rng.integers(1, 3, (groups, slots)),
+        gain=np.where(np.arange(groups) < swaps, 0.0, rng.uniform(0.1, 0.4, groups)),
+        swapped=np.where(np.arange(groups) < swaps, 0.9, 0.0),
+        wanted=rng.integers(0, robots + 1, (2, slots)),
+        slot_s=60.0,
+        worth_s=rng.uniform(200.0, 900.0),
+        longest=2 + seed % 2,
+        taper_from=1.0 if seed % 5 == 0 else 0.7,
+        idle=0.25 * (seed % 2),
+        short_s=2000.0,
+    )
 
 
 def _zones(seed: int) -> object:
@@ -162,6 +190,7 @@ _DRAWS = {
     "placement": _placement,
     "stays": _stays,
     "zones": _zones,
+    "charging": _charging,
     "matching": _matching,
     "balance": _balance,
     "sequence": _sequence,

@@ -134,6 +134,7 @@ _SOLVER_BACKED: dict[Problem, dict[str, str]] = {
         "routes": "rmfs.solvers.control.tasks.routes:RoutesControl",
         "planning": "rmfs.solvers.control.planning:PlanningControl",
     },
+    Problem.CA: {"schedule": "rmfs.solvers.control.charging:ScheduleControl"},
 }
 """Controllers of the same distribution that ask optimisers."""
 

@@ -84,6 +84,11 @@ class Batteries:
         shares: NDArray[np.float64] = self.levels_j() / self.capacity_j
         return shares
 
+    def mean_draw_w(self, now_s: float) -> float:
+        """What a robot has drawn in the mean since time zero, W; 0 at time zero."""
+        used_j = float(self._levels.energy()["ever_used_j"].mean())
+        return used_j / now_s if now_s > 0 else 0.0
+
     def exchange(self, robot: int, share: float) -> None:
         """Give a robot a battery with this level."""
         self._levels.exchange_battery(robot, share * self.capacity_j)

@@ -30,6 +30,7 @@ ASKERS = {
     "placement": "storage.placement",
     "prices": "storage.prices",
     "stays": "storage.stays",
+    "schedule": "charging.question",
 }
 """Modules of `rmfs.solvers.control` with a `Question` and how it is solved, by name."""
 

@@ -255,6 +255,39 @@ price_per_h | real | J   | robot time that one more place would save, s/h; not c
         ),
         {},
     ),
+    "charging": Schema(
+        fields_of(
+            """
+level      | real  | R   | level of a battery now, as a share of its capacity
+drain      | real  | R   | what a robot draws in a slot of work, as such a share
+ready      | whole | R   | first slot in which a robot may leave its work
+waits      | flag  | R   | whether a robot is bound for a place: away until its stay is over
+here       | whole | R   | group of the place where a robot is charged, or -1
+way_s      | cost  | R G | time from a robot to a place of a group, s
+places     | whole | G T | robots that may be at a group in a slot
+gain       | real  | G   | share of a capacity that a place gives in a slot at constant power
+swapped    | real  | G   | level after a swap, which takes a slot; 0: places that charge
+wanted     | whole | Q T | robots that work has use for in a slot, in each case
+slot_s     | real  |     | length of a slot, s
+worth_s    | real  |     | robot time that a full battery is worth at the end, s
+longest    | whole |     | slots of a stay, at most
+taper_from | real  |     | level from which charging slows down; 1: never
+full       | real  |     | level that counts as full
+least      | real  |     | level below which no robot should be
+short_s    | real  |     | cost of being below, s per share
+idle       | real  |     | cost of time away that work does not miss, relative to other time
+curve      | real  |     | how much the first energy is worth more than the last
+"""
+        ),
+        fields_of(
+            """
+group  | whole | R | group of the stay of each robot, or -1
+begin  | whole | R | its first slot, 0 for none
+length | whole | R | its slots, 0 for none
+"""
+        ),
+        {},
+    ),
     "matching": Schema(
         fields_of(
             """

@@ -20,6 +20,7 @@ FAMILIES = {
     "sequence": "tasks.sequence",
     "replenishment": "replenishment",
     "planning": "planning",
+    "charging": "charging",
     "run_bound": "run_bound",
 }
 """Where each family is, below `rmfs.solvers.models`."""

@@ -7,7 +7,7 @@ import pytest
 
 import rmfs
 from rmfs.control.decisions import Charge, Unplug
-from rmfs.control.registry import built_in
+from rmfs.control.registry import built_in, solver_backed
 from rmfs.errors import InputError
 from rmfs.simulation.decision import ImpossibleError
 from rmfs.world import verify
@@ -35,6 +35,7 @@ def simulate(seed=1, **given):
 
 
 RULES = [name for name in built_in(rmfs.control.problems.Problem.CA) if name != "dummy"]
+RULES += solver_backed(rmfs.control.problems.Problem.CA)
 
 
 @pytest.mark.parametrize("rule", RULES)
@@ -134,7 +135,11 @@ def test_copies_and_saved_runs_go_on_alike(tmp_path):
 
 
 def test_rules_are_exchanged_in_the_middle():
-    exchanges = [{"at_s": 600.0, "ca": "opportunity"}, {"at_s": 1200.0, "ca": "to-full"}]
+    exchanges = [
+        {"at_s": 500.0, "ca": "opportunity"},
+        {"at_s": 1000.0, "ca": "schedule"},
+        {"at_s": 1630.0, "ca": "to-full"},
+    ]
     run = simulate(**{"controllers.mm": {"name": "scheduled", "exchanges": exchanges}})
     assert run.footprint["robots_stranded"] == 0
     assert run.footprint["charges"] > 3

@@ -11,7 +11,7 @@ from rmfs.control.problems import Problem, Trigger
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rmfs.control.asks import Ask
+    from rmfs.control.asks import Ask, By
     from rmfs.control.decisions import Charge, Unplug
 
 P = TypeVar("P", bound=Parameters)
@@ -29,7 +29,7 @@ class ChargeAssignment(Controller[P]):
     triggers = frozenset({Trigger.START, Trigger.ROBOT_FREE})
 
     @abstractmethod
-    def decide(self) -> Iterator[Charge | Unplug | Ask[Any]]:
+    def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
         """Yield who is to go for energy, and who is to leave a plug-in place."""
 
     def target_share(self) -> float:

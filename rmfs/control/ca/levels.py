@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import pydantic
 
@@ -15,6 +15,7 @@ from rmfs.control.decisions import Charge, Unplug
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rmfs.control.asks import Ask, By
     from rmfs.world.robots import Robot
 
 Share = Annotated[float, pydantic.Field(ge=0, le=1)]
@@ -59,7 +60,7 @@ class ByLevel(ChargeAssignment[P]):
     def wanted_share(self, robot: Robot, share: float) -> float:
         """Level until which a robot with this one is to charge now; 0 if it is not to."""
 
-    def decide(self) -> Iterator[Charge | Unplug]:
+    def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
         """Yield robots to be sent, then places handed over."""
         batteries = self.view.batteries
         if batteries is None:

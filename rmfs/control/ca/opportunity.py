@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import pydantic
 
@@ -14,6 +14,7 @@ from rmfs.control.problems import Trigger
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rmfs.control.asks import Ask, By
     from rmfs.world.robots import Robot
 
 
@@ -43,7 +44,7 @@ class Opportunity(ByLevel[OpportunityParameters]):
         {Trigger.ORDER_ASSIGNED, Trigger.ORDER_QUEUED, Trigger.BUNDLE_ASSIGNED}
     )
 
-    def decide(self) -> Iterator[Charge | Unplug]:
+    def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
         """Yield robots to be sent, and one to be called back."""
         yield from super().decide()
         batteries, view = self.view.batteries, self.view

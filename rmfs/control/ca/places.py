@@ -9,6 +9,8 @@ import numpy as np
 from rmfs.layout.charging import Charger
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rmfs.control.view import View
     from rmfs.world.charging import RecoveryStation
     from rmfs.world.robots import Robot
@@ -34,7 +36,14 @@ def busy_s(view: View, station: RecoveryStation) -> float:
     )
 
 
-def choose(view: View, robot: Robot, rule: PlaceRule, *, full_too: bool = False) -> int:
+def choose(
+    view: View,
+    robot: Robot,
+    rule: PlaceRule,
+    *,
+    full_too: bool = False,
+    among: Sequence[RecoveryStation] | None = None,
+) -> int:
     """Choose a station for a robot; -1 if none has room.
 
     Parameters
@@ -45,8 +54,11 @@ def choose(view: View, robot: Robot, rule: PlaceRule, *, full_too: bool = False)
         or on their way, have what they came for, then the nearest.
     full_too
         Whether the robot may be sent where the queue has no place left, to wait outside.
+    among
+        The stations to choose from. Default: all.
     """
-    found = [s for s in view.recovery_stations if full_too or has_room(view, s)]
+    stations = view.recovery_stations if among is None else among
+    found = [s for s in stations if full_too or has_room(view, s)]
     if not found:
         return -1
     at = view.travel.robot_waypoint(robot.index)

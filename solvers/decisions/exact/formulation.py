@@ -115,6 +115,12 @@ def _stays(data: Any, where: str) -> Exact:
     return _of("stays", formulate(data, whole=False))
 
 
+def _charging(data: Any, where: str) -> Exact:
+    from rmfs.solvers.models.charging.program import formulate
+
+    return _of("charging", formulate(data))
+
+
 def _replenishment(data: Any, where: str) -> Exact:
     from rmfs.solvers.models.replenishment.program import formulate
 
@@ -180,6 +186,7 @@ _STATED: Mapping[str, Callable[[Any, str], Exact]] = {
     "placement": _placement,
     "stays": _stays,
     "zones": _zones,
+    "charging": _charging,
     "matching": _matching,
     "balance": _balance,
     "sequence": _sequence,

@@ -28,6 +28,7 @@ METHODS = {
     "rack_allocation": ("greedy", "cp_sat"),
     "placement": ("assignment",),
     "stays": ("greedy", "cp_sat", "highs"),
+    "charging": ("greedy", "highs"),
     "zones": ("clarabel",),
     "matching": ("assignment",),
     "balance": ("flow",),

@@ -53,6 +53,7 @@ INDEX = {
     "replenishment": {"pod": "P", "station": "S"},
     "placement": {"place": "L"},
     "stays": {"zone": "Z"},
+    "charging": {"group": "G", "begin": "T", "length": "T"},
     "matching": {"robot": "R"},
     "balance": {"robot": "R"},
 }

@@ -30,6 +30,7 @@ EXACT = {
     "placement": "assignment",
     "stays": "cp_sat",
     "zones": "clarabel",
+    "charging": "highs",
     "matching": "assignment",
     "balance": "flow",
     "sequence": "cp_sat",
@@ -85,6 +86,8 @@ def everything(question: Decision) -> Iterator[Plain]:
             spans = [(n["P"], 0, n["L"])]
         case "stays":
             spans = [(n["N"], 0, n["Z"])]
+        case "charging":
+            spans = [(n["R"], -1, n["G"]), (n["R"], 0, n["T"]), (n["R"], 0, 4)]
         case "matching" | "balance":
             spans = [(n["T"], -1, n["R"])]
         case "replenishment":
@@ -114,7 +117,7 @@ def routes(n: dict[str, int]) -> Iterator[Plain]:
 ENUMERATED = ["placement", "stays", "matching", "balance", "replenishment", "sequencing"]
 
 
-@pytest.mark.parametrize("family", [*ENUMERATED, "sequence", "rack_allocation"])
+@pytest.mark.parametrize("family", [*ENUMERATED, "sequence", "rack_allocation", "charging"])
 def test_the_optimum_is_that_of_enumeration(family: str, tmp_path: Path) -> None:
     """The checks go through everything; HiGHS finds the best of it."""
     for seed in range(2):

@@ -32,6 +32,7 @@ SETS = {
     "ta-balance": "balance",
     "ta-routes": "sequence",
     "stocking": "replenishment",
+    "ca-schedule": "charging",
 }
 """A shipped set of controllers, and the family that it asks."""
 
@@ -53,6 +54,12 @@ def recorded(controllers: str, duration_s: float, folder: Path, **more: Any) -> 
     given = SMALLER | {"scenario.duration_s": duration_s}
     if controllers == "stocking":
         given |= {"controllers.rps.work_s": 0.003, "controllers.rps.bundles": 10}
+    if controllers == "ca-schedule":
+        given |= {
+            "layout.other_stations.charger": {"kind": "charger", "north": 2},
+            "scenario.energy.battery": {"capacity_wh": 60, "initial_least_share": 0.4},
+            "controllers.ca.period_s": 10,
+        }
     rmfs.simulate(controllers=controllers, set=given, observers=[keeper], **more)
     found = [read(path) for path in sorted(folder.glob("*.json.gz"))]
     assert keeper.written == len(found) > 0

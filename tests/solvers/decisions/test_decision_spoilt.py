@@ -213,6 +213,22 @@ def all_in_the_first_zone(question: Decision, values: Plain) -> bool:
     return question.sizes["Z"] == 3 and overlap
 
 
+def all_at_the_first_group(question: Decision, values: Plain) -> bool:
+    """Everybody who may goes there as soon as the last of them can: it has not that many places."""
+    data = question.data
+    own = np.flatnonzero((data["here"] == -1) & np.isfinite(data["way_s"][:, 0]))
+    first = int(data["ready"][own].max(initial=0))
+    if len(own) <= data["places"][0, min(first, data["wanted"].shape[1] - 1)]:
+        return False
+    values["group"][own], values["begin"][own], values["length"][own] = 0, first, 1
+    return first < data["wanted"].shape[1]
+
+
+def no_stay_but_a_length(question: Decision, values: Plain) -> bool:
+    values["group"][1], values["begin"][1], values["length"][1] = -1, 0, 1
+    return True
+
+
 def task_twice(question: Decision, values: Plain) -> bool:
     for tasks in values["tasks"]:
         if tasks:
@@ -320,6 +336,13 @@ SPECIAL: dict[str, dict[str, Spoil]] = {
         "pods too many": stuff(1.01),
         "negative": put("standing", (0, 0), -0.5),
         "zone too full": all_in_the_last_zone,
+    },
+    "charging": {
+        "one beyond": put("group", 0, 7),
+        "too long": put("length", 0, 9),
+        "before the beginning": put("begin", 1, -1),
+        "all at once": all_at_the_first_group,
+        "no stay, but a length": no_stay_but_a_length,
     },
     "matching": {
         "robot twice": put("robot", np.s_[:2], 0),

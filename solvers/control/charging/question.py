@@ -1,0 +1,36 @@
+"""What CA schedule asks, and how it is solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rmfs.control.asks import Answer
+from rmfs.solvers.control.answers import answer
+from rmfs.solvers.models import charging
+from rmfs.solvers.models.charging import Charging
+from rmfs.solvers.models.solution import Limits
+
+
+@dataclass(frozen=True)
+class Question:
+    """Robots, places and work.
+
+    Attributes
+    ----------
+    method
+        `highs` or `cp_sat`, each beginning with the greedy rule unless that is proven to be good
+        enough, or `greedy` alone.
+    """
+
+    data: Charging
+    method: str
+    limits: Limits
+
+
+def solve(question: Question) -> Answer:
+    """Find `group`, `begin` and `length` of the stay of each robot."""
+    found = charging.solve(question.data, "greedy")
+    if question.method != "greedy" and found.gap > question.limits.gap:
+        found = charging.solve(question.data, question.method, question.limits, start=found.values)
+    values = found.values
+    return answer(found, None if values is None else dict(vars(values)))

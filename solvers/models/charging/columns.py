@@ -1,0 +1,102 @@
+"""All stays that each robot may have, one row each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rmfs.solvers.models.charging.data import (
+    AWAY,
+    ChargePlan,
+    Charging,
+    Floats,
+    Integers,
+    away,
+    costs_s,
+    during,
+)
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Every stay that a robot may have, and for every robot that it has none.
+
+    Parameters
+    ----------
+    robot, group, begin, length
+        The stays, sorted by robot, each robot's own absence of one first, shape (N,).
+    cost_s
+        What each costs but for missed work, shape (N,).
+    away, used
+        Slots in which the robot is away from work, and at a place, shape (N, T).
+    first
+        First row of each robot, and N, shape (R + 1,).
+    """
+
+    robot: Integers
+    group: Integers
+    begin: Integers
+    length: Integers
+    cost_s: Floats
+    away: NDArray[np.bool_]
+    used: NDArray[np.bool_]
+    first: Integers
+
+    def plan(self, rows: Integers) -> ChargePlan:
+        """Make a plan of one row for each robot, shape (R,)."""
+        return ChargePlan(self.group[rows], self.begin[rows], self.length[rows])
+
+    def rows(self, plan: ChargePlan) -> Integers:
+        """Find the row of each robot's stay, shape (R,); the plan breaks no rule."""
+        found = [
+            np.flatnonzero(
+                (self.group[low:high] == plan.group[robot])
+                & (self.begin[low:high] == plan.begin[robot])
+                & (self.length[low:high] == plan.length[robot])
+            )[0]
+            + low
+            for robot, (low, high) in enumerate(
+                zip(self.first[:-1].tolist(), self.first[1:].tolist(), strict=True)
+            )
+        ]
+        return np.array(found, np.int64)
+
+
+def columns(data: Charging) -> Columns:
+    """List all stays.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    """
+    robots, groups = data.way_s.shape
+    shape = (robots, groups, data.slots, min(data.longest, data.slots))
+    robot, group, begin, length = (
+        part.ravel() for part in np.meshgrid(*map(np.arange, shape), indexing="ij")
+    )
+    length = length + 1
+    here, waits = data.here[robot], data.waits[robot]
+    may = (begin + length <= data.slots) & np.isfinite(data.way_s[robot, group])
+    may &= (data.swapped[group] == 0) | (length == 1)
+    may &= (begin >= data.ready[robot]) | waits | (here != AWAY)
+    may &= (here == AWAY) | ((here == group) & (begin == 0))
+    nothing = np.arange(robots)
+    robot = np.concatenate([nothing, robot[may]])
+    group = np.concatenate([np.full(robots, AWAY), group[may]])
+    begin = np.concatenate([np.zeros(robots, np.int64), begin[may]])
+    length = np.concatenate([np.zeros(robots, np.int64), length[may]])
+    order = np.argsort(robot, kind="stable")
+    robot, plan = robot[order], ChargePlan(group[order], begin[order], length[order])
+    return Columns(
+        robot=robot,
+        group=plan.group,
+        begin=plan.begin,
+        length=plan.length,
+        cost_s=costs_s(data, robot, plan),
+        away=away(data, robot, plan),
+        used=during(plan.begin, plan.begin + plan.length, data.slots),
+        first=np.searchsorted(robot, np.arange(robots + 1)).astype(np.int64),
+    )

@@ -1,0 +1,332 @@
+r"""The problem: robots whose batteries run down, places with energy, and work that wants robots.
+
+Time is cut into T slots. Every robot has at most one stay at a place: group g, first slot b, n
+slots. Meanwhile it is away from work.
+
+.. math::
+
+    \min \sum_r \bigl(lost(end_r) + short \cdot (least - low_r)^+ + way_{r g_r}
+    + idle \cdot slot \cdot slots_r\bigr)
+    + (1 - idle) \frac{slot}{Q} \sum_{q,t} \bigl(wanted_{qt} - (R - away_t)\bigr)^+
+
+Robot time that work misses is weighed against energy: :math:`lost(l) = worth\,(1 - l - \kappa (l -
+l^2))` is what it will take to fill a battery that has the level l at the end, and :math:`\kappa`
+makes the energy of an empty battery worth more than that of a full one. Batteries fill with
+constant power up to a bend, and from there on with power that falls evenly to 0; a swap takes one
+slot. Groups are places that are alike. What work wants is given as Q cases, each as likely as the
+others.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rmfs.solvers.models.checks import costs, flags, integers, number, reals, require
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+AWAY = -1
+"""Group of a robot that has no stay."""
+
+
+@dataclass(frozen=True)
+class Charging:
+    r"""Robots, groups of places, and work.
+
+    Parameters
+    ----------
+    level
+        Level of each battery now, as a share of its capacity, shape (R,).
+    drain
+        What each robot draws in a slot of work, as such a share, shape (R,).
+    ready
+        First slot in which each robot may leave its work, shape (R,).
+    waits
+        Whether a robot is bound for a place already: it is away from work until its stay is over,
+        and does not drain, shape (R,).
+    here
+        Group of the place where a robot is being charged, or `AWAY`, shape (R,). Its stay begins in
+        slot 0; without one it leaves now.
+    way_s
+        Time from each robot to a place of each group, shape (R, G), in s; +inf where it may not go.
+        A stay begins with it, unless the robot is there, and the way back is paid besides.
+    places
+        Robots that may be at each group, shape (G, T).
+    gain
+        Share of a capacity that each group gives in a slot at constant power, shape (G,).
+    swapped
+        Level that a robot has after a stay at each group that swaps batteries, which takes one
+        slot; 0 for groups that charge, shape (G,).
+    wanted
+        Robots that work has use for, in Q cases, shape (Q, T).
+    slot_s
+        Length of a slot, positive, in s.
+    worth_s
+        Robot time that a full battery is worth at the end, in s.
+    longest
+        Slots of a stay, at most. Default 8.
+    taper_from
+        Level from which charging slows down; 1: never. Default 0.8.
+    full
+        Level that counts as full. Default 0.98.
+    least
+        Level below which no robot should be. Default 0.15.
+    short_s
+        What it costs to be below, in s per share. Default 36000.
+    idle
+        What time away from work costs that work does not miss, as a share of what it costs where
+        work does, from 0 to 1. Default 0.
+    curve
+        :math:`\kappa`, from 0 to 1. Default 0.2.
+
+    Raises
+    ------
+    ModelError
+        If a shape or a value is wrong.
+    """
+
+    level: Floats
+    drain: Floats
+    ready: Integers
+    waits: NDArray[np.bool_]
+    here: Integers
+    way_s: Floats
+    places: Integers
+    gain: Floats
+    swapped: Floats
+    wanted: Integers
+    slot_s: float
+    worth_s: float
+    longest: int = 8
+    taper_from: float = 0.8
+    full: float = 0.98
+    least: float = 0.15
+    short_s: float = 36000.0
+    idle: float = 0.0
+    curve: float = 0.2
+
+    def __post_init__(self) -> None:
+        level = reals("level", self.level, (None,), low=0)
+        way_s = costs("way_s", self.way_s, (len(level), None), low=0)
+        robots, groups = way_s.shape
+        wanted = integers("wanted", self.wanted, (None, None), low=0)
+        cases, slots = wanted.shape
+        require(cases > 0, "wanted", "must have a case")
+        require(slots > 0, "wanted", "must have a slot")
+        slot_s = number("slot_s", self.slot_s, low=0)
+        require(slot_s > 0, "slot_s", "must be positive")
+        checked = {
+            "level": level,
+            "drain": reals("drain", self.drain, (robots,), low=0),
+            "ready": integers("ready", self.ready, (robots,), low=0),
+            "waits": flags("waits", self.waits, (robots,)),
+            "here": integers("here", self.here, (robots,), low=AWAY, high=groups - 1),
+            "way_s": way_s,
+            "places": integers("places", self.places, (groups, slots), low=0),
+            "gain": reals("gain", self.gain, (groups,), low=0),
+            "swapped": reals("swapped", self.swapped, (groups,), low=0, high=1),
+            "wanted": wanted,
+            "slot_s": slot_s,
+            "worth_s": number("worth_s", self.worth_s, low=0),
+            "longest": int(integers("longest", self.longest, (), low=1)),
+            "taper_from": number("taper_from", self.taper_from, low=0, high=1),
+            "full": number("full", self.full, low=0, high=1),
+            "least": number("least", self.least, low=0, high=1),
+            "short_s": number("short_s", self.short_s, low=0),
+            "idle": number("idle", self.idle, low=0, high=1),
+            "curve": number("curve", self.curve, low=0, high=1),
+        }
+        for field, value in checked.items():
+            object.__setattr__(self, field, value)
+        plugged = self.here != AWAY
+        require(not (plugged & self.waits).any(), "waits", "a robot that is there does not wait")
+        swaps = np.append(self.swapped > 0, False)[self.here]
+        require(not swaps.any(), "here", "a robot that swaps waits: nothing can be decided of it")
+
+    @property
+    def robots(self) -> int:
+        """Number of robots R."""
+        return len(self.level)
+
+    @property
+    def slots(self) -> int:
+        """Number of slots T."""
+        return int(self.wanted.shape[1])
+
+    def charged(self, level: Floats, gain: Floats, slots: Floats) -> Floats:
+        """Return levels after some slots of charging; nothing is charged beyond full.
+
+        Parameters
+        ----------
+        level, gain, slots
+            Levels before, shares per slot at constant power, and slots; they broadcast.
+        """
+        bend = self.taper_from
+        steady = level + gain * slots
+        if bend < 1:
+            before = np.divide(
+                bend - level, gain, out=np.full(steady.shape, np.inf), where=gain > 0
+            )
+            begun = np.maximum(level, bend)
+            tapering = np.maximum(slots - np.maximum(before, 0.0), 0.0)
+            slowed = 1 - np.maximum(1 - begun, 0) * np.exp(-tapering * gain / (1 - bend))
+            steady = np.where(steady > bend, slowed, steady)
+        reached: Floats = np.maximum(level, np.minimum(steady, self.full))
+        return reached
+
+    def lost_s(self, level: Floats) -> Floats:
+        """Return the robot time that it will take to fill batteries with these levels, s."""
+        lost: Floats = self.worth_s * (1 - level - self.curve * (level - level**2))
+        return lost
+
+    def missing_s(self, away: Integers) -> Floats:
+        """Return the time of robots that work misses in the mean of the cases, shape (T,), in s.
+
+        What time away costs in any case is not counted.
+
+        Parameters
+        ----------
+        away
+            Robots away from work, shape (T,).
+        """
+        missed = np.maximum(self.wanted - (self.robots - away), 0).mean(axis=0)
+        time_s: Floats = self.missed_s * missed
+        return time_s
+
+    @property
+    def missed_s(self) -> float:
+        """What a robot costs besides that work misses for a slot, s."""
+        return self.slot_s * (1 - self.idle)
+
+
+@dataclass(frozen=True)
+class ChargePlan:
+    """Stays of robots.
+
+    Parameters
+    ----------
+    group
+        Group of each robot's stay, or `AWAY`, shape (R,).
+    begin, length
+        First slot of the stay, and its slots; 0 for robots without, shape (R,).
+    """
+
+    group: Integers
+    begin: Integers
+    length: Integers
+
+
+def costs_s(data: Charging, robot: Integers, plan: ChargePlan) -> Floats:
+    """Return what stays cost, but for the work that misses robots, shape (N,), in s.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    robot
+        Whose stays these are, shape (N,).
+    plan
+        The stays, each of shape (N,).
+    """
+    stays, group = plan.group != AWAY, np.maximum(plan.group, 0)
+    waits, here = data.waits[robot], data.here[robot] != AWAY
+    level, drain = data.level[robot], data.drain[robot]
+    if data.way_s.shape[1]:
+        way_s, gain = data.way_s[robot, group], data.gain[group]
+        swapped = data.swapped[group]
+    else:
+        way_s = gain = swapped = np.zeros(len(robot))
+    before = np.where(waits | here, level, level - drain * plan.begin)
+    way = np.where(np.isfinite(way_s) & ~here, way_s / data.slot_s, 0.0)
+    after = data.charged(before, gain, np.maximum(plan.length - way, 0.0))
+    after = np.where(swapped > 0, np.maximum(swapped, before), after)
+    left = data.slots - plan.begin - plan.length
+    idle = np.where(waits, level, level - drain * data.slots)
+    end = np.where(stays, after - drain * left, idle)
+    low = np.where(stays, np.minimum(before, end), end)
+    back_s = np.where(stays, way_s, 0.0)
+    back_s = back_s + data.idle * data.slot_s * away(data, robot, plan).sum(axis=1)
+    cost_s: Floats = data.lost_s(end) + data.short_s * np.maximum(data.least - low, 0.0) + back_s
+    return cost_s
+
+
+def away(data: Charging, robot: Integers, plan: ChargePlan) -> NDArray[np.bool_]:
+    """Return in which slots robots are away from work, shape (N, T).
+
+    Parameters
+    ----------
+    data, robot, plan
+        As for `costs_s`.
+    """
+    stays = plan.group != AWAY
+    waits = data.waits[robot]
+    first = np.where(waits, 0, plan.begin)
+    end = np.where(stays, plan.begin + plan.length, np.where(waits, data.slots, 0))
+    return during(first, end, data.slots)
+
+
+def during(first: Integers, end: Integers, slots: int) -> NDArray[np.bool_]:
+    """Return which slots lie within [first, end), shape (N, T)."""
+    slot = np.arange(slots)
+    within: NDArray[np.bool_] = (slot >= first[:, np.newaxis]) & (slot < end[:, np.newaxis])
+    return within
+
+
+def objective(data: Charging, plan: ChargePlan) -> float:
+    """Return the robot time of energy, ways and missed work, in s.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    plan
+        The stay of every robot.
+    """
+    robot = np.arange(data.robots)
+    missed_s = data.missing_s(away(data, robot, plan).sum(axis=0))
+    return math.fsum(costs_s(data, robot, plan).tolist()) + math.fsum(missed_s.tolist())
+
+
+def violations(data: Charging, plan: ChargePlan) -> list[str]:
+    """Say what is wrong with a plan; empty if nothing is.
+
+    Parameters
+    ----------
+    data
+        The problem.
+    plan
+        The stay of every robot.
+    """
+    groups, robots = len(data.gain), data.robots
+    if any(part.shape != (robots,) for part in (plan.group, plan.begin, plan.length)):
+        return ["not one stay for every robot"]
+    stays = plan.group != AWAY
+    if ((plan.group < AWAY) | (plan.group >= groups)).any():
+        return ["a group that does not exist"]
+    if ((plan.begin != 0) | (plan.length != 0))[~stays].any():
+        return ["no stay, but a begin or a length"]
+    group, begin, length = plan.group[stays], plan.begin[stays], plan.length[stays]
+    found = []
+    if ((begin < 0) | (begin + length > data.slots)).any():
+        found.append("a stay beyond the slots")
+    limit = np.where(data.swapped[group] > 0, 1, data.longest)
+    if ((length < 1) | (length > limit)).any():
+        found.append("a stay that is too short or too long")
+    here = data.here[stays]
+    free = ~data.waits[stays] & (here == AWAY)
+    if (begin < data.ready[stays])[free].any():
+        found.append("a stay before the robot is ready")
+    if ((here != AWAY) & ((here != group) | (begin != 0))).any():
+        found.append("a robot that is there, and goes elsewhere")
+    if np.isinf(data.way_s[np.flatnonzero(stays), group]).any():
+        found.append("a robot at a group where it may not go")
+    used = np.zeros((groups, data.slots), np.int64)
+    np.add.at(used, group, during(begin, begin + length, data.slots))
+    if (used > data.places).any():
+        found.append("more robots than places")
+    return found
