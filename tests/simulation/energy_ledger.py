@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
+
 import numpy as np
 
 from rmfs.observer import Observer
@@ -14,26 +16,44 @@ class EnergyLedger(Observer):
     """Follows the masses of pods by itself, and works out of the trace what each robot drew."""
 
     def run_started(self, run):
-        self.layout, self.given, self.world = run.layout, run.scenario.energy, run.world
+        self.layout, self.given, self.traffic = run.layout, run.scenario.energy, run.traffic
+        if self.given is None:
+            return
         self.space = run.world.inventory.unit_space.tolist()
         used = run.world.inventory.unit_space @ run.world.inventory.contained
         kg = self.given.goods_kg_per_space
         self.kg = (self.given.pod_kg + kg * used).tolist()
-        self.changes = [[(0, mass)] for mass in self.kg]
+        self.changes = [([0], [mass]) for mass in self.kg]
 
     def weigh(self, pod, space, time_s):
+        if self.given is None:
+            return
         self.kg[pod] += self.given.goods_kg_per_space * space
-        self.changes[pod].append((round(time_s * 1e6), self.kg[pod]))
+        since, mass = self.changes[pod]
+        since.append(round(time_s * 1e6))
+        mass.append(self.kg[pod])
 
     def unit_picked(self, time_s, order, sku, pod, robot, station, late_bound):
-        self.weigh(pod, -self.space[sku], time_s)
+        if self.given is not None:
+            self.weigh(pod, -self.space[sku], time_s)
 
     def bundle_stored(self, bundle, robot):
         self.weigh(bundle.pod, bundle.space, bundle.stored_s)
 
+    def run_ended(self, time_s):
+        """Fail unless the balance holds; what was drawn comes from the trace, if there is one."""
+        if self.given is None:
+            return
+        try:
+            trace = self.traffic.trace()
+        except ValueError:
+            trace = None
+        self.balance(self.traffic.energy(), trace, time_s)
+
     def mass(self, pod, time_us):
         """What a pod weighed when a piece of motion began."""
-        return next(kg for since, kg in reversed(self.changes[pod]) if since <= time_us)
+        since, mass = self.changes[pod]
+        return mass[bisect_right(since, time_us) - 1]
 
     def drawn_j(self, trace, until_us):
         """J per robot until then, and which robots are in the middle of a move."""
@@ -79,13 +99,19 @@ class EnergyLedger(Observer):
         return (steady + kinetic) / e.drive_efficiency - e.recuperation_share * kinetic
 
     def check(self, run):
+        """The same with the trace of a run that is over."""
+        self.balance(run.traffic.energy(), run.trace, run.end_s)
+
+    def balance(self, told, trace, end_s):
         """Drawn = initial + charged - left, per robot, to 1e-9."""
-        told = run.traffic.energy()
-        drawn, whole = self.drawn_j(run.trace, round(run.end_s * 1e6))
         left = told["initial_j"] + told["ever_charged_j"] - told["level_j"]
-        assert whole.any()
-        np.testing.assert_allclose(left[whole], drawn[whole], rtol=1e-9)
         np.testing.assert_allclose(left, told["ever_used_j"], rtol=1e-9)
+        if self.given.battery is not None:
+            most = self.given.battery.capacity_wh * 3600 * (1 + 1e-9)
+            assert (told["level_j"] <= most).all()
+        if trace is not None:
+            drawn, whole = self.drawn_j(trace, round(end_s * 1e6))
+            np.testing.assert_allclose(left[whole], drawn[whole], rtol=1e-9)
 
 
 COLUMNS = (
