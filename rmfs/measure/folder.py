@@ -194,16 +194,22 @@ class RunFolder(Results):
         return read_layout(self.path)
 
     def check(self) -> CheckReport:
-        """Have the independent checker prove the motion safe; raises as `replayed` does."""
+        """Have the independent checker prove the motion safe; raises as `trace` does.
+
+        Raises
+        ------
+        InputError
+            Also if the trace names robots, waypoints, pods or kinds that are not. Gaps, jumps and
+            impossible times are findings.
+        """
         from rmfs.measure.checker import Slow, check
 
-        layout, motion, _ = self.replayed()
         slow = [Slow(*one) for one in self.told.slow_robots]
-        trace = {str(name): column.to_numpy() for name, column in motion.items()}
-        return check(layout, trace, until_us=self.told.end_us, slow=slow)
+        trace = {str(name): column.to_numpy() for name, column in self.trace.items()}
+        return check(self.layout, trace, until_us=self.told.end_us, slow=slow)
 
     def replayed(self) -> tuple[Layout, pd.DataFrame, pd.DataFrame]:
-        """Return layout, motion and events, which fit each other.
+        """Return layout, motion and events, which fit each other: all that a replay needs.
 
         Raises
         ------

@@ -124,6 +124,10 @@ def read(layout: Layout, columns: Mapping[str, Any]) -> Trace:
                 f"trace: row {row}: {name} {arrays[name][row]} does not exist "
                 f"(valid: {low} to {high - 1})"
             )
+    for name in ("heading0_rad", "heading1_rad"):
+        if not np.isfinite(arrays[name]).all():
+            row = int(np.argmin(np.isfinite(arrays[name])))
+            raise InputError(f"trace: row {row}: {name} {arrays[name][row]} is no angle")
     order = np.lexsort((arrays["t0_us"], arrays["robot"]))
     return Trace(**{name: array[order] for name, array in arrays.items()})
 
