@@ -28,6 +28,8 @@ class Goal(Parameters):
     """Of a unit picked at the begin of the horizon; it falls to 0 at its end."""
     orders: float = 0.0
     """The same of an order completed."""
+    units_stored: float = 0.0
+    """The same of a unit stored: what is picked has to be stored sometime."""
     overdue_s: float = pydantic.Field(default=0.0, ge=0)
     """Of a second that an order is overdue within the horizon; it is subtracted."""
     distance_m: float = pydantic.Field(default=0.0, ge=0)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rmfs.control.problems import Problem
     from rmfs.observer import Observed
     from rmfs.world import World
-    from rmfs.world.orders import Order
+    from rmfs.world.orders import Bundle, Order
 
 
 class Trial(Protocol):
@@ -126,13 +126,17 @@ class Earnings(Observer):
         late_bound: bool,
     ) -> None:
         """Count it, the sooner the more."""
-        self._value += self._goal.units * (self._end_s - time_s) / self._horizon_s
+        self._value += self._goal.units * self._left(time_s)
 
     def order_completed(self, order: Order) -> None:
         """Count it, the sooner the more, and how long it was overdue."""
         goal = self._goal
-        self._value += goal.orders * (self._end_s - order.completed_s) / self._horizon_s
+        self._value += goal.orders * self._left(order.completed_s)
         self._value -= goal.overdue_s * self._overdue_s(order, order.completed_s)
+
+    def bundle_stored(self, bundle: Bundle, robot: int) -> None:
+        """Count its units, the sooner the more."""
+        self._value += self._goal.units_stored * bundle.units * self._left(bundle.stored_s)
 
     def value(self, world: World) -> float:
         """Return what was earned; orders that are overdue still are counted up to now."""
@@ -144,6 +148,10 @@ class Earnings(Observer):
         if goal.distance_m:
             value -= goal.distance_m * (self._metres() - self._driven_m)
         return value
+
+    def _left(self, time_s: float) -> float:
+        """Return the share of the horizon that is to come."""
+        return (self._end_s - time_s) / self._horizon_s
 
     def _overdue_s(self, order: Order, until_s: float) -> float:
         return max(0.0, until_s - max(order.due_s, self._begin_s))
