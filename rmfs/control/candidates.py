@@ -2,113 +2,39 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rmfs.control.answers import MEANINGS as MEANINGS
+from rmfs.control.answers import Candidates as Candidates
 from rmfs.control.ca.places import has_room
 from rmfs.control.decisions import (
     AssignOrder,
     Charge,
-    MovePod,
     PromiseBundle,
     ReleasePod,
-    Rest,
     SendBundle,
-    Store,
     SwitchStation,
     Unplug,
-    WorkFor,
 )
 from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
 from rmfs.control.problems import Problem
 from rmfs.control.repositioning import Move
-from rmfs.world.stations import PickStation, ReplenishmentStation
+from rmfs.control.task_candidates import open_work, tasks
+from rmfs.world.stations import ReplenishmentStation
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Sequence
 
-    import pandas as pd
     from numpy.typing import NDArray
 
+    from rmfs.control.answers import Columns
     from rmfs.control.questions import Question
     from rmfs.control.view import View
     from rmfs.world.orders import Order
     from rmfs.world.robots import Robot
-
-    Columns = dict[str, NDArray[Any]]
-
-
-class Candidates:
-    """C possible answers, as a table: a row per answer, a column per number.
-
-    `candidates[row]` is the answer itself, to be handed to `Decision.answer`.
-
-    Attributes
-    ----------
-    columns
-        Arrays of shape (C,) by name; `MEANINGS` says what each is.
-    """
-
-    def __init__(self, columns: Columns, answer: Callable[[int], Any]) -> None:
-        self.columns = columns
-        self._answer = answer
-
-    def __len__(self) -> int:
-        return len(next(iter(self.columns.values())))
-
-    def __getitem__(self, row: int) -> Any:
-        count = len(self)
-        if not -count <= row < count:
-            raise IndexError(f"there are {count} candidates, no row {row}")
-        return self._answer(row % count)
-
-    def __iter__(self) -> Iterator[Any]:
-        return (self._answer(row) for row in range(len(self)))
-
-    def frame(self) -> pd.DataFrame:
-        """Return the columns as a data frame."""
-        import pandas as pd
-
-        return pd.DataFrame(self.columns)
-
-
-class Meaning(NamedTuple):
-    """Unit and meaning of a column."""
-
-    unit: str
-    text: str
-
-
-MEANINGS = {
-    "order": Meaning("", "ordinal of arrival of a pick order"),
-    "bundle": Meaning("", "ordinal of arrival of a bundle"),
-    "station": Meaning("", "number of a station, pick stations first"),
-    "robot": Meaning("", "number of a robot"),
-    "pod": Meaning("", "number of a pod"),
-    "place": Meaning("", "waypoint of a storage place"),
-    "lines": Meaning("lines", "lines of the order"),
-    "units": Meaning("units", "units still wanted, or what the pod can serve of them"),
-    "inbound_units": Meaning("units", "of these, on pods at the station or on their way there"),
-    "in_stock": Meaning("", "1 if stock can serve the whole order, 0 if not"),
-    "age_s": Meaning("s", "time since it arrived"),
-    "due_in_s": Meaning("s", "time until it is due, negative if it is late"),
-    "free_slots": Meaning("orders", "slots of the station without an order"),
-    "orders": Meaning("orders", "orders the pod completes"),
-    "bundles": Meaning("bundles", "bundles for the pod, or the station"),
-    "space": Meaning("space units", "space the bundle takes"),
-    "free_space": Meaning("space units", "room left on the pod, or at the station"),
-    "reach_s": Meaning("s", "estimated time of the robot to the pod"),
-    "bring_s": Meaning("s", "unhindered time from the pod to the station"),
-    "away_s": Meaning("s", "unhindered time of the robot to the place or the station"),
-    "back_s": Meaning("s", "unhindered time from the place to the nearest active pick station"),
-    "distance_m": Meaning("m", "straight distance"),
-    "robots": Meaning("robots", "robots at work for the station, or bound for it"),
-    "level_share": Meaning("share", "what is in the robot's battery, of its capacity"),
-    "active": Meaning("", "1 if the station takes new work, 0 if not"),
-    "kind": Meaning("", "0 work for the station, 1 store the pod, 2 move a pod, 3 rest"),
-}
-"""What the columns of candidates are."""
+    from rmfs.world.stations import PickStation
 
 
 def candidates_for(view: View, question: Question, refused: Sequence[Any] = ()) -> Candidates:
@@ -122,7 +48,7 @@ def candidates_for(view: View, question: Question, refused: Sequence[Any] = ()) 
     if question.kind != "turn":
         return _OF_KIND[question.kind](view, view.robots[question.robot], question.stations)
     if question.problem is Problem.TA:
-        return _tasks(view, refused)
+        return tasks(view, refused)
     return _OF_TURN[question.problem](view)
 
 
@@ -258,50 +184,6 @@ def _exchanges(view: View) -> Candidates:
     return Candidates({"station": np.empty(0, np.int64)}, lambda row: row)
 
 
-def _tasks(view: View, refused: Sequence[Any]) -> Candidates:
-    """What each robot that needs a task, or is at rest, could do."""
-    found: list[tuple[Any, int, int, float]] = []
-    waypoints = np.array([station.waypoint for station in view.stations])
-    open_work = [station.index for station in view.stations if view.has_open_work(station.index)]
-    for robot in [*view.asking.values(), *view.resting.values()]:
-        away = view.travel.estimate_s(robot.waypoint, waypoints)
-        if robot.pod >= 0:
-            useful = [s.index for s in view.stations if _can_serve(view, robot.pod, s.index)]
-        else:
-            useful = open_work
-        found += [(WorkFor(robot, s), 0, s, float(away[s])) for s in useful]
-        if robot.pod >= 0:
-            found.append((Store(robot), 1, -1, 0.0))
-        else:
-            found.append((MovePod(robot), 2, -1, 0.0))
-            if robot.index in view.asking:
-                found.append((Rest(robot, robot.waypoint), 3, -1, 0.0))
-    kept = [one for one in found if one[0] not in refused]
-    numbers = [station for _, _, station, _ in kept]
-    columns: Columns = {
-        "robot": np.array([task[0].index for task, *_ in kept], np.int64),
-        "kind": np.array([kind for _, kind, _, _ in kept], np.int64),
-        "station": np.array(numbers, np.int64),
-        "away_s": np.array([away_s for *_, away_s in kept], np.float64),
-        "units": np.array([_open_work(view, s) if s >= 0 else 0 for s in numbers], np.int64),
-        "robots": np.array([len(view.stations[s].tasks) if s >= 0 else 0 for s in numbers]),
-    }
-    return Candidates(columns, lambda row: kept[row][0])
-
-
-def _can_serve(view: View, pod: int, station: int) -> bool:
-    target = view.stations[station]
-    if isinstance(target, PickStation):
-        return view.inventory.serves(pod, list(target.requests.lines))
-    return bool(view.bundles_waiting[target.number, pod])
-
-
-def _open_work(view: View, station: int) -> int:
-    """Units, or pods with bundles, for which nothing is under way yet."""
-    target = view.stations[station]
-    return target.requests.units if isinstance(target, PickStation) else len(target.waiting)
-
-
 # --- what TA asks -------------------------------------------------------------------------------
 
 
@@ -342,7 +224,7 @@ def _next_stations(view: View, robot: Robot, stations: tuple[int, ...]) -> Candi
     columns: Columns = {
         "station": np.array(stations, np.int64),
         "away_s": view.travel.away(robot.waypoint, loaded=True)[waypoints],
-        "units": np.array([_open_work(view, station) for station in stations], np.int64),
+        "units": np.array([open_work(view, station) for station in stations], np.int64),
         "robots": np.array([len(view.stations[station].tasks) for station in stations]),
     }
     return Candidates(columns, lambda row: stations[row])

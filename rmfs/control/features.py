@@ -26,7 +26,7 @@ LIMIT = 10.0
 """No feature is greater, or less than the negative of it."""
 
 FAR = 1e9
-"""What is greater counts as this in rankings."""
+"""What is greater counts as this in rankings; nothing is less than its negative."""
 
 KINDS: dict[Problem, tuple[str, ...]] = {
     Problem.POA: ("poa",),
@@ -135,13 +135,13 @@ def features_of(kinds: Iterable[str]) -> tuple[Feature, ...]:
 
 def numbers(candidates: Candidates, kind: str, view: View) -> dict[str, NDArray[np.float64]]:
     """Return the columns of candidates that are features, not scaled, each of shape (C,)."""
-    columns = dict(candidates.columns)
+    columns = candidates.columns
     if kind == "ta":
         task = columns["kind"]
-        columns |= {name: task == number for number, name in enumerate(_KIND_OF_TASK)}
+        columns = columns | {name: task == number for number, name in enumerate(_KIND_OF_TASK)}
     elif kind == "poa":
         orders = np.array([len(station.orders) for station in view.pick_stations], np.float64)
-        columns["orders_at_station"] = orders[columns["station"]]
+        columns = columns | {"orders_at_station": orders[columns["station"]]}
     return {name: np.asarray(columns[name], np.float64) for name in COLUMNS[kind]}
 
 
@@ -167,7 +167,7 @@ def best_rows(
     score = np.zeros(count)
     for name, weight in weights.items():
         # times are at most far away: an order without a due time is due never
-        score -= weight * columns[name].clip(-FAR, FAR)
+        score -= weight * np.minimum(columns[name], FAR)
     if count > 4 * k:
         # the k-th best score bounds those that are sorted; equals of it are kept
         bound = np.partition(score, k - 1)[k - 1]

@@ -133,10 +133,12 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Return which actions are possible, shape (actions,), as MaskablePPO wants them."""
-        mask = np.ones(self.actions, np.bool_)
-        mask[: self.decline + 1] = self._mask()
+        mask = np.zeros(self.actions, np.bool_)
         if self._options is None:
-            mask[self.decline + 1 :] = False
+            mask[self.decline] = True
+        else:
+            mask[: self.decline + 1] = self._options.mask
+            mask[self.decline + 1 :] = True
         return mask
 
     def reset(
@@ -152,7 +154,8 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         begun_s = self._run.now_s
         self._go_on()
         self._run.reward.take()
-        return self._observation(), self._info(begun_s)
+        mask = self.action_masks()
+        return self._observation(mask), self._info(begun_s, mask)
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Take a decision, and simulate up to the next one."""
@@ -162,10 +165,11 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         before_s = run.now_s
         invalid = not self._take(options, int(action))
         self._go_on()
-        info = self._info(before_s)
+        mask = self.action_masks()
+        info = self._info(before_s, mask)
         if invalid:
             info["invalid"] = True
-        return self._observation(), run.reward.take(), False, self._options is None, info
+        return self._observation(mask), run.reward.take(), False, self._options is None, info
 
     def render(self) -> Any:
         """Draw the warehouse as it is, shape (height, width, 3)."""
@@ -257,14 +261,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
             self._advice = (options.decision.advice(),)
         return self._advice[0]
 
-    def _mask(self) -> NDArray[np.int8]:
-        if self._options is not None:
-            return self._options.mask
-        mask = np.zeros(self.decline + 1, np.int8)
-        mask[self.decline] = 1
-        return mask
-
-    def _observation(self) -> Any:
+    def _observation(self, mask: NDArray[np.bool_]) -> Any:
         observing, options = self.observing, self._options
         decision = None if options is None else options.decision
         whole = observing.globals_of(self.run.view, decision)
@@ -277,13 +274,13 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         return {
             "global": whole,
             "candidates": found,
-            "action_mask": self.action_masks().astype(np.int8),
+            "action_mask": mask.view(np.int8).copy(),
         }
 
-    def _info(self, since_s: float) -> dict[str, Any]:
+    def _info(self, since_s: float, mask: NDArray[np.bool_]) -> dict[str, Any]:
         run, options = self.run, self._options
         info: dict[str, Any] = {
-            "action_mask": self.action_masks(),
+            "action_mask": mask,
             "elapsed_s": run.now_s - since_s,
             "now_s": run.now_s,
         }

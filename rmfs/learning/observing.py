@@ -12,13 +12,14 @@ from rmfs.control.features import (
     KINDS,
     LIMIT,
     RANKINGS,
+    SCALES,
     Feature,
     best_rows,
     features_of,
-    matrix,
     numbers,
 )
 from rmfs.control.problems import Problem
+from rmfs.control.task_candidates import MOVE
 from rmfs.errors import InputError
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ GLOBAL_FEATURES: tuple[Feature, ...] = (
 )
 """What is told of the whole warehouse; after these, 1 for the kind of the question."""
 
-_MOVE = 2
+_NONE = np.empty(0, np.intp)
 
 
 @dataclass(frozen=True)
@@ -122,7 +123,8 @@ class Observing:
             ),
         )
         self._names = [feature.name for feature in self.features]
-        self._scales = np.array([feature.scale for feature in GLOBAL_FEATURES])
+        self._scales = [feature.scale for feature in GLOBAL_FEATURES]
+        self._places = {kind: _places(kind, self._names) for kind in self.kinds}
         self._rankings = {**RANKINGS, **_checked(rankings or {})}
 
     def options(self, decision: Decision, *, may_move: bool) -> Options:
@@ -134,50 +136,65 @@ class Observing:
             Whether robots may move idle pods.
         """
         kind = decision.problem.value if decision.kind == "turn" else decision.kind
-        found = np.zeros((self.k, len(self._names)), np.float32)
-        mask = np.zeros(self.k + 1, np.int8)
-        mask[self.k] = decision.kind != "next station"
         candidates = decision.candidates
-        rows = np.empty(0, np.intp)
-        if len(candidates):
-            columns = numbers(candidates, kind, decision.view)
-            if kind == "ta" and not may_move:
-                rows = np.flatnonzero(candidates.columns["kind"] != _MOVE)
-                columns = {name: values[rows] for name, values in columns.items()}
-            best = best_rows(columns, self._rankings[kind], self.k)
-            chosen = {name: values[best] for name, values in columns.items()}
-            rows = rows[best] if len(rows) else best
-            found[: len(best)] = matrix(chosen, self._names)
-            mask[: len(best)] = 1
-        return Options(decision, rows, found, mask)
+        rows = None  # all
+        if kind == "ta" and not may_move:
+            rows = (candidates.columns["kind"] != MOVE).nonzero()[0]
+        count = len(candidates) if rows is None else len(rows)
+        mask = np.zeros(self.k + 1, np.int8)
+        mask[: min(count, self.k)] = 1
+        mask[self.k] = decision.kind != "next station"
+        found = np.zeros((self.k, len(self._names)), np.float32)
+        if not count:
+            return Options(decision, _NONE, found, mask)
+        columns = numbers(candidates, kind, decision.view)
+        if rows is not None:
+            columns = {name: values[rows] for name, values in columns.items()}
+        best = best_rows(columns, self._rankings[kind], self.k)
+        # a row per feature: few long operations in the place of many short ones
+        block = np.array([values[best] for values in columns.values()])
+        places, scales = self._places[kind]
+        if len(block):
+            block /= scales
+            np.minimum(block, LIMIT, out=block)
+            np.maximum(block, -LIMIT, out=block)
+            found[: len(best), places] = block.T
+        return Options(decision, best if rows is None else rows[best], found, mask)
 
     def globals_of(self, view: View, decision: Decision | None) -> NDArray[np.float32]:
         """Return the global features, shape (G,)."""
         robots = len(view.robots)
-        active = [station for station in view.pick_stations if station.active]
-        slots = sum(station.slots for station in active)
-        taken = sum(len(station.orders) for station in active)
-        units = sum(station.requests.units for station in view.pick_stations)
-        inventory = view.inventory
-        plain = np.array(
-            [
-                1.0 - view.now_s / view.end_s,
-                len(view.orders),
-                len(view.bundles),
-                1.0 - taken / slots if slots else 0.0,
-                units / max(len(view.pick_stations), 1),
-                len(view.asking) / robots,
-                len(view.resting) / robots,
-                sum(robot.pod >= 0 for robot in view.robots) / robots,
-                inventory.stored_space / inventory.total_capacity,
-            ]
+        slots = taken = units = 0
+        for station in view.pick_stations:
+            units += station.requests.units
+            if station.active:
+                slots += station.slots
+                taken += len(station.orders)
+        inventory, storage = view.inventory, view.storage
+        plain = (
+            1.0 - view.now_s / view.end_s,
+            len(view.orders),
+            len(view.bundles),
+            1.0 - taken / slots if slots else 0.0,
+            units / max(len(view.pick_stations), 1),
+            len(view.asking) / robots,
+            len(view.resting) / robots,
+            (len(storage.place_of) - np.count_nonzero(storage.is_stored)) / robots,
+            inventory.stored_space / inventory.total_capacity,
         )
-        all_of_them = np.zeros(len(self.global_features), np.float32)
-        all_of_them[: len(plain)] = np.clip(plain / self._scales, -LIMIT, LIMIT)
+        found = np.zeros(len(self.global_features), np.float32)
+        scaled = zip(plain, self._scales, strict=True)
+        found[: len(plain)] = [min(max(one / scale, -LIMIT), LIMIT) for one, scale in scaled]
         if decision is not None:
             kind = decision.problem.value if decision.kind == "turn" else decision.kind
-            all_of_them[len(plain) + self.kinds.index(kind)] = 1.0
-        return all_of_them
+            found[len(plain) + self.kinds.index(kind)] = 1.0
+        return found
+
+
+def _places(kind: str, names: Sequence[str]) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+    """Return where the features of a kind of question stand among all, and their scales, (F, 1)."""
+    places = np.array([names.index(name) for name in COLUMNS[kind]], np.intp)
+    return places, np.array([[SCALES[name]] for name in COLUMNS[kind]])
 
 
 def _checked(rankings: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:

@@ -110,6 +110,11 @@ class Inventory:
         """
         return read_only(self._skus_on)
 
+    def skus_of(self, pod: int) -> list[int]:
+        """Return the SKUs that a pod contains, in no order."""
+        skus: list[int] = self._skus_on[pod, : self._kinds_on[pod]].tolist()
+        return skus
+
     def stock(self, pod: int, sku: int, units: int) -> None:
         """Put units on a pod that were not promised: the stock at time zero."""
         space = units * self._unit_space_list[sku]
