@@ -48,6 +48,8 @@ class Episodes:
         Decided outside.
     reward
         See `rmfs.learning.rewards.reward_of`.
+    measured
+        Whether runs have results.
     """
 
     KEPT = 8
@@ -62,6 +64,7 @@ class Episodes:
         problems: Sequence[str],
         reward: Wanted,
         set: Mapping[str, Any] | None = None,
+        measured: bool = True,
     ) -> None:
         inputs = load_inputs(layout, scenario, controllers, as_overrides(set or {}))
         self._names = name_of(layout), name_of(scenario), name_of(controllers)
@@ -70,6 +73,7 @@ class Episodes:
         self._inputs = inputs
         self._problems = tuple(problems)
         self._reward = reward
+        self._measured = measured
         self._kept: dict[int, Episode] = {}
         reward_of(reward)  # what is wrong is said now
 
@@ -86,6 +90,7 @@ class Episodes:
             outside=self._problems,
             allow_not_well_formed=True,  # it has been checked
             reward=reward_of(self._reward),
+            measured=self._measured,
         )
         episode.names, episode.inputs = self._names, inputs
         if len(self._kept) == self.KEPT:

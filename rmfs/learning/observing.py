@@ -19,7 +19,7 @@ from rmfs.control.features import (
     numbers,
 )
 from rmfs.control.problems import Problem
-from rmfs.control.task_candidates import MOVE
+from rmfs.control.task_candidates import MOVE, has_tasks
 from rmfs.errors import InputError
 
 if TYPE_CHECKING:
@@ -122,6 +122,9 @@ class Observing:
                 for kind in self.kinds
             ),
         )
+        self._nothing = np.zeros((candidates, len(self.features)), np.float32)
+        self._decline_only = np.zeros(candidates + 1, np.int8)
+        self._decline_only[candidates] = 1
         self._names = [feature.name for feature in self.features]
         self._scales = [feature.scale for feature in GLOBAL_FEATURES]
         self._places = {kind: _places(kind, self._names) for kind in self.kinds}
@@ -136,6 +139,8 @@ class Observing:
             Whether robots may move idle pods.
         """
         kind = decision.problem.value if decision.kind == "turn" else decision.kind
+        if kind == "ta" and not may_move and not has_tasks(decision.view):
+            return Options(decision, _NONE, self._nothing, self._decline_only)
         candidates = decision.candidates
         rows = None  # all
         if kind == "ta" and not may_move:

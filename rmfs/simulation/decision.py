@@ -125,11 +125,20 @@ class Decision:
         reason = why_not(given, self._question, self.view)
         if reason:
             raise ImpossibleError(f"{self!r}: {given!r} is impossible: {reason}")
-        self._candidates = None
-        if self.kind == "turn":
-            self._take(given)
-        else:
-            self._reply(given, decided=True)
+        self._apply(given)
+
+    def choose(self, row: int) -> None:
+        """Answer with a row of `candidates`: what is there is possible and not looked at again.
+
+        Raises
+        ------
+        ImpossibleError
+            If the question has been answered.
+        IndexError
+            If there is no such row.
+        """
+        self._refuse_answered()
+        self._apply(self.candidates[row])
 
     def decline(self) -> None:
         """Decide nothing more now: end a turn, or tell TA that there is nothing to choose.
@@ -178,6 +187,14 @@ class Decision:
         if isinstance(decision, Ask):
             raise NotImplementedError(f"{self.problem} {type(rule).__name__} asks an optimiser")
         return decision
+
+    def _apply(self, given: Any) -> None:
+        """Do what was answered."""
+        self._candidates = None
+        if self.kind == "turn":
+            self._take(given)
+        else:
+            self._reply(given, decided=True)
 
     def _take(self, given: Any) -> None:
         """Apply a decision of a turn; the turn goes on."""

@@ -139,6 +139,8 @@ streams, remark, allow_not_well_formed, traffic_maker
         As for `simulate`.
     outside
         Decision problems that `step` hands out, such as `["poa", "pps"]`.
+    measured
+        Whether the run is measured; without, it is a little faster and has no result.
 
     Raises
     ------
@@ -165,6 +167,7 @@ streams, remark, allow_not_well_formed, traffic_maker
         remark: Callable[[str, str], None] | None = None,
         allow_not_well_formed: bool = False,
         traffic_maker: Callable[..., Traffic] = Traffic,
+        measured: bool = True,
     ) -> None:
         if not 0 <= seed <= LARGEST_SEED:
             raise InputError(f"seed {seed}: must be between 0 and {LARGEST_SEED}")
@@ -180,9 +183,11 @@ streams, remark, allow_not_well_formed, traffic_maker
             for part, notes in inputs.notes.items():
                 for note in notes:
                     remark(part, note)
+        self.measured = measured
         self.recorder = measure.Recorder()
         wanted = find_all([*_of_stations(plan), *measures])
         self.measures = [kind() for kind in (*SHIPPED, *wanted)]
+        measuring = [self.recorder, *self.measures] if measured else []
         self.log = measure.EventLog() if events is None and trace else events
         planner = planner_settings(rules.choices[Problem.PP], seed)
         slow = work.disturbances.slow
@@ -193,9 +198,9 @@ streams, remark, allow_not_well_formed, traffic_maker
             rules,
             seed=seed,
             observers=[
-                self.recorder,
+                *measuring[:1],
                 *([self.log] if self.log is not None else []),
-                *self.measures,
+                *measuring[1:],
                 *observers,
             ],
             outside=outside,
@@ -248,8 +253,10 @@ streams, remark, allow_not_well_formed, traffic_maker
         Raises
         ------
         InputError
-            If the run has not come to its end: rates and means would be wrong.
+            If the run has not come to its end (rates and means would be wrong), or is not measured.
         """
+        if not self.measured:
+            raise InputError("a run with measured=False has no results")
         if not self.ended:
             raise InputError(
                 f"the run is at {self.now_s:g} s of {self.end_s:g} s: its results come at its end"

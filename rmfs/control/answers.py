@@ -1,0 +1,85 @@
+"""Answers as a table: what a decision chooses among, a row per answer, a column per number."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    Columns = dict[str, NDArray[Any]]
+
+
+class Candidates:
+    """C possible answers, as a table: a row per answer, a column per number.
+
+    `candidates[row]` is the answer itself, to be handed to `Decision.answer`.
+
+    Attributes
+    ----------
+    columns
+        Arrays of shape (C,) by name; `MEANINGS` says what each is.
+    """
+
+    def __init__(self, columns: Columns, answer: Callable[[int], Any]) -> None:
+        self.columns = columns
+        self._answer = answer
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values())))
+
+    def __getitem__(self, row: int) -> Any:
+        count = len(self)
+        if not -count <= row < count:
+            raise IndexError(f"there are {count} candidates, no row {row}")
+        return self._answer(row % count)
+
+    def __iter__(self) -> Iterator[Any]:
+        return (self._answer(row) for row in range(len(self)))
+
+    def frame(self) -> pd.DataFrame:
+        """Return the columns as a data frame."""
+        import pandas as pd
+
+        return pd.DataFrame(self.columns)
+
+
+class Meaning(NamedTuple):
+    """Unit and meaning of a column."""
+
+    unit: str
+    text: str
+
+
+MEANINGS = {
+    "order": Meaning("", "ordinal of arrival of a pick order"),
+    "bundle": Meaning("", "ordinal of arrival of a bundle"),
+    "station": Meaning("", "number of a station, pick stations first"),
+    "robot": Meaning("", "number of a robot"),
+    "pod": Meaning("", "number of a pod"),
+    "place": Meaning("", "waypoint of a storage place"),
+    "lines": Meaning("lines", "lines of the order"),
+    "units": Meaning("units", "units still wanted, or what the pod can serve of them"),
+    "inbound_units": Meaning("units", "of these, on pods at the station or on their way there"),
+    "in_stock": Meaning("", "1 if stock can serve the whole order, 0 if not"),
+    "age_s": Meaning("s", "time since it arrived"),
+    "due_in_s": Meaning("s", "time until it is due, negative if it is late"),
+    "free_slots": Meaning("orders", "slots of the station without an order"),
+    "orders": Meaning("orders", "orders the pod completes"),
+    "bundles": Meaning("bundles", "bundles for the pod, or the station"),
+    "space": Meaning("space units", "space the bundle takes"),
+    "free_space": Meaning("space units", "room left on the pod, or at the station"),
+    "reach_s": Meaning("s", "estimated time of the robot to the pod"),
+    "bring_s": Meaning("s", "unhindered time from the pod to the station"),
+    "away_s": Meaning("s", "unhindered time of the robot to the place or the station"),
+    "back_s": Meaning("s", "unhindered time from the place to the nearest active pick station"),
+    "distance_m": Meaning("m", "straight distance"),
+    "robots": Meaning("robots", "robots at work for the station, or bound for it"),
+    "level_share": Meaning("share", "what is in the robot's battery, of its capacity"),
+    "active": Meaning("", "1 if the station takes new work, 0 if not"),
+    "kind": Meaning("", "0 work for the station, 1 store the pod, 2 move a pod, 3 rest"),
+}
+"""What the columns of candidates are."""

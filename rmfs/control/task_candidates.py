@@ -1,0 +1,133 @@
+"""What robots could do: the candidates of a turn of TA."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rmfs.control.answers import Candidates
+from rmfs.control.decisions import MovePod, Rest, Store, WorkFor
+from rmfs.world.stations import PickStation
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.control.answers import Columns
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+WORK, STORE, MOVE, REST = range(4)
+"""Values of the column `kind`."""
+
+_KIND_OF: dict[type, int] = {WorkFor: WORK, Store: STORE, MovePod: MOVE, Rest: REST}
+
+
+def tasks(view: View, refused: Sequence[Any] = ()) -> Candidates:
+    """List what each robot that needs a task, or is at rest, could do.
+
+    Decisions are made only of the rows that are asked for: most are looked at as numbers.
+
+    Parameters
+    ----------
+    refused
+        Decisions of the same turn that came to nothing.
+    """
+    robots = [*view.asking.values(), *view.resting.values()]
+    rows = _rows(view, robots)
+    if refused:
+        out = {_key(one) for one in refused}
+        rows = [(at, kind, to) for at, kind, to in rows if (robots[at].index, kind, to) not in out]
+    table = np.array(rows, np.int64).reshape(-1, 3)
+    at, kind, station = table[:, 0], table[:, 1], table[:, 2]
+    index = np.array([robot.index for robot in robots], np.int64)
+    works = kind == WORK
+    columns: Columns = {
+        "robot": index[at],
+        "kind": kind,
+        "station": station,
+        "away_s": np.zeros(len(table)),
+        "units": np.zeros(len(table), np.int64),
+        "robots": np.zeros(len(table), np.int64),
+    }
+    if works.any():
+        _measure(view, robots, columns, at, station, works)
+
+    def answer(row: int) -> Any:
+        place, kind, station = rows[row]
+        return _decision(robots[place], kind, station)
+
+    return Candidates(columns, answer)
+
+
+def has_tasks(view: View) -> bool:
+    """Whether there is anything that a robot could do, other than to move an idle pod."""
+    if view.asking:
+        return True
+    busy = any(station.has_open_work for station in view.stations)
+    return any(busy or robot.pod >= 0 for robot in view.resting.values())
+
+
+def open_work(view: View, station: int) -> int:
+    """Return units, or pods with bundles, for which nothing is under way yet."""
+    target = view.stations[station]
+    return target.requests.units if isinstance(target, PickStation) else len(target.waiting)
+
+
+def _rows(view: View, robots: Sequence[Robot]) -> list[tuple[int, int, int]]:
+    """List rows: place among the robots, kind of task, station or -1."""
+    rows: list[tuple[int, int, int]] = []
+    busy = [station.index for station in view.stations if station.has_open_work]
+    asking = len(view.asking)
+    for at, robot in enumerate(robots):
+        if robot.pod >= 0:
+            rows += [(at, WORK, station) for station in _served(view, robot.pod)]
+            rows.append((at, STORE, -1))
+        else:
+            rows += [(at, WORK, station) for station in busy]
+            rows.append((at, MOVE, -1))
+            if at < asking:
+                rows.append((at, REST, -1))
+    return rows
+
+
+def _measure(
+    view: View,
+    robots: Sequence[Robot],
+    columns: Columns,
+    at: np.ndarray[Any, Any],
+    station: np.ndarray[Any, Any],
+    works: np.ndarray[Any, Any],
+) -> None:
+    """Fill in what there is to know of work for stations."""
+    stations = view.stations
+    here = np.array([robot.waypoint for robot in robots])
+    there = np.array([one.waypoint for one in stations])
+    at, station = at[works], station[works]
+    columns["away_s"][works] = view.travel.estimate_s(here[:, None], there)[at, station]
+    units = np.array([open_work(view, number) for number in range(len(stations))])
+    columns["units"][works] = units[station]
+    columns["robots"][works] = np.array([len(one.tasks) for one in stations])[station]
+
+
+def _served(view: View, pod: int) -> list[int]:
+    """Find the stations that want something of a pod."""
+    inventory = view.inventory
+    skus = [sku for sku in inventory.skus_of(pod) if inventory.available[sku, pod] > 0]
+    picks = view.need[:, skus].any(axis=1).nonzero()[0].tolist() if skus else []
+    bundles = view.bundles_waiting[:, pod].nonzero()[0]
+    first = len(view.pick_stations)
+    return [*picks, *(bundles + first).tolist()]
+
+
+def _key(refused: Any) -> tuple[int, int, int]:
+    """Return robot, kind and station of a decision."""
+    return refused.robot.index, _KIND_OF[type(refused)], getattr(refused, "station", -1)
+
+
+def _decision(robot: Robot, kind: int, station: int) -> Any:
+    if kind == WORK:
+        return WorkFor(robot, station)
+    if kind == REST:
+        return Rest(robot, robot.waypoint)
+    return Store(robot) if kind == STORE else MovePod(robot)
