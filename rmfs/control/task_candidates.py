@@ -13,6 +13,8 @@ from rmfs.world.stations import PickStation
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
     from rmfs.control.answers import Columns
     from rmfs.control.view import View
     from rmfs.world.robots import Robot
@@ -95,9 +97,9 @@ def _measure(
     view: View,
     robots: Sequence[Robot],
     columns: Columns,
-    at: np.ndarray[Any, Any],
-    station: np.ndarray[Any, Any],
-    works: np.ndarray[Any, Any],
+    at: NDArray[np.int64],
+    station: NDArray[np.int64],
+    works: NDArray[np.bool_],
 ) -> None:
     """Fill in what there is to know of work for stations."""
     stations = view.stations
@@ -114,8 +116,8 @@ def _served(view: View, pod: int) -> list[int]:
     """Find the stations that want something of a pod."""
     inventory = view.inventory
     skus = [sku for sku in inventory.skus_of(pod) if inventory.available[sku, pod] > 0]
-    picks = view.need[:, skus].any(axis=1).nonzero()[0].tolist() if skus else []
-    bundles = view.bundles_waiting[:, pod].nonzero()[0]
+    picks = np.flatnonzero(view.need[:, skus].any(axis=1)).tolist() if skus else []
+    bundles = np.flatnonzero(view.bundles_waiting[:, pod])
     first = len(view.pick_stations)
     return [*picks, *(bundles + first).tolist()]
 

@@ -5,16 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rmfs.control.paths import PathLengths
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from rmfs.layout.model import Layout
 
+
+Waypoints = NDArray[np.signedinteger[Any]]
 
 Metric = Literal["euclidean", "manhattan", "path", "time"]
 """Straight distance, distance along the axes, length of the shortest way, and time for it."""
@@ -168,28 +169,31 @@ class Travel:
         everywhere = np.arange(len(self._x))
         return lambda waypoint, _: measure(waypoint, everywhere)
 
-    def manhattan_metres(
-        self, waypoint: int, others: NDArray[np.signedinteger[Any]]
-    ) -> NDArray[np.float64]:
-        """Distances along the axes to other waypoints, more on other tiers, shape (n,), m."""
+    def manhattan_metres(self, waypoint: int | Waypoints, others: Waypoints) -> NDArray[np.float64]:
+        """Distances along the axes to other waypoints, more on other tiers, m.
+
+        Shape (n,); for waypoints of shape (m, 1) shape (m, n).
+        """
         distance: NDArray[np.float64] = np.abs(self._x[others] - self._x[waypoint])
         distance += np.abs(self._y[others] - self._y[waypoint])
         if self.tiers > 1:
             distance += self._other_tier_m * (self.tier[others] != self.tier[waypoint])
         return distance
 
-    def estimate_s(self, waypoint: int, others: NDArray[np.int32]) -> NDArray[np.float64]:
+    def estimate_s(self, waypoint: int | Waypoints, others: Waypoints) -> NDArray[np.float64]:
         """Estimate times to other waypoints: Manhattan distance at top speed and one turn.
 
         Parameters
         ----------
+        waypoint
+            One, or several of shape (m, 1).
         others
             Waypoints, shape (n,).
 
         Returns
         -------
         NDArray
-            Seconds, shape (n,).
+            Seconds, shape (n,), or (m, n) from several waypoints.
         """
         seconds = self.manhattan_metres(waypoint, others)
         seconds *= self._seconds_per_metre

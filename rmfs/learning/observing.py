@@ -122,9 +122,9 @@ class Observing:
                 for kind in self.kinds
             ),
         )
-        self._nothing = np.zeros((candidates, len(self.features)), np.float32)
-        self._decline_only = np.zeros(candidates + 1, np.int8)
-        self._decline_only[candidates] = 1
+        self._shape = (candidates, len(self.features))
+        self._only_decline = np.zeros(candidates + 1, np.int8)
+        self._only_decline[candidates] = 1
         self._names = [feature.name for feature in self.features]
         self._scales = [feature.scale for feature in GLOBAL_FEATURES]
         self._places = {kind: _places(kind, self._names) for kind in self.kinds}
@@ -140,7 +140,7 @@ class Observing:
         """
         kind = decision.problem.value if decision.kind == "turn" else decision.kind
         if kind == "ta" and not may_move and not has_tasks(decision.view):
-            return Options(decision, _NONE, self._nothing, self._decline_only)
+            return Options(decision, _NONE, np.zeros(self._shape, np.float32), self._only_decline)
         candidates = decision.candidates
         rows = None  # all
         if kind == "ta" and not may_move:
@@ -149,7 +149,7 @@ class Observing:
         mask = np.zeros(self.k + 1, np.int8)
         mask[: min(count, self.k)] = 1
         mask[self.k] = decision.kind != "next station"
-        found = np.zeros((self.k, len(self._names)), np.float32)
+        found = np.zeros(self._shape, np.float32)
         if not count:
             return Options(decision, _NONE, found, mask)
         columns = numbers(candidates, kind, decision.view)
