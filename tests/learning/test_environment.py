@@ -198,6 +198,25 @@ def test_rewards_add_up_to_the_footprint() -> None:
     assert total == footprint["pods_lifted"] > 0
 
 
+def test_a_run_that_is_not_measured_goes_the_same_way() -> None:
+    def seen(footprint: bool) -> list[Any]:
+        env = made("ta", "pps", duration_s=400, footprint=footprint)
+        _, info = env.reset(seed=3)
+        found, over = [], False
+        while not over:
+            observation, reward, _, over, info = env.step(int(info["action_mask"].argmax()))
+            found.append((info["now_s"], reward, observation["candidates"].tobytes()))
+        assert ("footprint" in info) is footprint
+        return found
+
+    assert seen(True) == seen(False)
+    keys = {"scenario.duration_s": 30}
+    run = rmfs.Simulation("small", "small", set=keys, measured=False)
+    run.run()
+    with pytest.raises(InputError, match="measured=False"):
+        run.result()
+
+
 def test_time_passes_between_decisions() -> None:
     env = made("psa")
     _, info = env.reset(seed=1)
