@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
 
 
-Waypoints = NDArray[np.signedinteger[Any]]
+_Waypoints = NDArray[np.signedinteger[Any]]
 
 Metric = Literal["euclidean", "manhattan", "path", "time"]
 """Straight distance, distance along the axes, length of the shortest way, and time for it."""
@@ -169,7 +169,9 @@ class Travel:
         everywhere = np.arange(len(self._x))
         return lambda waypoint, _: measure(waypoint, everywhere)
 
-    def manhattan_metres(self, waypoint: int | Waypoints, others: Waypoints) -> NDArray[np.float64]:
+    def manhattan_metres(
+        self, waypoint: int | _Waypoints, others: _Waypoints
+    ) -> NDArray[np.float64]:
         """Distances along the axes to other waypoints, more on other tiers, m.
 
         Shape (n,); for waypoints of shape (m, 1) shape (m, n).
@@ -180,7 +182,7 @@ class Travel:
             distance += self._other_tier_m * (self.tier[others] != self.tier[waypoint])
         return distance
 
-    def estimate_s(self, waypoint: int | Waypoints, others: Waypoints) -> NDArray[np.float64]:
+    def estimate_s(self, waypoint: int | _Waypoints, others: _Waypoints) -> NDArray[np.float64]:
         """Estimate times to other waypoints: Manhattan distance at top speed and one turn.
 
         Parameters
@@ -188,7 +190,7 @@ class Travel:
         waypoint
             One, or several of shape (m, 1).
         others
-            Waypoints, shape (n,).
+            _Waypoints, shape (n,).
 
         Returns
         -------
