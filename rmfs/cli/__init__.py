@@ -13,6 +13,7 @@ from typing import Annotated
 
 import typer
 
+from rmfs.cli.check import check
 from rmfs.cli.defects import told
 from rmfs.cli.exit_codes import DEFECT, INTERRUPTED, WRONG_INPUT
 from rmfs.cli.groups import LazyGroup, tell_defaults
@@ -91,7 +92,7 @@ def rmfs(
         print(context.get_help())
 
 
-for command in (run, plot, report, view, compare):
+for command in (run, check, plot, report, view, compare):
     app.command()(command)
 
 

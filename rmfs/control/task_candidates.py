@@ -55,6 +55,9 @@ def tasks(view: View, refused: Sequence[Any] = ()) -> Candidates:
     if works.any():
         _measure(view, robots, columns, at, station, works)
 
+    if view.batteries is not None:
+        columns["level_share"] = view.batteries.shares()[columns["robot"]]
+
     def answer(row: int) -> Any:
         place, kind, station = rows[row]
         return _decision(robots[place], kind, station)

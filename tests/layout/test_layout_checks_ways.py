@@ -18,6 +18,8 @@ from broken_layouts import (
     without,
 )
 
+from rmfs.layout import check
+
 
 def test_storage_place_nobody_reaches():
     layout = small()
@@ -126,3 +128,12 @@ def test_head_that_leaves_through_its_own_queue():
     broken = without(layout, lambda tail, _: tail == queue[0])
     broken = with_edges(broken, [*edges(broken), (queue[0], queue[1])])
     assert_found(broken, NOT_WELL_FORMED, "pick station 0", "without passing its own queue")
+
+
+def test_a_charger_nobody_reaches():
+    layout = small(other_stations={"charger": {"kind": "charger", "north": 1}})
+    assert check(layout) == []
+    charger = layout.other_stations[0]
+    own = {charger.waypoint, *charger.queue}
+    broken = without(layout, lambda tail, head: head in own and tail not in own)
+    assert_found(broken, IMPOSSIBLE, "charger station 0", "no way leads to it")

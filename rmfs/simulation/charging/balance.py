@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rmfs.errors import InputError
 from rmfs.layout.charging import RecoveryKind
+from rmfs.simulation.charging.needs import GRAVITY
 
 if TYPE_CHECKING:
     from rmfs.layout.model import Layout
@@ -21,10 +22,13 @@ class Balance(NamedTuple):
         What all stations, and all waypoints that charge, give at most.
     least_w
         What the fleet draws at least: its electronics alone.
+    has_stations
+        Whether there is a station to which a robot can be sent for energy.
     """
 
     given_w: float
     least_w: float
+    has_stations: bool
 
 
 def waypoint_power_w(layout: Layout, energy: Energy) -> dict[int, float]:
@@ -53,7 +57,21 @@ def balance(layout: Layout, energy: Energy) -> Balance:
         if isinstance(other.kind, RecoveryKind) and not other.kind.head_w
     )
     given_w += sum(waypoint_power_w(layout, energy).values())
-    return Balance(given_w, layout.robots * energy.standby_w)
+    stations = any(isinstance(other.kind, RecoveryKind) for other in layout.other_stations)
+    return Balance(given_w, layout.robots * energy.standby_w, stations)
+
+
+def working_w(layout: Layout, energy: Energy) -> float:
+    """Estimate what a fleet draws that always drives at top speed, half of it with a full pod.
+
+    Starts and turns take more than that, waiting takes less: on the shipped sites the two about
+    cancel out. It is an estimate, not a bound.
+    """
+    pod_kg = energy.pod_kg + energy.goods_kg_per_space * float(layout.pod_capacity.mean()) / 2
+    speed = sum(kind.top_speed_m_s for kind in layout.robot_kinds) / len(layout.robot_kinds)
+    rolling_w = energy.rolling_resistance * GRAVITY * speed * (energy.robot_kg + pod_kg / 2)
+    standby_w = (energy.standby_w + energy.standby_loaded_w) / 2
+    return layout.robots * (rolling_w / energy.drive_efficiency + standby_w)
 
 
 def refuse(layout: Layout, energy: Energy) -> None:

@@ -78,7 +78,11 @@ class EnergyGuard:
 
     def _secure(self, robot: Robot, consult: Consult) -> None:
         needed_j = self.needs.task_j if robot.pod < 0 else self.needs.visit_j
-        spare_j = self._batteries.usable_j(robot.index) - needed_j
+        usable_j = self._batteries.usable_j(robot.index)
+        spare_j = usable_j - needed_j
+        if spare_j < 0 and robot.pod < 0:
+            # it may still do with less from where it stands
+            spare_j = usable_j - self.needs.task_from_j(robot.waypoint)
         if spare_j >= 0:
             self._safe_until_s[robot.index] = self._view.now_s + spare_j / self._most_w
         elif robot.pod >= 0:

@@ -51,6 +51,10 @@ class Needs:
         The same after a visit of any other station.
     """
 
+    task_j: float
+    store_j: float
+    visit_j: float
+
     def __init__(self, view: View, given: Energy) -> None:
         travel, layout, places = view.travel, view.layout, view.storage.places
         per_kg = max(most_w_per_kg(given, kind) for kind in layout.robot_kinds)
@@ -75,6 +79,24 @@ class Needs:
         self.store_j = loaded_w * away_s + lift_j + empty_w * energy_s
         self.visit_j = loaded_w * between_s + self.store_j
         self.task_j = empty_w * fetch_s + loaded_w * bring_s + self.store_j
+        self._travel, self._places, self._empty_w = travel, places, empty_w
+        self._bring_j: NDArray[np.float64] | None = None
+        self._loaded_w, self._work = loaded_w, work
+
+    def task_from_j(self, waypoint: int) -> float:
+        """Return the same as `task_j` of a robot that stands at a waypoint.
+
+        It goes to any pod from there, and brings it to the station that is farthest from the pod.
+        Never more than `task_j`.
+        """
+        if self._bring_j is None:
+            each_s = [self._travel.to(at, loaded=True)[self._places] for at in self._work.tolist()]
+            reached = np.where(np.isfinite(each_s), each_s, 0.0)
+            self._bring_j = self._loaded_w * reached.max(axis=0)
+        fetch_s = self._travel.away(waypoint, loaded=False)[self._places]
+        known = np.where(np.isfinite(fetch_s), fetch_s, 0.0)
+        whole = float((self._empty_w * known + self._bring_j).max(initial=0.0)) + self.store_j
+        return min(whole, self.task_j)
 
 
 def _most(times: NDArray[Any]) -> float:

@@ -29,11 +29,11 @@ class ScheduleParameters(LevelParameters):
     """Slots of a stay, at most."""
     worth: NotNegative = 1.15
     """Robot time that energy is worth, relative to what a place takes to give it."""
-    idle: Share = 0.3
+    idle: Share = 0.6
     """What the time of a robot costs that work has no use for, relative to one that is missed."""
     curve: Share = 0.2
     """How much more the first energy of a battery is worth than the last."""
-    margin_share: Share = 0.05
+    margin_share: Share = 0.0
     """How far above the level at which robots go for energy in any case nobody should be lower."""
     window_s: Positive = 1200.0
     """Seconds of the past from which it is told how many robots work has use for."""

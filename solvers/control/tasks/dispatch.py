@@ -79,6 +79,9 @@ class DispatchParameters(TaskParameters):
     """Seconds that a pod at, or on its way to, a station lets the next one wait."""
     late_weight: NotNegative = 0.02
     """Seconds of travel that a second of lateness of an order counts as."""
+    empty_battery_s: NotNegative = 0.0
+    """Seconds that the way of a robot with an empty battery counts as longer, less in proportion to
+    its level: those with more energy are sent first."""
 
 
 class DispatchControl(Asking[DispatchParameters]):
@@ -174,8 +177,15 @@ class DispatchControl(Asking[DispatchParameters]):
             bring_s = view.travel.to(view.stations[number].waypoint, loaded=True)[at]
             for row in empty:
                 reach_s = view.travel.estimate_s(robots[row].waypoint, at)
-                column[row] = float(np.mean(reach_s + bring_s))
+                column[row] = float(np.mean(reach_s + bring_s)) + self._low_s(robots[row])
         return column
+
+    def _low_s(self, robot: Robot) -> float:
+        """Return what a way counts as longer because of the robot's battery."""
+        batteries, empty_s = self.view.batteries, self.parameters.empty_battery_s
+        if batteries is None or not empty_s:
+            return 0.0
+        return empty_s * (1 - batteries.share(robot.index))
 
     def _wanted(self, number: int) -> int:
         """How many pods a station could use at most."""

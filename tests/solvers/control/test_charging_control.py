@@ -12,6 +12,7 @@ from rmfs.control.asks import Ask, Call
 from rmfs.control.problems import Problem
 from rmfs.measure.dictionary import reproducible
 from rmfs.solvers.control.charging import ScheduleControl
+from rmfs.solvers.control.tasks.dispatch import DispatchControl
 from tests.simulation.energy_ledger import EnergyLedger
 
 SITE = {
@@ -124,3 +125,48 @@ def test_questions_tell_levels_places_and_who_is_there() -> None:
     call = Call(0, Problem.CA, made, asked, 0, "")
     call.answer = asked.solve(asked.question)
     assert call.answer.bound <= call.answer.objective + 1e-6
+
+
+def test_dispatch_sends_robots_with_more_energy_first() -> None:
+    """What is missing in a battery counts as a longer way."""
+    site = {name: value for name, value in SITE.items() if name != "controllers.ca.name"}
+    simulation = rmfs.Simulation("default", "default", "ta-balance", seed=1, set=site)
+    simulation.run_until(200)
+    for empty_s in (0.0, 500.0):
+        made: Any = DispatchControl(
+            DispatchControl.parameters_model(empty_battery_s=empty_s),
+            simulation.view,
+            np.random.default_rng(0),
+        )
+        robots = simulation.view.robots[:2]
+        shares = simulation.view.batteries.shares()[:2]
+        longer = [made._low_s(robot) for robot in robots]
+        assert longer == pytest.approx([empty_s * (1 - share) for share in shares])
+    run = simulate_dispatch(0.0), simulate_dispatch(2000.0)
+    assert run[0]["units_picked"] > 0
+    assert run[1]["units_picked"] > 0
+    # those with little energy are spared, so that levels stay closer together
+    assert run[1]["spread"] < run[0]["spread"]
+
+
+def simulate_dispatch(empty_s: float) -> dict[str, float]:
+    given = SITE | {
+        "layout.robots": 16,
+        "layout.pick_stations.east": 1,
+        "layout.replenishment_stations.west": 1,
+        "scenario.energy.battery": {"capacity_wh": 300, "initial_least_share": 0.5},
+        "scenario.duration_s": 1200,
+        "controllers.ca.name": "threshold",
+        "controllers.ta.empty_battery_s": empty_s,
+    }
+    run = rmfs.simulate("default", "default", "ta-balance", seed=2, set=given)
+    levels = run.table("robots")["level_wh"]
+    return {"units_picked": run.footprint["units_picked"], "spread": float(levels.std())}
+
+
+def test_candidates_of_ta_tell_the_level() -> None:
+    for given, told in ((SITE, True), ({"layout.robots": 10}, False)):
+        simulation = rmfs.Simulation(seed=1, outside=["ta"], set=given)
+        decision = simulation.step()
+        assert decision is not None
+        assert ("level_share" in decision.candidates.frame().columns) == told
