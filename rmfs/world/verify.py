@@ -129,6 +129,10 @@ def _demand(world: World) -> None:
             waiting[line.sku] += line.open_units
     _check(np.array_equal(inventory.uncommitted, free - waiting), "uncommitted stock")
     _check(int(world.orders.units.sum()) == waiting.sum(), "matrix of the backlog")
+    open_orders = [order for station in world.pick_stations for order in station.orders.values()]
+    wholes = [order.whole or order for order in open_orders]
+    split = {order.index for order in (*wholes, *world.orders) if order.parts}
+    _check(world.split_orders.keys() == split, "split orders")
     arrivals = [order.index for order in world.orders.at_row]
     _check(world.orders.index.tolist() == arrivals, "arrivals of the backlog")
     queued_at = [order.queued_at for order in world.orders.at_row]

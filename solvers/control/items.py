@@ -11,6 +11,7 @@ from rmfs.control.decisions import AssignLines, AssignOrder
 
 if TYPE_CHECKING:
     from rmfs.control.view import View
+    from rmfs.solvers.control.splitting import Splitting
     from rmfs.world.orders import Order, OrderLine
 
 
@@ -48,12 +49,25 @@ class Item:
         return AssignLines(self.order, station, (self.line.sku,))
 
 
-def servable(view: View, split: bool) -> list[Item]:
-    """Return waiting orders, or lines, that the stock can serve, in order of arrival."""
+def servable(view: View, split: bool, splitting: Splitting | None = None) -> list[Item]:
+    """Return waiting orders, or lines, that the stock can serve, in order of arrival.
+
+    Parameters
+    ----------
+    split
+        Whether orders are split.
+    splitting
+        Which of them may be; the others are whole. Default: all.
+    """
     orders, stock = view.orders, view.inventory.free_stock
     if split:
-        found = (Item(order, line) for order in orders for line in order.lines)
-        return [item for item in found if item.lines[0].units <= stock[item.lines[0].sku]]
+        offered = None if splitting is None else splitting.offers()
+        found = (
+            Item(order, line)
+            for order in orders
+            for line in (order.lines if offered is None or offered(order) else (None,))
+        )
+        return [one for one in found if all(line.units <= stock[line.sku] for line in one.lines)]
     rows = orders.servable(stock).nonzero()[0]
     rows = rows[np.argsort(orders.index[rows], kind="stable")]
     return [Item(orders.at_row[row]) for row in rows.tolist()]

@@ -15,7 +15,7 @@ from rmfs.world import verify
 
 OWN = {column.name for column in Packing.columns}
 NEVER = {"by_hand_after_s": 1e6}
-SHORT = {"scenario.duration_s": 1500}
+SHORT = {"scenario.duration_s": 1200}
 PACKERS = {"packers": 2, "order_s": 20.0, "part_s": 10.0}
 CASES = {
     "room": {**PACKERS, "travel": {"constant_s": 25.0}},
@@ -34,11 +34,15 @@ CASES = {
 }
 
 
-def simulate(packing, controllers="pile-on-split", scenario="small", **given):
-    packed = {} if packing is None else {"scenario.packing": packing}
-    return rmfs.simulate(
-        "small", scenario, controllers, seed=1, pacing="work", set=SHORT | packed, **given
-    )
+BLIND = {"controllers.poa.split_orders": 10**6}
+"""Orders are split whether the wall has room or not."""
+
+
+def simulate(packing, controllers="pile-on-split", **given):
+    keys = SHORT if packing is None else SHORT | {"scenario.packing": packing}
+    if controllers == "pile-on-split":
+        keys = keys | BLIND
+    return rmfs.simulate("small", "small", controllers, seed=1, pacing="work", set=keys, **given)
 
 
 @pytest.fixture(scope="module")
@@ -198,7 +202,7 @@ def test_littles_law_on_wall_slots(runs, name):
 
 
 def test_a_saved_and_a_copied_run_go_on_alike(tmp_path):
-    given = SHORT | {"scenario.packing": CASES["full"] | {"variation": 1.0}}
+    given = SHORT | BLIND | {"scenario.packing": CASES["full"] | {"variation": 1.0}}
     run = rmfs.Simulation("small", "small", "pile-on-split", seed=2, set=given, pacing="work")
     run.run_until(700)
     assert run.world.put_wall.held

@@ -52,7 +52,12 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     def __init__(self, parameters: PileOnParameters, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)
         self._heuristic = Lexicographic(Lexicographic.parameters_model(), view, rng)
-        self._plan = Plan(view, parameters.kept_slots, later=parameters.later)
+        self._plan = Plan(
+            view,
+            parameters.kept_slots,
+            later=parameters.later,
+            split_orders=parameters.split_orders,
+        )
         self._buffer = Buffer(view, parameters.buffer_s)
         self._arrived = True
 

@@ -23,6 +23,12 @@ class JointParameters(SearchParameters):
     every question to proven optimality over all pairs, for small sites; `hadgs` (Jiao et al.)."""
     split: bool = False
     """Whether the lines of an order may go to different stations at different times."""
+    split_orders: Annotated[int, pydantic.Field(ge=0)] | None = None
+    """With `split`, orders that may be split at a time, whatever the put wall holds; default: as
+    many as it holds, and any number where there is none."""
+    part_s: NotNegative = 0.0
+    """With `split`, seconds of a robot that another tote of an order costs: an order is split only
+    if the pods that would serve it whole now cost more."""
     later: bool = False
     """Whether a whole order may take a slot while some of its lines wait for pods to come."""
     open_line_s: NotNegative = 100.0

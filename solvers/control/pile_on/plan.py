@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from rmfs.solvers.control.splitting import Splitting
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from rmfs.control.asks import Call
     from rmfs.control.view import View
     from rmfs.solvers.control.items import Item
+    from rmfs.world.orders import Order
     from rmfs.world.stations import PickStation
 
 
@@ -52,10 +55,20 @@ class Plan:
         Slots of each station kept for what the pod at its head can serve.
     later
         Whether items may be put on a station while stock for some of their lines is yet to come.
+    split_orders
+        Orders that may be split at a time; None: as many as the put wall holds.
     """
 
-    def __init__(self, view: View, kept_slots: int, *, later: bool = False) -> None:
+    def __init__(
+        self,
+        view: View,
+        kept_slots: int,
+        *,
+        later: bool = False,
+        split_orders: int | None = None,
+    ) -> None:
         self._view = view
+        self._split_orders = split_orders
         self._later = later
         self._kept = [min(kept_slots, station.slots - 1) for station in view.pick_stations]
         self.items: list[list[Planned]] = [[] for _ in view.pick_stations]
@@ -64,6 +77,18 @@ class Plan:
     def keys(self) -> set[tuple[int, int]]:
         """Keys of all planned items."""
         return {planned.item.key for items in self.items for planned in items}
+
+    def splitting(self, pays: Callable[[Order], bool] | None = None) -> Splitting:
+        """Return which orders may be split now, with those of which lines are planned.
+
+        Parameters
+        ----------
+        pays
+            Whether an order that is not split yet is worth it; None: always.
+        """
+        planned = [one.item for items in self.items for one in items]
+        orders = [item.order for item in planned if item.line is not None]
+        return Splitting(self._view, self._split_orders, orders, pays)
 
     def extend(self, solution: Mapping[str, Any], items: Sequence[Item], call: Call | None) -> None:
         """Take in what can still be done of a solution; count the rest as stale.
@@ -83,11 +108,14 @@ class Plan:
                 self.pods[int(pod_station[pod])][pod] = Called(call, int(pod_robot[pod]))
             else:
                 self._stale(call)
-        known = self.keys()
+        known, splitting = self.keys(), self.splitting()
         for station_of in (np.asarray(solution["station"]), np.asarray(solution["prospect"])):
             for number in np.flatnonzero(station_of >= 0).tolist():
                 item = items[number]
-                if item.waits(self._view) and item.key not in known:
+                allowed = item.line is None or splitting.admits(item.order)
+                if allowed and item.waits(self._view) and item.key not in known:
+                    if item.line is not None:
+                        splitting.add(item.order)
                     self.items[int(station_of[number])].append(Planned(item, call))
                 else:
                     self._stale(call)

@@ -8,20 +8,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.control.asks import Ask
-from rmfs.solvers.control.items import servable
+from rmfs.solvers.control.items import Item, servable
 from rmfs.solvers.control.pile_on.question import Question, solve
 from rmfs.solvers.models.pile_on import Candidates, PileOn, everything
+from rmfs.solvers.models.pile_on.candidates import whole_price
 from rmfs.solvers.models.pile_on.partial_assignment import PartialAssignment
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
     from rmfs.control.view import View
-    from rmfs.solvers.control.items import Item
     from rmfs.solvers.control.pile_on.parameters import JointParameters
     from rmfs.solvers.control.pile_on.plan import Plan
+    from rmfs.world.orders import Order
     from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation
 
@@ -76,8 +77,13 @@ def take(
     needs a pod; `when_needed = false` gives it all its free slots.
     """
     taken = plan.keys()
-    items = [item for item in servable(view, given.split) if item.key not in taken]
     open_units = _open_units(view, plan)
+    splitting = plan.splitting(_worth_splitting(view, plan, given, open_units))
+    items = [
+        item
+        for item in servable(view, given.split, splitting)
+        if item.key not in taken and (item.order.index, -1) not in taken
+    ]
     if not items and not open_units.any():
         return None
     data = _arrays(view, plan, given, items, open_units)
@@ -93,6 +99,24 @@ def take(
     if not slots.any() and not data.shortage.any():
         return None
     return Snapshot(replace(data, slots=slots, may_call=may_call), items, robots or ())
+
+
+def _worth_splitting(
+    view: View, plan: Plan, given: JointParameters, open_units: NDArray[np.int64]
+) -> Callable[[Order], bool] | None:
+    """Say which orders cost more than a part if they are served whole now; None: it is free."""
+    if not given.split or not given.part_s:
+        return None
+    whole = [Item(order) for order in view.orders if len(order.lines) > 1 and not order.parts]
+    if not whole:
+        return None
+    prices = whole_price(_arrays(view, plan, given, whole, open_units))
+    dear = {
+        item.order.index
+        for item, price in zip(whole, prices.tolist(), strict=True)
+        if price > given.part_s
+    }
+    return lambda order: order.index in dear
 
 
 def _open_units(view: View, plan: Plan) -> NDArray[np.int64]:

@@ -109,7 +109,12 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
     ) -> None:
         super().__init__(parameters, view, rng)
         self._heuristic = Lexicographic(Lexicographic.parameters_model(), view, rng)
-        self._plan = Plan(view, parameters.kept_slots, later=parameters.later)
+        self._plan = Plan(
+            view,
+            parameters.kept_slots,
+            later=parameters.later,
+            split_orders=parameters.split_orders,
+        )
         self._rest = RestPlaces(view, parameters.rest, self.draw)
         self._at_bundles = max(round(parameters.replenishment_share * len(view.robots)), 1)
         self._buffer = Buffer(view, parameters.buffer_s)

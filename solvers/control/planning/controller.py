@@ -80,7 +80,7 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
         super().__init__(parameters, view, rng)
         self._heuristic = Lexicographic(Lexicographic.parameters_model(), view, rng)
         self._rest = RestPlaces(view, parameters.rest, self.draw)
-        self._plan = Plan(view)
+        self._plan = Plan(view, parameters.split_orders)
         self._asked_s = -inf
         self._asked = 0
         self._changed = True

@@ -21,6 +21,9 @@ class PlanningParameters(SearchParameters):
     start rule of both, `greedy`."""
     split: bool = False
     """Whether lines of an order may go to different stations, or to one at different times."""
+    split_orders: Annotated[int, pydantic.Field(ge=0)] | None = None
+    """With `split`, orders that may be split at a time, whatever the put wall holds; default: as
+    many as it holds, and any number where there is none."""
     visits: Annotated[int, pydantic.Field(ge=1, le=32)] = 6
     """Visits per station that are planned ahead, besides those of pods under way."""
     stations: Count = 64

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rmfs.solvers.control.planning.snapshot import under_way
+from rmfs.solvers.control.splitting import Splitting
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rmfs.control.asks import Call
     from rmfs.control.decisions import AssignLines, AssignOrder
@@ -49,14 +50,20 @@ class Planned:
 class Plan:
     """The last plan, as far as it still holds.
 
+    Parameters
+    ----------
+    split_orders
+        Orders that may be split at a time; None: as many as the put wall holds.
+
     Attributes
     ----------
     pods
         Per station, the pods of the visits to come.
     """
 
-    def __init__(self, view: View) -> None:
+    def __init__(self, view: View, split_orders: int | None = None) -> None:
         self._view = view
+        self._split_orders = split_orders
         self.pods: list[list[int]] = [[] for _ in view.pick_stations]
         self._orders: list[list[Planned]] = [[] for _ in view.pick_stations]
         self._call: list[Call | None] = [None for _ in view.pick_stations]
@@ -74,8 +81,14 @@ class Plan:
             self._orders[station] = []
             self._call[station] = call
         stations = solution["order_station"].tolist()
+        splitting = self.splitting(range(len(self._orders)))
         for number, (item, at) in enumerate(zip(memo.items, stations, strict=True)):
             if at >= 0 and item is not None and item.waits(self._view):
+                if item.line is not None:
+                    if not splitting.admits(item.order):
+                        self._stale(memo.stations[at].index)
+                        continue
+                    splitting.add(item.order)
                 sequence = [*memo.under_way[at], *self.pods[memo.stations[at].index]]
                 planned = _planned(item, visits[number], sequence)
                 self._orders[memo.stations[at].index].append(planned)
@@ -89,6 +102,12 @@ class Plan:
     def keys_of(self, stations: Sequence[int]) -> set[tuple[int, int]]:
         """Return keys of the orders, or lines, that are planned for some stations."""
         return {one.item.key for station in stations for one in self._orders[station]}
+
+    def splitting(self, stations: Iterable[int]) -> Splitting:
+        """Return which orders may be split, with those of which lines are planned for stations."""
+        planned = [one.item for station in stations for one in self._orders[station]]
+        orders = [item.order for item in planned if item.line is not None]
+        return Splitting(self._view, self._split_orders, orders)
 
     def next_pod(self, station: int) -> int:
         """Return the pod of the next visit that is still possible, or -1."""

@@ -129,8 +129,9 @@ def ask(
     for number, station in enumerate(stations):
         _add_open(rows, station, number, coming[number])
     taken = plan.keys_of(others)
-    for item in servable(view, given.split):
-        if item.key not in taken:
+    splitting = plan.splitting(others)
+    for item in servable(view, given.split, splitting):
+        if item.key not in taken and (item.order.index, -1) not in taken:
             rows.waiting(item)
     if not rows.lines:
         return None

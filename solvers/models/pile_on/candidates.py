@@ -193,6 +193,29 @@ def call_price(data: PileOn) -> Floats:
     return (data.call_cost + fetch_estimate(data)[:, None]) / np.maximum(_lines(data), 1)[:, None]
 
 
+def whole_price(data: PileOn) -> Floats:
+    """Least price of the pods that complete each order, all its lines at one station, shape (O,).
+
+    What pods on their way have left costs nothing; another line costs as much as the cheapest share
+    of a pod (`call_price`). Infinite where some line finds no pod.
+
+    Parameters
+    ----------
+    data
+        The input.
+    """
+    price = np.where(data.available[:, None], call_price(data), np.inf)
+    cheapest = np.full((data.skus, data.stations), np.inf)
+    for sku in np.unique(data.line_sku).tolist():
+        cheapest[sku] = price[data.stock[:, sku] > 0].min(axis=0, initial=np.inf)
+    missing = data.line_units[:, None] > data.surplus[:, data.line_sku].T
+    of_line = np.where(missing, cheapest[data.line_sku], 0.0)
+    if not data.orders or not data.stations:
+        return np.full(data.orders, np.inf)
+    least: Floats = np.add.reduceat(of_line, data.first_line[:-1], axis=0).min(axis=1)
+    return least
+
+
 def fetch_estimate(data: PileOn) -> Floats:
     """Weighted cost of the nearest free robot per pod; 0 where none is needed, shape (P,).
 

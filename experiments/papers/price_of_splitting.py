@@ -1,0 +1,213 @@
+"""What splitting orders costs: the wall it needs, and the work of packers it may take.
+
+Split orders against whole ones (each by the best controllers we have), with put walls of so many
+slots, one minute and ten minutes away from the pick stations; the controllers split no more orders
+than the wall can hold. Published are means, differences seed by seed, and where splitting breaks
+even: slots of the wall, from which on it picks more units per hour; seconds that a packer may take
+for each further tote until the work of pickers and packers per unit is that of whole orders; and
+the way to the wall at which an order is packed as early, in the mean, as a whole one.
+`--large`: the large site.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from math import inf, nan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.experiments.papers.benefit import (
+    CONTROLLERS,
+    completed,
+    gains,
+    overview,
+    require_optimised,
+)
+from rmfs.experiments.papers.study import command, done, parser, station_units_per_h
+from rmfs.experiments.statistics import interval
+from rmfs.experiments.tables import HALF, Table, rows_frame
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+DEMAND, ORDERS, WHOLE = "demand", "orders", "whole"
+COLUMNS = (
+    *("units_per_h", "distance_per_unit_m", "order_cycle_mean_s", "order_cycle_p95_s"),
+    *("totes_per_order", "orders_packed_split_share", "consolidation_time_mean_s"),
+    *("wall_slots_mean", "wall_slots_max", "totes_held_mean"),
+)
+GAINED = ("units_per_h", "distance_per_unit_m", "order_cycle_mean_s", "order_cycle_p95_s")
+RESAMPLES = 2000
+
+
+def wall_of(label: str) -> tuple[float, float]:
+    """Return slots of the wall (inf for any number) and the way to it, s, of a level of `orders`.
+
+    Raises
+    ------
+    ValueError
+        If the label tells none.
+    """
+    found = re.fullmatch(r"(\d+|any) slots, (\d+) s", label)
+    if found is None:
+        raise ValueError(f"{label!r} is no wall such as '16 slots, 60 s'")
+    return inf if found[1] == "any" else float(found[1]), float(found[2])
+
+
+def break_even(slots: Sequence[float], gain: Floats) -> float:
+    """Return from how many slots on the gain is above 0, interpolated between walls.
+
+    Parameters
+    ----------
+    slots
+        Of the walls, ascending; the last may be infinite and then counts as the one before.
+    gain
+        Of each wall; taken as not falling with slots, as noise must not count twice.
+
+    Returns
+    -------
+    The first of the slots if all gain; infinity if none does.
+    """
+    reached: Floats = np.maximum.accumulate(gain)
+    if reached[0] > 0:
+        return float(slots[0])
+    if reached[-1] <= 0:
+        return inf
+    more = int(np.argmax(reached > 0))
+    below, above = slots[more - 1], slots[more]
+    if not np.isfinite(above):
+        return float(below)
+    part = -reached[more - 1] / (reached[more] - reached[more - 1])
+    return float(below + part * (above - below))
+
+
+def break_even_slots(runs: pd.DataFrame, way_s: float) -> tuple[float, float, float]:
+    """Return the slots from which on split orders pick more units per hour, and a 95 % interval.
+
+    Parameters
+    ----------
+    runs
+        Of one kind of demand.
+    way_s
+        Of the walls; one of any number of slots counts whatever its way, as it holds nobody up.
+
+    Returns
+    -------
+    Of the mean over seeds, and the 2.5 and 97.5 percentiles of `RESAMPLES` draws of seeds.
+    """
+    wide = runs.pivot_table(index="replication", columns=ORDERS, values="units_per_h")
+    walls = {label: wall_of(label) for label in runs[ORDERS].unique() if label != WHOLE}
+    chosen = sorted(
+        (slots, label) for label, (slots, s) in walls.items() if s == way_s or slots == inf
+    )
+    slots = [slots for slots, _ in chosen]
+    each = np.stack([(wide[label] / wide[WHOLE] - 1).to_numpy() for _, label in chosen], axis=1)
+    draws = np.random.default_rng(0).integers(0, len(each), (RESAMPLES, len(each)))
+    found = np.sort([break_even(slots, each[draw].mean(axis=0)) for draw in draws])
+    low, high = found[int(0.025 * RESAMPLES)], found[int(0.975 * RESAMPLES) - 1]
+    return break_even(slots, each.mean(axis=0)), float(low), float(high)
+
+
+def tolerable_tote_s(split: pd.DataFrame, whole: pd.DataFrame) -> pd.Series[float]:
+    """Return what a packer may take per further tote until splitting saves no work, s, by seed.
+
+    One picker works at each pick station. Splitting saves `pickers x (1 - whole / split)` of their
+    time, by units per hour, and takes a packer so long for every tote beyond an order's first.
+
+    Parameters
+    ----------
+    split, whole
+        Runs, by seed.
+    """
+    saved_s = 3600.0 * split["pick_stations"] * (1 - whole["units_per_h"] / split["units_per_h"])
+    orders_per_h = 3600.0 * split["orders_packed"] / split["duration_s"]
+    totes: pd.Series[float] = saved_s / (orders_per_h * (split["totes_per_order"] - 1))
+    return totes
+
+
+def tolerable_way_s(split: pd.DataFrame, whole: pd.DataFrame, way_s: float) -> pd.Series[float]:
+    """Return the way at which orders are packed as early as whole ones in the mean, s, by seed.
+
+    Only split orders go to the wall. Negative where they are later even without any way.
+
+    Parameters
+    ----------
+    split, whole
+        Runs, by seed; the wall never full.
+    way_s
+        Of `split`.
+    """
+    earlier_s = whole["order_cycle_mean_s"] - split["order_cycle_mean_s"]
+    way: pd.Series[float] = way_s + earlier_s / split["orders_packed_split_share"]
+    return way
+
+
+def even(frame: pd.DataFrame) -> Table:
+    """Return where splitting breaks even, by demand and way to the wall.
+
+    Parameters
+    ----------
+    frame
+        Runs of the design.
+    """
+    rows: dict[str, dict[tuple[str, str], float]] = {}
+    for demand, runs in frame.groupby(DEMAND, sort=False):
+        walls = {label: wall_of(label) for label in runs[ORDERS].unique() if label != WHOLE}
+        by_seed = {label: own.set_index("replication") for label, own in runs.groupby(ORDERS)}
+        free = next(label for label, (slots, _) in walls.items() if slots == inf)
+        tote = interval(tolerable_tote_s(by_seed[free], by_seed[WHOLE]))
+        way = interval(tolerable_way_s(by_seed[free], by_seed[WHOLE], walls[free][1]))
+        for way_s in sorted({s for _, s in walls.values()}):
+            slots, low, high = break_even_slots(runs, way_s)
+            first = not any(row.startswith(f"{demand}, ") for row in rows)
+            rows[f"{demand}, {way_s:.0f} s"] = {
+                ("slots", "mean"): slots,
+                ("slots", "2.5 %"): low,
+                ("slots", "97.5 %"): high,
+                ("packer, s per tote", "mean"): tote.mean if first else nan,
+                ("packer, s per tote", HALF): tote.half_width if first else nan,
+                ("way, s", "mean"): way.mean if first else nan,
+                ("way, s", HALF): way.half_width if first else nan,
+            }
+    decimals = {(name, part): 0 for name in ("slots", "way, s") for part in _PARTS}
+    decimals |= {("packer, s per tote", part): 1 for part in _PARTS}
+    caption = (
+        "Where split orders break even with whole ones. slots: of the wall, for units per hour, "
+        "with a bootstrap interval over seeds; the smallest wall of the design stands for that and "
+        "all below, inf for none. packer: time for each tote beyond the first of an order at which "
+        "pickers and packers together work as long per unit. way: to the wall, at which orders are "
+        "packed as early in the mean; negative: never. These two with any number of slots, 95% "
+        "confidence intervals (Student's t)."
+    )
+    return Table(rows_frame(rows, f"{DEMAND}, way to the wall"), decimals, caption)
+
+
+_PARTS = ("mean", HALF, "2.5 %", "97.5 %")
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the study and publish it."""
+    options = parser("price-of-splitting", __doc__)
+    options.add_argument("--large", action="store_true", help="the large site instead")
+    given = options.parse_args(arguments)
+    name = "price-of-splitting-large" if given.large else "price-of-splitting"
+    if given.large:
+        given.design = name
+    study = done(given)
+    frame = completed(study.frame, station_units_per_h(study))
+    frame = frame.assign(**{CONTROLLERS: frame[ORDERS]})
+    study.publish(overview(frame, (DEMAND, CONTROLLERS), COLUMNS), name, COLUMNS)
+    study.publish(gains(frame, (DEMAND,), WHOLE, GAINED), f"{name}-gains", GAINED)
+    study.publish(even(frame), f"{name}-even", ("units_per_h", *GAINED))
+    require_optimised(study)
+
+
+if __name__ == "__main__":
+    sys.exit(command(main))

@@ -1,0 +1,128 @@
+"""Which orders may be split: as many as the put wall holds, and as a limit says.
+
+An order needs room of the wall for all its totes but one. How many these will be is known only when
+its last line has a station, so each line without one counts as a tote of its own. An order that is
+split within the room therefore never finds the wall full, and no pick station is blocked.
+
+Where the room is less than all orders would take, those are split first of which pods under way
+serve most lines at one station, for each slot that they may come to need; orders that such pods
+serve in full need no split, and what they do not serve at all gains nothing by it now.
+"""
+
+from __future__ import annotations
+
+from math import inf, isnan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from rmfs.control.view import View
+    from rmfs.world.orders import Order
+
+
+class Splitting:
+    """The room that is left for split orders, at one moment.
+
+    Parameters
+    ----------
+    view
+        The world.
+    limit
+        Orders that may be split at a time, whatever the wall holds; None: as many as that is.
+    planned
+        Orders of the backlog of which lines are planned for stations.
+    pays
+        Says whether an order that is not split yet is worth its price; None: always.
+    """
+
+    def __init__(
+        self,
+        view: View,
+        limit: int | None,
+        planned: Iterable[Order] = (),
+        pays: Callable[[Order], bool] | None = None,
+    ) -> None:
+        self._view, self._pays = view, pays
+        wall = view.put_wall
+        self._per_part = wall is None or wall.slot_per_part
+        self._orders = inf if limit is None else float(limit)
+        slots = None if wall is None or limit is not None else wall.slots
+        self._slots = inf if slots is None else float(slots)
+        self._counted: set[int] = set()
+        if self.is_free:
+            return
+        if wall is not None:
+            for parcel in wall.parcels.values():
+                if parcel.picked and isnan(parcel.consolidated_s):
+                    self._take(float(parcel.kept))
+        for order in (*view.split_orders.values(), *planned):
+            self.add(order)
+
+    @property
+    def is_free(self) -> bool:
+        """Whether any order may be split."""
+        return self._orders == self._slots == inf and self._pays is None
+
+    def admits(self, order: Order) -> bool:
+        """Whether there is room for lines of an order of the backlog at stations by themselves.
+
+        There is if it is split already, or has one line only: that is no split.
+        """
+        return self._is_settled(order) or (self._orders >= 1 and self._slots >= self._need(order))
+
+    def offers(self) -> Callable[[Order], bool]:
+        """Choose the orders that may be split at present, all of them together; says which."""
+        if self._orders == self._slots == inf:
+            return lambda order: self._is_settled(order) or self._is_worth_it(order)
+        chosen: set[int] = set()
+        orders, slots = self._orders, self._slots
+        for order in self._candidates():
+            need = self._need(order)
+            if orders >= 1 and slots >= need and self._is_worth_it(order):
+                orders, slots = orders - 1, slots - need
+                chosen.add(order.index)
+        return lambda order: self._is_settled(order) or order.index in chosen
+
+    def _is_settled(self, order: Order) -> bool:
+        split = bool(order.parts) or order.index in self._counted
+        return self.is_free or split or len(order.lines) == 1
+
+    def _is_worth_it(self, order: Order) -> bool:
+        return self._pays is None or self._pays(order)
+
+    def _candidates(self) -> list[Order]:
+        """Orders of which pods under way serve some lines, but not all at one station; best first.
+
+        Best is most lines at one station per slot of the wall, then the oldest.
+        """
+        view = self._view
+        spare = view.inventory.inbound[: len(view.pick_stations)] - view.need
+        units = view.orders.units
+        asked = units > 0
+        lines = asked.sum(axis=1)
+        best = ((units <= spare[:, view.orders.sku]) & asked).sum(axis=2).max(axis=0)
+        rows = np.flatnonzero((best > 0) & (best < lines))
+        slots = lines[rows] - 1 if self._per_part else np.ones(len(rows))
+        order = np.lexsort((view.orders.index[rows], -best[rows] / slots))
+        return [view.orders.at_row[row] for row in rows[order].tolist()]
+
+    def add(self, order: Order) -> None:
+        """Count an order as one that is split."""
+        if order.index not in self._counted:
+            need = self._need(order)
+            if need:
+                self._counted.add(order.index)
+            self._take(need)
+
+    def _take(self, need: float) -> None:
+        self._slots -= need
+        self._orders -= need > 0
+
+    def _need(self, order: Order) -> float:
+        """Slots of the wall that an order may come to need."""
+        lines = len(order.lines) if order in self._view.orders else bool(order.lines)
+        others = max(len(order.parts) + lines - 1, 0)
+        return float(others if self._per_part else min(others, 1))
