@@ -38,6 +38,9 @@ class JointParameters(SearchParameters):
     whenever a slot can be filled, as in M1G and HADGS."""
     horizon_s: NotNegative = 90.0
     """Seconds of work below which a station needs another pod."""
+    by_work: bool = False
+    """Whether pods are called only for stations with less work on its way than the horizon,
+    whatever their orders lack: no station is sent a queue of pods while another runs dry."""
     buffer_s: NotNegative = 3.0
     """Seconds for which decisions are collected before the optimiser is asked again."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.02

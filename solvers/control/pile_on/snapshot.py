@@ -89,8 +89,11 @@ def take(
     data = _arrays(view, plan, given, items, open_units)
     if robots is not None:
         data = replace(data, fetch=_fetch(view, robots), robot_pod=np.full(len(robots), -1))
-    may_call = np.array([_needs_pod(view, plan, given, s) for s in view.pick_stations])
-    may_call |= (data.shortage > 0).any(axis=1)
+    if given.by_work:
+        may_call = np.array([_runs_short(view, plan, given, s) for s in view.pick_stations])
+    else:
+        may_call = np.array([_needs_pod(view, plan, given, s) for s in view.pick_stations])
+        may_call |= (data.shortage > 0).any(axis=1)
     if given.when_needed:
         slots = np.minimum(_coverable(data) + may_call, data.slots)
     else:
@@ -196,6 +199,16 @@ def _needs_pod(view: View, plan: Plan, given: JointParameters, station: PickStat
     planned = sum(line.units for one in plan.items[station.index] for line in one.item.lines)
     seconds = view.layout.pick_stations[station.index].unit_transfer_s
     return (bound + planned) * seconds < given.horizon_s
+
+
+def _runs_short(view: View, plan: Plan, given: JointParameters, station: PickStation) -> bool:
+    """Whether pods on their way, and those called, have less work than the horizon asks for."""
+    index, inventory = station.index, view.inventory
+    units = sum(len(task.picks) for task in station.tasks.values())
+    coming = inventory.inbound[index] + inventory.available[:, list(plan.pods[index])].sum(axis=1)
+    units += int(np.minimum(view.need[index], coming).sum())
+    seconds = view.layout.pick_stations[index].unit_transfer_s
+    return station.active and units * seconds < given.horizon_s
 
 
 def _coverable(data: PileOn) -> NDArray[np.int64]:

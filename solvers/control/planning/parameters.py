@@ -33,7 +33,7 @@ class PlanningParameters(SearchParameters):
     """Steps of the search for each plan."""
     buffer_s: NotNegative = 1.0
     """Seconds for which decisions are collected before the optimiser is asked again."""
-    horizon_s: NotNegative = 90.0
+    horizon_s: NotNegative = 60.0
     """Seconds of work, on pods under way, below which a station is sent another pod."""
     unit_s: NotNegative = 10.0
     """Seconds of a robot that a unit served is worth."""

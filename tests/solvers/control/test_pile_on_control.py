@@ -11,7 +11,7 @@ from rmfs import simulate
 from rmfs.control.asks import Ask, Call, told_by
 from rmfs.control.choices import choose
 from rmfs.control.decisions import AssignLines, AssignOrder, BringForBundles, BringForPicks, Rest
-from rmfs.control.problems import Problem
+from rmfs.control.problems import Problem, Trigger
 from rmfs.errors import InputError
 from rmfs.solvers.control.pile_on import PileOnControl, PileOnTasks
 
@@ -171,6 +171,23 @@ def test_an_order_may_wait_at_its_station_for_a_line() -> None:
         found = tasks(situation, situation.make(PileOnTasks, later=later))
         assert [d.order for d in found if isinstance(d, AssignOrder)] == [order] * later
         assert len([d for d in found if isinstance(d, BringForPicks)]) == later
+
+
+def test_pods_are_called_by_work_on_its_way() -> None:
+    """A station that has a pod under way lacks another one, but does not run out of work."""
+    for by_work in (False, True):
+        situation = Situation()
+        situation.stock(0, s1=5)
+        situation.stock(1, s2=5)
+        situation.order(s1=2)
+        control = situation.make(
+            PileOnTasks, later=True, by_work=by_work, horizon_s=1.0, buffer_s=0.0
+        )
+        assert [d.pod for d in tasks(situation, control) if isinstance(d, BringForPicks)] == [0]
+        situation.order(s2=1)
+        control.hear(Trigger.ROBOT_FREE, 0)
+        called = [d.pod for d in tasks(situation, control) if isinstance(d, BringForPicks)]
+        assert called == ([] if by_work else [1])
 
 
 def test_split_orders_are_not_also_covered_later() -> None:
