@@ -1,10 +1,12 @@
 """What charging costs: robots needed with and without it, by kind of recovery and by rule.
 
-The design `charging` runs fleets of different sizes on the default site: without batteries, with
-plug-in places, with battery swap, and with waypoints of the queues that charge who waits there.
-Published are units per hour and the robots needed for 95 % of what the pick stations can do,
-interpolated between fleets seed by seed, and how many more that are than without batteries. The
-design `charging-rules` compares the rules of CA with robots that need no energy, seed by seed.
+The designs `charging` and, with `--large`, `charging-large` run fleets of different sizes on the
+default and the large site: without batteries, with plug-in places, with battery swap, and with
+waypoints of the queues that charge who waits there. Published are units per hour and the robots
+needed for 95 % of what the pick stations can do, interpolated between fleets seed by seed, and how
+many more that are than without batteries. `--rules` compares the rules of CA and the optimiser with
+robots that need no energy, and the optimiser with its start rule, seed by seed: the design
+`charging-rules`, or, with `--demand` too, `charging-demand`, where many and few orders take turns.
 Published elsewhere: more than 15 % more robots with battery recovery than without, and swap up to
 4.88 % better than plug-in (Zou et al. 2018, doi 10.1016/j.ejor.2017.12.008).
 """
@@ -19,7 +21,7 @@ import numpy as np
 import pandas as pd
 
 from rmfs.experiments.papers.benefit import completed
-from rmfs.experiments.papers.study import command, done, parser, station_units_per_h
+from rmfs.experiments.papers.study import Study, command, done, parser, station_units_per_h
 from rmfs.experiments.statistics import interval
 from rmfs.experiments.tables import HALF, Table, differences, means, rows_frame
 
@@ -38,7 +40,8 @@ OF_BATTERIES = (
     *("charging_share", "charge_task_share", "energy_charged_kwh"),
     *("battery_level_least_share", "robots_stranded"),
 )
-RULE_COLUMNS = ("units_per_h", "order_throughput_time_median_s", "energy_wh_per_unit")
+RULE_COLUMNS = ("units_per_h", "order_turnover_mean_s", "battery_gain_kwh")
+START_RULE = "threshold"
 
 
 def robots_for(robots: Sequence[float], share: Sequence[float], enough: float = ENOUGH) -> float:
@@ -108,23 +111,37 @@ def needed(frame: pd.DataFrame, enough: float = ENOUGH) -> Table:
 def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("charging", __doc__)
+    options.add_argument("--large", action="store_true", help="the large site instead")
     options.add_argument("--rules", action="store_true", help="the rules of CA instead")
+    options.add_argument("--demand", action="store_true", help="with --rules: demand that changes")
     given = options.parse_args(arguments)
+    if given.demand and not given.rules:
+        options.error("--demand: only with --rules")
     if given.rules:
-        given.design = "charging-rules"
-        study = done(given)
-        shown = ("units_per_h", *OF_BATTERIES)
-        batteries = _real(study.frame[study.frame[RULE] != "no batteries"])
-        study.publish(means(batteries, shown, by=RULE), "charging-rules", shown)
-        table = differences(study.frame, RULE_COLUMNS, "no batteries", by=RULE)
-        study.publish(table, "charging-rules-differences", RULE_COLUMNS)
+        name = "charging-demand" if given.demand else "charging-rules"
+        given.design = name
+        _publish_rules(done(given), name)
         return
+    name = given.design = "charging-large" if given.large else given.design
     study = done(given)
     frame = completed(study.frame, station_units_per_h(study))
-    study.publish(means(frame, COLUMNS), "charging", COLUMNS)
+    study.publish(means(frame, COLUMNS), name, COLUMNS)
     batteries = _real(frame[frame[RECOVERY] != NONE])
-    study.publish(means(batteries, OF_BATTERIES), "charging-batteries", OF_BATTERIES)
-    study.publish(needed(frame), "charging-needed", ("station_share",))
+    study.publish(means(batteries, OF_BATTERIES), f"{name}-batteries", OF_BATTERIES)
+    study.publish(needed(frame), f"{name}-needed", ("station_share",))
+
+
+def _publish_rules(study: Study, name: str) -> None:
+    """Publish what each rule reaches, and differences to no batteries and to the start rule."""
+    gained = study.frame["energy_charged_kwh"].astype("float64") - study.frame["energy_kwh"]
+    frame = study.frame.assign(battery_gain_kwh=gained)
+    shown = ("units_per_h", "order_turnover_mean_s", *OF_BATTERIES, "decision_wall_s")
+    batteries = frame[frame[RULE] != "no batteries"]
+    study.publish(means(_real(batteries), shown, by=RULE), name, shown)
+    table = differences(frame, RULE_COLUMNS[:2], "no batteries", by=RULE)
+    study.publish(table, f"{name}-differences", RULE_COLUMNS[:2])
+    table = differences(batteries, RULE_COLUMNS, START_RULE, by=RULE)
+    study.publish(table, f"{name}-optimiser", RULE_COLUMNS)
 
 
 def _real(frame: pd.DataFrame) -> pd.DataFrame:
