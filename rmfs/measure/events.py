@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rmfs.observer import Observed
+    from rmfs.world import World
     from rmfs.world.orders import Bundle, Order
 
 
@@ -51,6 +52,8 @@ class Happening(IntEnum):
     """SA switched a station (station, units: 1 for on, 0 for off)."""
     CONTROLLER_EXCHANGED = 12
     """Another controller was installed (detail: problem=name)."""
+    BATTERY_LEVEL = 13
+    """What is in a battery, when a task begins and every minute (robot, units: thousandths)."""
 
 
 COLUMNS = ("time_us", "kind", "robot", "pod", "station", "order", "sku", "units", "detail")
@@ -80,6 +83,7 @@ class EventLog(Observer):
         self._numbers: dict[str, int] = {}
         # 72 bytes an event, quick to write, and nothing for the collector to walk
         self._rows = bytearray()
+        self._world: World | None = None
 
     def __len__(self) -> int:
         """Return the number of events."""
@@ -91,16 +95,31 @@ class EventLog(Observer):
         return dict(zip(COLUMNS, rows.T, strict=True))
 
     def run_started(self, run: Observed) -> None:
-        """Write down the stock."""
+        """Write down the stock, and what is in batteries."""
+        self._world = run.world
         contained = run.world.inventory.contained
         for sku, pod in np.argwhere(contained).tolist():
             units = contained.item(sku, pod)
             self._rows.extend(_row(0, Happening.STOCK, -1, pod, -1, -1, sku, units, -1))
+        self.sampled(0.0)
+
+    def run_ended(self, time_s: float) -> None:
+        """Let go of what is no record."""
+        self._world = None
+
+    def sampled(self, time_s: float) -> None:
+        """What is in all batteries."""
+        batteries = None if self._world is None else self._world.batteries
+        if batteries is not None:
+            for robot, share in enumerate(batteries.shares().tolist()):
+                self._add_level(time_s, robot, share)
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
         """A robot has a task."""
         now_us, detail = round(time_s * 1e6), self._detail(kind)
         self._rows.extend(_row(now_us, Happening.TASK, robot, -1, station, -1, -1, 0, detail))
+        if self._world is not None and self._world.batteries is not None:
+            self._add_level(time_s, robot, self._world.batteries.share(robot))
 
     def order_created(self, order: Order) -> None:
         """An order arrived."""
@@ -160,6 +179,11 @@ class EventLog(Observer):
         detail = self._detail(f"{problem}={name}")
         now_us, exchanged = round(time_s * 1e6), Happening.CONTROLLER_EXCHANGED
         self._rows.extend(_row(now_us, exchanged, -1, -1, -1, -1, -1, 0, detail))
+
+    def _add_level(self, time_s: float, robot: int, share: float) -> None:
+        now_us, level = round(time_s * 1e6), Happening.BATTERY_LEVEL
+        thousandths = round(1000 * share)
+        self._rows.extend(_row(now_us, level, robot, -1, -1, -1, -1, thousandths, -1))
 
     def _add_order(self, time_s: float, kind: Happening, order: Order) -> None:
         units = sum([line.units for line in order.lines])

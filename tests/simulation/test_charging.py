@@ -9,6 +9,7 @@ import rmfs
 from rmfs.control.decisions import Charge, Unplug
 from rmfs.control.registry import built_in, solver_backed
 from rmfs.errors import InputError
+from rmfs.measure import load_run, write_run
 from rmfs.simulation.decision import ImpossibleError
 from rmfs.world import verify
 from rmfs.world.batteries import Batteries
@@ -219,3 +220,16 @@ def test_bad_input_gets_one_line(given, says):
     with pytest.raises(InputError, match=says) as error:
         rmfs.Simulation(set=CHARGERS | given)
     assert "\n" not in str(error.value)
+
+
+def test_the_events_tell_levels(tmp_path):
+    given = CHARGERS | {"scenario.duration_s": 600}
+    run = rmfs.simulate(seed=1, set=given, trace=True)
+    write_run(run, tmp_path / "run", trace=True)
+    events = load_run(tmp_path / "run").events
+    levels = events[events["kind"] == "battery-level"]
+    assert set(levels["robot"]) == set(range(12))
+    assert (levels["time_us"] == 0).sum() >= 12
+    last = levels.groupby("robot")["units"].last() / 1000
+    told = run.table("robots")["level_wh"].to_numpy() / 150
+    np.testing.assert_allclose(last, told, atol=5e-4)  # the last minute ends with the run

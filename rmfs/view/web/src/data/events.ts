@@ -17,6 +17,7 @@ export const Kind = {
   VISIT_ENDED: 10,
   STATION_SWITCHED: 11,
   CONTROLLER_EXCHANGED: 12,
+  BATTERY_LEVEL: 13,
 } as const;
 
 export interface Happening {
@@ -70,6 +71,9 @@ export class Events {
 
   private add(happening: Happening): void {
     const number = this.all.push(happening) - 1;
+    for (const listener of this.listeners) listener(happening);
+    // a course, and nothing that happens to a robot
+    if (happening.kind === Kind.BATTERY_LEVEL) return;
     for (const subject of SUBJECTS) {
       const index = happening[subject];
       if (index >= 0) {
@@ -78,7 +82,6 @@ export class Events {
         lists[index].push(number);
       }
     }
-    for (const listener of this.listeners) listener(happening);
   }
 
   /** Returns the last `limit` events of a subject up to a time, newest first. */
@@ -119,6 +122,7 @@ const WORDS = [
   "leaves the station",
   "station switched",
   "controller exchanged",
+  "battery",
 ];
 
 /** Says in a few words what happened to a subject, which is not named again. */

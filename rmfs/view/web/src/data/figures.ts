@@ -1,4 +1,4 @@
-/** Courses for the charts: throughput, backlog, robots by task, in bins of equal length. */
+/** Courses for the charts: throughput, backlog, charge, robots by task, in bins of equal length. */
 
 import { type Events, Kind } from "./events";
 import type { Robots } from "./robots";
@@ -8,6 +8,8 @@ export interface Course {
   bin_us: number;
   unitsPerHour: number[];
   backlog: number[];
+  /** What is in the batteries in the mean of the robots at the end of each bin, in per cent. */
+  charge: number[];
   /** Robots with each of the tasks at the end of each bin. */
   robots: number[][];
 }
@@ -41,8 +43,18 @@ export function course(events: Events, robots: Robots, end_us: number): Course {
       waiting += change;
       return waiting;
     }),
+    charge: meanLevels(robots, count, bin_us, end_us),
     robots: byTask(robots, count, bin_us, end_us),
   };
+}
+
+function meanLevels(robots: Robots, count: number, bin_us: number, end_us: number): number[] {
+  if (!robots.hasLevels) return [];
+  const { levels } = robots;
+  return Array.from({ length: count }, (_, bin) => {
+    const time_us = Math.min((bin + 1) * bin_us, end_us);
+    return levels.reduce((sum, steps) => sum + 100 * steps.at(time_us), 0) / levels.length;
+  });
 }
 
 function byTask(robots: Robots, count: number, bin_us: number, end_us: number): number[][] {

@@ -33,6 +33,8 @@ export class Robots {
   readonly tasks: Steps<Task>[];
   /** The station that serves the robot, or -1. */
   readonly served: Steps<number>[];
+  /** What is in the battery of each robot, as a share of its capacity. */
+  readonly levels: Steps<number>[];
   /** The words for tasks. */
   readonly words: string[];
   private readonly rest: number;
@@ -47,12 +49,19 @@ export class Robots {
     this.rest = this.words.indexOf("rest");
     this.tasks = robots.map(() => new Steps<Task>({ kind: this.rest, station: -1 }));
     this.served = robots.map(() => new Steps<number>(-1));
-    events.onEach(({ kind, robot, time_us, station, detail }) => {
+    this.levels = robots.map(() => new Steps<number>(1));
+    events.onEach(({ kind, robot, time_us, station, units, detail }) => {
       if (kind === Kind.TASK) {
         this.tasks[robot].push(time_us, { kind: this.words.indexOf(detail), station });
       } else if (kind === Kind.VISIT_STARTED) this.served[robot].push(time_us, station);
       else if (kind === Kind.VISIT_ENDED) this.served[robot].push(time_us, -1);
+      else if (kind === Kind.BATTERY_LEVEL) this.levels[robot].push(time_us, units / 1000);
     });
+  }
+
+  /** Whether it is known what is in the batteries. */
+  get hasLevels(): boolean {
+    return this.levels.some(({ times }) => times.length > 0);
   }
 
   /** Returns an index into `STATES`. */

@@ -23,7 +23,8 @@ export class Stock {
         this.used[pod].push(time_us, this.used[pod].last + sign * units * layout.skuSpace[sku]);
       }
       if (kind === Kind.UNIT_PICKED) this.picked[pod].push(time_us, this.picked[pod].last + units);
-      if (kind === Kind.VISIT_STARTED) this.visited[pod].push(time_us, time_us);
+      // who comes for energy brings no pod
+      if (kind === Kind.VISIT_STARTED && pod >= 0) this.visited[pod].push(time_us, time_us);
     });
   }
 

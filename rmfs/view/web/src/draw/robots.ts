@@ -17,7 +17,7 @@ import { amount, type Kinds, robotColours, type Theme } from "./palette";
 import type { Placement } from "./placement";
 import { shaded, shadedMaterial } from "./shapes";
 
-export type RobotMode = Kinds | "delay";
+export type RobotMode = Kinds | "delay" | "charge";
 
 /** A delay of so many seconds, or more, has the strongest colour. */
 export const LONGEST_DELAY_S = 120;
@@ -102,6 +102,7 @@ export class RobotBodies {
     if (mode === "task") return this.kinds.task[robots.tasks[robot].at(time_us).kind];
     if (mode === "state") return this.kinds.state[robots.state(robot, time_us, pose)];
     if (mode === "load") return this.kinds.load[pose.pod >= 0 ? 1 : 0];
+    if (mode === "charge") return amount(robots.levels[robot].at(time_us), theme, this.colour);
     return amount(robots.delay_s(robot, time_us) / LONGEST_DELAY_S, theme, this.colour);
   }
 }

@@ -1,4 +1,4 @@
-/** Throughput, backlog and robots by task over time, with a cursor at the present. */
+/** Throughput, backlog, charge and robots by task over time, with a cursor at the present. */
 
 import type { Course } from "../data/figures";
 import type { Run } from "../data/run";
@@ -42,6 +42,9 @@ export function charts(
   const made: Chart[] = [
     course(runs, "Throughput", "units/h", ({ unitsPerHour }) => unitsPerHour),
     course(runs, "Orders waiting", "for a station", ({ backlog }) => backlog),
+    ...(runs.every((run) => run.robots.hasLevels)
+      ? [course(runs, "Charge", "% in the mean", ({ charge }) => charge)]
+      : []),
     ...runs.map((run, n) => tasks(run, runs.length > 1 ? ` of ${"AB"[n]}` : "")),
   ];
   const root = h("section", { className: "charts" });

@@ -29,7 +29,7 @@ export const KEYS: [string, string][] = [
 ];
 
 const CYCLES = {
-  r: ["robots", ["task", "state", "load", "delay"]],
+  r: ["robots", ["task", "state", "load", "delay", "charge"]],
   p: ["pods", ["plain", "fill", "popularity", "age"]],
   h: ["heat", ["off", "visits", "waiting"]],
 } as const;

@@ -20,7 +20,8 @@ export function legend(
     const { colours } = header;
     const parts: HTMLElement[] = [h("h2", {}, "Legend")];
     parts.push(h("h3", {}, `Robots by ${robots}`));
-    if (robots !== "delay") parts.push(swatches(robotEntries(header, robots)));
+    if (robots === "charge") parts.push(scale(theme, "0 %", "100 % of the battery"));
+    else if (robots !== "delay") parts.push(swatches(robotEntries(header, robots)));
     else parts.push(scale(theme, "0 s", `${LONGEST_DELAY_S} s or more waited in this task`));
     if (pods !== "plain") parts.push(h("h3", {}, `Pods by ${POD_WORDS[pods]}`));
     if (pods === "fill") parts.push(scale(theme, "0 %", "100 % of the space used"));

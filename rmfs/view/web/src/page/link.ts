@@ -8,7 +8,7 @@ const FLAGS = ["paths", "zones", "follow"] as const;
 
 const ALLOWED: Record<(typeof TEXTS)[number], readonly string[]> = {
   mode: ["2d", "3d"],
-  robots: ["task", "state", "load", "delay"],
+  robots: ["task", "state", "load", "delay", "charge"],
   pods: ["plain", "fill", "popularity", "age"],
   heat: ["off", "visits", "waiting"],
   theme: ["light", "dark"],

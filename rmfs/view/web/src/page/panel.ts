@@ -78,11 +78,13 @@ function robotRows({ run, poses }: Pane, robot: number, time_us: number): Rows {
   const pose = poses[robot];
   const task = run.robots.tasks[robot].at(time_us);
   const towards = task.station >= 0 ? ` for station ${task.station}` : "";
+  const charge = `${(100 * run.robots.levels[robot].at(time_us)).toFixed(0)} %`;
   return [
     ["task", `${run.robots.words[task.kind]}${towards}`],
     ["state", STATES[run.robots.state(robot, time_us, pose)]],
     ["carries", pose.pod >= 0 ? `pod ${pose.pod}` : "nothing"],
     ["waited in this task", `${run.robots.delay_s(robot, time_us).toFixed(1)} s`],
+    ...(run.robots.hasLevels ? [["battery", charge] as [string, string]] : []),
     ["place", `x ${pose.x.toFixed(2)} m, y ${pose.y.toFixed(2)} m, tier ${pose.tier}`],
   ];
 }

@@ -32,6 +32,7 @@ const CHOICES: [Key, string, [string, string][]][] = [
       ["state", "state"],
       ["load", "load"],
       ["delay", "delay"],
+      ["charge", "charge"],
     ],
   ],
   [
