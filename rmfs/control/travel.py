@@ -190,7 +190,7 @@ class Travel:
         waypoint
             One, or several of shape (m, 1).
         others
-            _Waypoints, shape (n,).
+            Waypoints, shape (n,).
 
         Returns
         -------

@@ -16,18 +16,20 @@ if TYPE_CHECKING:
     from rmfs.learning.robots import RobotsEnv as RobotsEnv
     from rmfs.learning.training import Task as Task
     from rmfs.learning.training import train as train
+    from rmfs.learning.vector import DecisionVectorEnv as DecisionVectorEnv
 
 NAME = "rmfs/Decision-v0"
 
 _PLACES = {
     "DecisionEnv": "rmfs.learning.environment",
+    "DecisionVectorEnv": "rmfs.learning.vector",
     "Reward": "rmfs.learning.rewards",
     "RobotsEnv": "rmfs.learning.robots",
     "Task": "rmfs.learning.training",
     "train": "rmfs.learning.training",
 }
 
-__all__ = ["NAME", "DecisionEnv", "Reward", "RobotsEnv", "Task", "train"]
+__all__ = ["NAME", "DecisionEnv", "DecisionVectorEnv", "Reward", "RobotsEnv", "Task", "train"]
 
 
 def __getattr__(name: str) -> Any:
@@ -52,7 +54,11 @@ def _register() -> None:
     except ModuleNotFoundError:
         return
     if NAME not in gymnasium.registry:
-        gymnasium.register(id=NAME, entry_point="rmfs.learning.environment:DecisionEnv")
+        gymnasium.register(
+            id=NAME,
+            entry_point="rmfs.learning.environment:DecisionEnv",
+            vector_entry_point="rmfs.learning.vector:DecisionVectorEnv",
+        )
 
 
 _register()

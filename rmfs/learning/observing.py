@@ -68,6 +68,11 @@ class Options:
     mask: NDArray[np.int8]
 
     @property
+    def kind(self) -> str:
+        """Of the question, one of `Observing.kinds`."""
+        return kind_of(self.decision)
+
+    @property
     def is_forced(self) -> bool:
         """Whether there is one action only."""
         return int(self.mask.sum()) < 2
@@ -138,7 +143,7 @@ class Observing:
         may_move
             Whether robots may move idle pods.
         """
-        kind = decision.problem.value if decision.kind == "turn" else decision.kind
+        kind = kind_of(decision)
         if kind == "ta" and not may_move and not has_tasks(decision.view):
             return Options(decision, _NONE, np.zeros(self._shape, np.float32), self._only_decline)
         candidates = decision.candidates
@@ -191,9 +196,13 @@ class Observing:
         scaled = zip(plain, self._scales, strict=True)
         found[: len(plain)] = [min(max(one / scale, -LIMIT), LIMIT) for one, scale in scaled]
         if decision is not None:
-            kind = decision.problem.value if decision.kind == "turn" else decision.kind
-            found[len(plain) + self.kinds.index(kind)] = 1.0
+            found[len(plain) + self.kinds.index(kind_of(decision))] = 1.0
         return found
+
+
+def kind_of(decision: Decision) -> str:
+    """Return the kind of a question: a turn has the name of its problem."""
+    return decision.problem.value if decision.kind == "turn" else decision.kind
 
 
 def _places(kind: str, names: Sequence[str]) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
