@@ -1,10 +1,10 @@
 """Where looking ahead and trained linear rules win, tie or lose against rules.
 
-Four regimes of the small site, with seeds that no training has seen; with `--sites` the default and
-the large site, without the arms that try every decision. Every arm is compared with the default
+Four regimes of the small site, with seeds that no training has seen; with `--sites` three of the
+default and the large site, one of them with tries. Every arm is compared with the default
 rules, from which each of them starts, and with the best rule of its regime, in what the regime is
 about: units picked where there is always a backlog, late orders where orders arrive. p values are
-Holm's, over all arms of a regime. About 0.2 CPU hours, with `--sites` 0.1.
+Holm's, over all arms of a regime. About 0.15 CPU hours, with `--sites` 0.2.
 """
 
 from __future__ import annotations

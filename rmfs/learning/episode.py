@@ -30,6 +30,9 @@ class Episode(Simulation):
         As for `rmfs.Simulation`.
     """
 
+    checks_layout = False
+    """`Episodes` has looked at it, once for all runs."""
+
     def __init__(self, *arguments: Any, reward: Reward, **named: Any) -> None:
         self.reward = reward
         super().__init__(*arguments, observers=observers_of(reward), **named)
@@ -38,7 +41,7 @@ class Episode(Simulation):
 class Episodes:
     """Makes episodes of one warehouse: files are read, and the layout is checked, once.
 
-    A seed that comes again gives a copy of the run as it was before its first event.
+    A seed that comes again and again gives copies of the run as it was before its first event.
 
     Parameters
     ----------
@@ -74,6 +77,7 @@ class Episodes:
         self._problems = tuple(problems)
         self._reward = reward
         self._measured = measured
+        self._known: dict[int, bool] = {}
         self._kept: dict[int, Episode] = {}
         reward_of(reward)  # what is wrong is said now
 
@@ -81,6 +85,18 @@ class Episodes:
         """Return a run that is to begin."""
         if seed in self._kept:
             return self._kept[seed].fork()
+        episode = self._made(seed)
+        if seed not in self._known:
+            self._known[seed] = (
+                True  # most seeds come once: to keep a run takes as long as to make it
+            )
+            return episode
+        if len(self._kept) == self.KEPT:
+            del self._kept[next(iter(self._kept))]
+        self._kept[seed] = episode
+        return episode.fork()
+
+    def _made(self, seed: int) -> Episode:
         inputs = self._inputs
         episode = Episode(
             inputs.layout,
@@ -88,12 +104,8 @@ class Episodes:
             inputs.controllers,
             seed=seed,
             outside=self._problems,
-            allow_not_well_formed=True,  # it has been checked
             reward=reward_of(self._reward),
             measured=self._measured,
         )
         episode.names, episode.inputs = self._names, inputs
-        if len(self._kept) == self.KEPT:
-            del self._kept[next(iter(self._kept))]
-        self._kept[seed] = episode
-        return episode.fork()
+        return episode

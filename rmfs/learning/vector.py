@@ -118,6 +118,11 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
         """Return which actions are possible, shape (N, actions)."""
         return self._board.arrays["action_mask"].copy()
 
+    @property
+    def busy_s(self) -> NDArray[np.float64]:
+        """Processor time that each process took for the last step, shape (workers,)."""
+        return self._board.arrays["busy_s"][: len(self._processes)].copy()
+
     def close_extras(self, **_: Any) -> None:
         """End the processes."""
         for pipe in self._pipes:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import traceback
 from dataclasses import dataclass, field
+from time import process_time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,6 +39,7 @@ def shapes_of(env: DecisionEnv) -> Shapes:
         "elapsed_s": ((), "f8"),
         "now_s": ((), "f8"),
         "kind": ((), "i4"),
+        "busy_s": ((), "f8"),
     }
 
 
@@ -97,6 +99,7 @@ class Stand:
     def __init__(self, given: Mapping[str, Any], board: Board, places: range) -> None:
         self._board = board.arrays
         self._envs = {place: DecisionEnv(**given) for place in places}
+        self._first = places[0]
         self._over: set[int] = set()
 
     def reset(self, seeds: Mapping[int, int | None], options: Any) -> dict[int, Any]:
@@ -112,7 +115,7 @@ class Stand:
         -------
         The footprints of runs that are over now, by place.
         """
-        board, found = self._board, {}
+        board, found, before_s = self._board, {}, process_time()
         for place, env in self._envs.items():
             board["invalid"][place] = False
             if place in self._over:
@@ -126,6 +129,7 @@ class Stand:
             if over:
                 self._over.add(place)
                 found[place] = info.get("footprint")
+        board["busy_s"][self._first] = process_time() - before_s
         return found
 
     def _begin(self, place: int, seed: int | None, options: Any) -> None:

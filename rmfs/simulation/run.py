@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from rmfs import layout as layouts
 from rmfs import measure
@@ -148,6 +148,9 @@ streams, remark, allow_not_well_formed, traffic_maker
         If something given is wrong; names what and says what would be valid.
     """
 
+    checks_layout: ClassVar[bool] = True
+    """Whether the layout is looked at before the run."""
+
     def __init__(
         self,
         layout: str | Path | Layout = "default",
@@ -178,7 +181,8 @@ streams, remark, allow_not_well_formed, traffic_maker
         self.inputs = inputs
         self.pacing_named = pacing
         self.pacing_settings = pacing_settings(pacing, inputs.pacing)
-        layouts.refuse(plan, self.names[0], allow_not_well_formed=allow_not_well_formed)
+        if self.checks_layout:
+            layouts.refuse(plan, self.names[0], allow_not_well_formed=allow_not_well_formed)
         if remark is not None:
             for part, notes in inputs.notes.items():
                 for note in notes:

@@ -1,7 +1,9 @@
 """Speed of the environments, beside RWARE's: `python -m tests.tools.environment_speed`.
 
-All figures are per second of processor time, so that other work on the machine counts less, and the
-best of several rounds, which take turns. RWARE (`pip install rware`) is left out where it is not
+Figures are per second of processor time, so that other work on the machine counts less, and the
+best of several rounds, which take turns. Two processes are compared with one by the clock, which
+needs two idle cores, and by their processor time: all their work, with what the main process does,
+over the longest way through it, the slower process of each step. RWARE (`pip install rware`) is left out where it is not
 installed. A decision of ours lets all robots drive, with turns and accelerations and free of
 collisions, until somebody has to be asked again; a step of RWARE moves agents by a cell of a grid.
 """
@@ -71,12 +73,18 @@ class Several:
         self._envs = DecisionVectorEnv(count, workers=workers, **GIVEN)
         _, self._info = self._envs.reset(seed=1)
         self._count = count
+        self.work_s = self.longest_s = 0.0
         self.go(WARM * count)
 
     def go(self, steps: int) -> None:
         """Take decisions, so many in all."""
+        self.work_s = self.longest_s = 0.0
         for _ in range(steps // self._count):
+            before_s = time.process_time()
             *_, self._info = self._envs.step(self._info["action_mask"].argmax(axis=1))
+            own_s, busy_s = time.process_time() - before_s, self._envs.busy_s
+            self.work_s += busy_s.sum() + own_s
+            self.longest_s += busy_s.max() + own_s
 
     def close(self) -> None:
         """End its processes."""
@@ -129,7 +137,9 @@ def measured(rounds: int, steps: int, count: int) -> Rates:
         pair = {workers: rate(one.go, steps, time.perf_counter) for workers, one in several.items()}
         for workers, value in pair.items():
             rates.add(f"rmfs, {count} environments, {workers} process(es), per wall second", value)
-        rates.add("two processes / one", pair[2] / pair[1])
+        rates.add("two processes / one, per wall second", pair[2] / pair[1])
+        both = several[2]
+        rates.add("two processes, work / longest way", both.work_s / both.longest_s)
         rates.add("reset, small site, new seed, ms", reset_ms(number + 1, small))
         rates.add("reset, small site, known seed, ms", reset_ms(number + 1, small))
     for one in several.values():

@@ -1,0 +1,87 @@
+"""The vector environment: the same as single ones, and what is told when something is wrong."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+
+from rmfs.errors import InputError
+from rmfs.learning import NAME, DecisionEnv, DecisionVectorEnv, Reward
+
+GIVEN: dict[str, Any] = {
+    "layout": "small",
+    "scenario": "small",
+    "problems": ["ta", "pps"],
+    "set": {"scenario.duration_s": 150, "layout.robots": 4},
+}
+
+
+@pytest.mark.parametrize("observation", ["dict", "flat"])
+def test_several_do_what_single_ones_do(observation: str) -> None:
+    """Through the ends of episodes, which begin anew in the step after the last one."""
+    given = GIVEN | {"observation": observation}
+    several = DecisionVectorEnv(3, workers=2, **given)
+    single = [DecisionEnv(**given) for _ in range(3)]
+    seen, info = several.reset(seed=5)
+    last = [env.reset(seed=5 + number) for number, env in enumerate(single)]
+    over, ended = [False] * 3, 0
+    for _ in range(80):
+        actions = info["action_mask"].argmax(axis=1)
+        seen, rewards, terminated, truncated, info = several.step(actions)
+        assert not terminated.any()
+        for number, env in enumerate(single):
+            reward = 0.0
+            if over[number]:
+                last[number], over[number] = env.reset(), False
+            else:
+                own, reward, _, over[number], told = env.step(actions[number])
+                last[number] = own, told
+            own, told = last[number]
+            assert rewards[number] == reward
+            assert truncated[number] == over[number]
+            assert info["now_s"][number] == told["now_s"]
+            assert (info["action_mask"][number] == told["action_mask"]).all()
+            for name in own if observation == "dict" else [...]:
+                mine = seen[name][number] if observation == "dict" else seen[number]
+                assert (mine == own[name]).all()
+            if over[number]:
+                ended += 1
+                theirs = info["footprint"][number]["units_picked"]
+                assert info["_footprint"][number]
+                assert theirs == told["footprint"]["units_picked"]
+    several.close()
+    assert ended > 2
+
+
+def test_gymnasium_makes_it() -> None:
+    several = gymnasium.make_vec(NAME, num_envs=2, workers=1, **GIVEN)
+    assert isinstance(several.unwrapped, DecisionVectorEnv)
+    seen, _ = several.reset(seed=1)
+    assert several.observation_space.contains(seen)
+    assert several.metadata["autoreset_mode"] is gymnasium.vector.AutoresetMode.NEXT_STEP
+    several.close()
+
+
+def test_what_is_wrong_is_told_at_once() -> None:
+    with pytest.raises(InputError, match="problem pp: valid"):
+        DecisionVectorEnv(2, problems=["pp"])
+    with pytest.raises(InputError, match="num_envs 2, workers 3"):
+        DecisionVectorEnv(2, workers=3, **GIVEN)
+
+
+class Broken(Reward):
+    """Fails as soon as a unit is picked."""
+
+    def unit_picked(self, *_: Any) -> None:
+        raise ArithmeticError("no such sum")
+
+
+def test_an_error_in_a_process_comes_through() -> None:
+    several = DecisionVectorEnv(2, workers=2, **GIVEN | {"reward": Broken})
+    _, info = several.reset(seed=1)
+    with pytest.raises(RuntimeError, match="no such sum"):
+        for _ in range(100):
+            *_, info = several.step(np.asarray(info["action_mask"]).argmax(axis=1))
