@@ -4,8 +4,9 @@ Figures are per second of processor time, so that other work on the machine coun
 best of several rounds, which take turns. Two processes are compared with one by the clock, which
 needs two idle cores, and by their processor time: all their work, with what the main process does,
 over the longest way through it, the slower process of each step. RWARE (`pip install rware`) is
-left out where it is not installed. A decision of ours lets all robots drive, with turns and accelerations and free of
-collisions, until somebody has to be asked again; a step of RWARE moves agents by a cell of a grid.
+left out where it is not installed. A decision of ours lets all robots drive, with turns and
+accelerations and free of collisions, until somebody has to be asked again; a step of RWARE moves
+agents by a cell of a grid.
 """
 
 from __future__ import annotations
