@@ -59,7 +59,8 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
     The rest is left to rules. A robot with a pod goes on while there is work for it at its station,
     takes it to a replenishment station for which bundles of this pod wait, or parks it where PSA
     says. While the stock is below `stock_floor` some robots work for bundles (`bundle_share`);
-    robots that no pick station needs do so as well. If the optimiser fails, its start rule plans.
+    robots that no pick station needs do so as well, up to `stock_ceiling`. If the optimiser fails,
+    its start rule plans.
     """
 
     parameters_model = PlanningParameters
@@ -162,8 +163,8 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
     def _send(self) -> Iterator[Decision]:
         """Send free robots: for bundles if stock is low, for picks, then for bundles again."""
         view = self.view
-        floor = self.parameters.stock_floor * view.inventory.total_capacity
-        if view.inventory.stored_space < floor:
+        stored = view.inventory.stored_space / view.inventory.total_capacity
+        if stored < self.parameters.stock_floor:
             needed = max(1, round(self.parameters.bundle_share * len(view.robots)))
             yield from self._replenish(needed - self._at_bundles())
         while (free := self._free_robots()) and (station := self._short()) is not None:
@@ -173,7 +174,8 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
             fetch = BringForPicks(keeper_of(view, near, pod), pod, station.index)
             yield By(fetch, self._plan.call(station.index))
             yield from self._give_slots()
-        yield from self._replenish(len(view.robots))
+        if stored < self.parameters.stock_ceiling:
+            yield from self._replenish(len(view.robots))
 
     def _short(self) -> PickStation | None:
         """Find the station with the least work of those that are to be sent a pod."""

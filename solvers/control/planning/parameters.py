@@ -51,6 +51,9 @@ class PlanningParameters(SearchParameters):
     stock_floor: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.6
     """Share of the space in use below which robots always work for bundles; above it, robots that
     no pick station needs do."""
+    stock_ceiling: Annotated[float, pydantic.Field(ge=0, le=1)] = 1.0
+    """Share of the space in use from which on no robot sets out for bundles: those that no pick
+    station needs are at hand then when one does."""
     bundle_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.15
     """Share of the robots, and one at least, that work for bundles below the floor."""
     robots_per_station: Count = 9

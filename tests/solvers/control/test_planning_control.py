@@ -156,6 +156,17 @@ def test_bundles_come_first_while_stock_is_low() -> None:
         assert control.is_modelled(sent) == (first is BringForPicks)
 
 
+def test_nobody_sets_out_for_bundles_above_the_ceiling() -> None:
+    """A robot that no pick station needs works for bundles below it, and rests above."""
+    for ceiling, sent in ((1.0, BringForBundles), (0.0, Rest)):
+        situation = Situation(small_layout(robots=1))
+        situation.stock(0, s1=5)
+        situation.waiting_bundle(pod=1, station=1)
+        given = {"stock_floor": 0.0, "stock_ceiling": ceiling}
+        (decision,) = said(situation, situation.make(PlanningControl, **given))
+        assert isinstance(decision, sent)
+
+
 def test_a_plan_for_some_stations_leaves_the_others_theirs() -> None:
     """What is planned for the first station is no matter of the second, orders and pods."""
     situation = Situation(small_layout(pick_stations=2))
