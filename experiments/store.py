@@ -269,7 +269,13 @@ def _corrupted(path: Path, why: str) -> InputError:
 
 def _together(tables: list[pa.Table]) -> pa.Table:
     # rows of other versions of rmfs may have other columns
-    return pa.concat_tables(tables, promote_options="permissive")
+    try:
+        return pa.concat_tables(tables, promote_options="permissive")
+    except pa.ArrowException as error:
+        raise InputError(
+            f"stored results do not go together ({' '.join(str(error).split())}); remove those "
+            "with another type and run the experiment again: only what they held is repeated"
+        ) from None
 
 
 def _identified(table: pd.DataFrame, job: Job) -> pd.DataFrame:

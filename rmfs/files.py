@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ctypes
+import errno
 import fcntl
 import os
 import shutil
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG)
 LARGEST_MIB = 64
 """Most that is read of a file that is read whole; the largest published layout takes 4."""
 
@@ -66,7 +69,13 @@ def replacing(path: Path) -> Iterator[Path]:
     try:
         yield temporary
         temporary.chmod(0o644)
+        with temporary.open("rb") as file:
+            os.fsync(file.fileno())  # or a machine that stops may know the name of an empty file
         temporary.replace(path)
+    except OSError as error:
+        if error.errno in _FULL:
+            raise InputError(f"{path}: cannot be written ({error.strerror})") from None
+        raise
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -113,7 +122,7 @@ def replacing_folder(target: Path, mark: str, what: str, *, replace: bool = True
             temporary = _temporary_beside(target)
             try:
                 yield temporary
-                temporary.chmod(0o755)
+                _allow_all_to_read(temporary)
                 _put_in_place(temporary, target)
             finally:
                 shutil.rmtree(temporary, ignore_errors=True)
@@ -166,24 +175,67 @@ def _refuse_strangers(target: Path, mark: str, what: str) -> None:
         raise InputError(f"{target}: cannot be written ({error.strerror})") from None
 
 
+def _allow_all_to_read(folder: Path) -> None:
+    try:
+        folder.chmod(0o755)
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be written ({error.strerror})") from None
+
+
 def _missing_parents(target: Path) -> list[Path]:
     """Return the folders above `target` that do not exist, innermost first."""
     return [parent for parent in target.parents if not parent.exists()]
 
 
 def _temporary_beside(target: Path) -> Path:
+    """Make a folder to write in; one that a killed process has left is removed.
+
+    The target is locked, so that nobody else writes in such a folder.
+    """
+    prefix = f".{target.name}.partial-"
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        return Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}."))
+        for left in target.parent.iterdir():
+            if left.name.startswith(prefix):
+                shutil.rmtree(left, ignore_errors=True)
+        return Path(tempfile.mkdtemp(dir=target.parent, prefix=prefix))
     except OSError as error:
         raise InputError(f"{target}: cannot be written ({error.strerror})") from None
 
 
 def _put_in_place(temporary: Path, target: Path) -> None:
-    """Rename the finished folder; an older one of that name is kept until this has succeeded."""
-    if not target.exists():
-        temporary.replace(target)
-        return
+    """Rename the finished folder; an older one of that name takes its place until it is removed.
+
+    The two are exchanged at once, so that whoever is killed leaves one of them under the name.
+    """
+    try:
+        if not target.exists():
+            temporary.replace(target)
+        elif not _exchanged(temporary, target):
+            _put_in_place_by_steps(temporary, target)
+    except OSError as error:
+        raise InputError(f"{target}: cannot be written ({error.strerror})") from None
+
+
+_EXCHANGE = 2
+_HERE = -100
+
+
+def _exchanged(one: Path, other: Path) -> bool:
+    """Exchange two folders at once (Linux); False where the system cannot."""
+    try:
+        rename = ctypes.CDLL(None, use_errno=True).renameat2
+    except (OSError, AttributeError):  # another system
+        return False
+    if rename(_HERE, os.fsencode(one), _HERE, os.fsencode(other), _EXCHANGE) == 0:
+        return True
+    number = ctypes.get_errno()
+    if number in (errno.ENOSYS, errno.EINVAL):  # another file system
+        return False
+    raise OSError(number, os.strerror(number))
+
+
+def _put_in_place_by_steps(temporary: Path, target: Path) -> None:
     aside = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}.old."))
     try:
         target.replace(aside / target.name)

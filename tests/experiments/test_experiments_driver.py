@@ -286,6 +286,16 @@ def test_rows_of_another_version_may_have_other_columns(design, store):
     assert np.isnan(frame["new_column"].iloc[0]) and frame["new_column"].iloc[2] == 1.0
 
 
+def test_rows_with_another_type_are_one_clear_line(design, store):
+    plan = experiments.plan(design())
+    drive(plan, store, Inline())
+    (file, *_) = sorted((store.folder / "runs").glob("*.parquet"))
+    frame = pd.read_parquet(file)
+    frame.assign(units_per_h="many").to_parquet(file)
+    with pytest.raises(InputError, match=r"do not go together .*units_per_h.*run the experiment"):
+        store.rows()
+
+
 def test_nothing_is_there_before_the_first_run(design, store):
     plan = experiments.plan(design())
     assert store.rows().empty and store.finished() == set()

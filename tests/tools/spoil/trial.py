@@ -119,8 +119,10 @@ def _judged(case: Case, top: Path, before: dict[str, bytes]) -> Verdict:
     after = _files(top)
     new = [name for name in after if name not in before]
     odd = [name for name in new if name.startswith("tmp/") or Path(name).name.startswith(".")]
+    shown = (top / "stdout").read_text("utf-8", "replace").strip()
     if code == 2:
-        if not last.startswith("rmfs: "):
+        # what a check finds is its result, not an error
+        if not last.startswith("rmfs: ") and not (shown and case.arguments[1] == "check"):
             return verdict("untold", f"exit code 2: {told!r:.200}")
         return (
             verdict("litter", f"{last} {sorted(after)}") if after != before else verdict("refused")
@@ -129,7 +131,7 @@ def _judged(case: Case, top: Path, before: dict[str, bytes]) -> Verdict:
         return verdict("litter", str(odd))
     if code == 0:
         return verdict("ran")
-    if code in (1, 3) and last:
+    if code in (1, 3) and (last or shown):
         return verdict("stopped")
     return verdict("untold", f"exit code {code}: {told!r:.200}")
 
@@ -198,9 +200,10 @@ def _called(arguments: list[str], top: Path, clock: mmap.mmap) -> int:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     error = os.open(top / "stderr", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
     os.dup2(error, 2)
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    output = os.open(top / "stdout", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    os.dup2(output, 1)
     sys.stderr = io.TextIOWrapper(io.FileIO(2, "w", closefd=False), "utf-8", write_through=True)
-    sys.stdout = io.StringIO()
+    sys.stdout = io.TextIOWrapper(io.FileIO(1, "w", closefd=False), "utf-8", write_through=True)
     from rmfs.cli import main
 
     with _watched(clock) as runs:

@@ -1,0 +1,101 @@
+"""Writes, renames and new files of an experiment fail one by one: resumed, it is the same."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from injection import KILLED, Ended, Injector
+
+from rmfs import experiments
+from rmfs.experiments.results import to_csv
+
+DESIGN = """
+format = "rmfs-design/1"
+name = "tiny"
+seeds = [1, 2, 3]
+keep = ["series"]
+[base]
+layout = "basic"
+scenario = "basic"
+controllers = "default"
+[factors]
+"controllers.psa" = ["nearest", "random"]
+"""
+
+
+class Bench:
+    """A folder in which an experiment of six runs is disturbed, and resumed."""
+
+    def __init__(self, injector: Injector, place: Path, design: Path) -> None:
+        self.injector, self.place = injector, place
+        self.arguments = ["experiment", "run", str(design), "--out", "study", "--jobs", "1"]
+        ended = self.call()
+        assert ended.code == 0, ended.words
+        self.calls, self.whole = ended.calls, self.table()
+
+    def call(self, kind: str = "none", number: int = 0, *, resumed: bool = False) -> Ended:
+        if not resumed:
+            shutil.rmtree(self.place)
+            self.place.mkdir()
+        return self.injector.call(self.arguments, self.place, kind, number)
+
+    def table(self) -> str:
+        frame = experiments.load(self.place / "study")
+        target = self.place.parent / "table.csv"
+        to_csv(frame, target)
+        return target.read_text()
+
+    def judged(self, kind: str, number: int) -> str:
+        """Return how many runs were kept; raise if one is lost, half-written or different."""
+        ended = self.call(kind, number)
+        assert "Traceback" not in ended.words, ended.words
+        if kind == "killed":
+            assert ended.code == KILLED
+        else:
+            assert ended.code == 2, ended
+            assert ended.words.splitlines()[-1].startswith("rmfs: ")
+        stored = sorted((self.place / "study").glob("runs/[!.]*.parquet"))
+        if kind != "killed":
+            assert not list(self.place.rglob(".*.parquet.*"))
+        if stored:
+            lines = self.table().splitlines()
+            assert set(lines) <= set(self.whole.splitlines())
+            assert len(lines) == len(stored) + 1
+        again = self.call(resumed=True)
+        assert again.code == 0, again.words
+        assert self.table() == self.whole
+        assert not list(self.place.rglob(".*.parquet.*"))
+        return f"{len(stored)} kept"
+
+
+@pytest.fixture
+def bench(injector, tmp_path: Path) -> Bench:
+    design = tmp_path / "design.toml"
+    design.write_text(DESIGN)
+    one, place = injector("quick_study:main")
+    return Bench(one, place, design)
+
+
+def disturbed(bench: Bench, kind: str, every: int) -> dict[str, int]:
+    outcomes: dict[str, int] = {}
+    calls = bench.calls
+    assert calls > 100
+    for number in sorted({1, 2, 3, calls - 1, calls, *range(1, calls + 1, every)}):
+        outcome = bench.judged(kind, number)
+        outcomes[outcome] = outcomes.get(outcome, 0) + 1
+    print(kind, calls, outcomes)
+    return outcomes
+
+
+@pytest.mark.parametrize("kind", ["fails", "disk full", "killed"])
+def test_some_changes(bench: Bench, kind: str) -> None:
+    assert {"0 kept", "5 kept"} <= set(disturbed(bench, kind, every=1500))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["fails", "disk full", "killed"])
+def test_many_changes(bench: Bench, kind: str) -> None:
+    outcomes = disturbed(bench, kind, every=1 if kind == "fails" else 9)
+    assert len(outcomes) >= 6
