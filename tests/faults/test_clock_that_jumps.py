@@ -1,4 +1,4 @@
-"""The clock of the machine is put back and forth during a run: nothing but its time of day knows."""
+"""The clock of the machine jumps during a run: nothing but its time of day knows."""
 
 from __future__ import annotations
 
