@@ -2,14 +2,23 @@
 
 What can be asked for is a fixed table of paths: none of them is looked up in a file system, so no
 path leads out of the run folder. Requests that name another host (a page elsewhere that had its
-name point here) or come from another origin are refused.
+name point here) or come from another origin are refused. What changes something takes a token,
+which is in the address that is printed: others on this machine, who can reach the port, do not have
+it.
+Connections are few, requests small, and who takes long to send one is hung up on.
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+import secrets
+import socket
+import threading
+import time
+from contextlib import suppress
+from dataclasses import dataclass, field
 from http import HTTPStatus
+from http.cookies import CookieError, SimpleCookie
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs, urlsplit
@@ -23,6 +32,10 @@ if TYPE_CHECKING:
 HOST = "127.0.0.1"
 LONGEST_REQUEST = 1_000_000
 """Bytes a request may bring along."""
+MOST_CONNECTIONS = 64
+"""Connections that may be open at once; a page takes six at most."""
+PATIENCE_S = 20.0
+"""Wall time a connection has to send a request, or to say nothing."""
 
 JSON = "application/json"
 
@@ -34,6 +47,7 @@ class Answer:
     body: bytes
     kind: str = JSON
     status: HTTPStatus = HTTPStatus.OK
+    headers: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def json(cls, value: object, status: HTTPStatus = HTTPStatus.OK) -> Answer:
@@ -55,6 +69,11 @@ class Server(ThreadingHTTPServer):
         What is answered, by path: functions of the query and of the JSON sent.
     port
         Default any free one.
+
+    Attributes
+    ----------
+    token
+        Whoever has it may change something.
     """
 
     daemon_threads = True
@@ -67,6 +86,10 @@ class Server(ThreadingHTTPServer):
     ) -> None:
         self.gets = {path: _file(*entry) for path, entry in pages.FILES.items()} | dict(get)
         self.posts = dict(post or {})
+        self.token = secrets.token_urlsafe(24)
+        self._reading: dict[socket.socket, float] = {}
+        self._open = 0
+        self._lock = threading.Lock()
         try:
             super().__init__((HOST, port), _Handler)
         except OSError as error:
@@ -74,8 +97,50 @@ class Server(ThreadingHTTPServer):
 
     @property
     def url(self) -> str:
-        """Where the page is."""
-        return f"http://{HOST}:{self.server_port}/"
+        """Where the page is, for those who may change something."""
+        return f"http://{HOST}:{self.server_port}/?token={self.token}"
+
+    @property
+    def cookie(self) -> str:
+        """Name of the cookie with the token: cookies of a host are those of all its ports."""
+        return f"rmfs-{self.server_port}"
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Serve a connection in a thread of its own, unless there are too many."""
+        with self._lock:
+            full = self._open >= MOST_CONNECTIONS
+            self._open += not full
+        if full:
+            self.shutdown_request(request)
+            return
+        self.reads(request)
+        super().process_request(request, client_address)
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Serve a connection, and forget it."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            with self._lock:
+                self._open -= 1
+                self._reading.pop(request, None)
+
+    def reads(self, request: socket.socket, *, over: bool = False) -> None:
+        """Take note that a request is awaited on a connection, or has come."""
+        with self._lock:
+            if over:
+                self._reading.pop(request, None)
+            else:
+                self._reading[request] = time.monotonic()
+
+    def service_actions(self) -> None:
+        """Hang up on those who take long to send a request; called twice a second."""
+        limit = time.monotonic() - PATIENCE_S
+        with self._lock:
+            slow = [request for request, since in self._reading.items() if since < limit]
+        for request in slow:
+            with suppress(OSError):
+                request.shutdown(socket.SHUT_RDWR)
 
 
 def _file(name: str, kind: str) -> Callable[[Mapping[str, str]], Answer]:
@@ -85,22 +150,51 @@ def _file(name: str, kind: str) -> Callable[[Mapping[str, str]], Answer]:
 class _Handler(BaseHTTPRequestHandler):
     server: Server
     protocol_version = "HTTP/1.1"
+    timeout = PATIENCE_S  # of a single read or write
 
     def do_GET(self) -> None:
+        self.server.reads(self.connection, over=True)
         asked = urlsplit(self.path)
-        handle = self.server.gets.get(asked.path)
         query = {name: values[-1] for name, values in parse_qs(asked.query).items()}
+        if asked.path == "/" and "token" in query:
+            self._answer(lambda: self._admitted(query["token"]))
+            return
+        handle = self.server.gets.get(asked.path)
         self._answer(None if handle is None else lambda: handle(query))
 
     def do_POST(self) -> None:
         handle = self.server.posts.get(urlsplit(self.path).path)
-        length = int(self.headers.get("Content-Length") or 0)
-        if length > LONGEST_REQUEST or self.headers.get("Content-Type") != JSON:
+        told = self.headers.get("Content-Length") or ""
+        length = int(told) if told.isascii() and told.isdigit() and len(told) < 9 else -1
+        if not 0 <= length <= LONGEST_REQUEST or self.headers.get("Content-Type") != JSON:
             self.close_connection = True
             self._send(_refusal(HTTPStatus.BAD_REQUEST, "expected JSON"))
             return
         body = self.rfile.read(length)
+        self.server.reads(self.connection, over=True)
+        if handle is not None and self._is_ours() and not self._is_trusted():
+            told = "open the address that rmfs has printed: it has a token"
+            self._send(_refusal(HTTPStatus.FORBIDDEN, told))
+            return
         self._answer(None if handle is None else lambda: handle(json.loads(body)))
+
+    def _admitted(self, token: str) -> Answer:
+        """Exchange a token in an address for a cookie, so that it stands in no address bar."""
+        if not secrets.compare_digest(token.encode(), self.server.token.encode()):
+            return _refusal(HTTPStatus.FORBIDDEN, "this token is not that of the run")
+        cookie = f"{self.server.cookie}={self.server.token}; HttpOnly; SameSite=Strict; Path=/"
+        moved = {"Set-Cookie": cookie, "Location": "/"}
+        return Answer(b"", "text/plain", HTTPStatus.SEE_OTHER, moved)
+
+    def _is_trusted(self) -> bool:
+        """Whether the request has the token."""
+        try:
+            cookies = SimpleCookie(self.headers.get("Cookie", ""))
+        except CookieError:
+            return False
+        given = cookies.get(self.server.cookie)
+        token = "" if given is None else given.value
+        return secrets.compare_digest(token.encode(), self.server.token.encode())
 
     def _answer(self, handle: Callable[[], Answer] | None) -> None:
         if not self._is_ours():
@@ -112,7 +206,7 @@ class _Handler(BaseHTTPRequestHandler):
                 answer = handle()
             except InputError as error:
                 answer = _refusal(HTTPStatus.UNPROCESSABLE_ENTITY, str(error))
-            except (ValueError, KeyError, TypeError) as error:
+            except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
                 answer = _refusal(HTTPStatus.BAD_REQUEST, f"cannot be understood: {error}")
         self._send(answer)
 
@@ -134,10 +228,16 @@ class _Handler(BaseHTTPRequestHandler):
             "Referrer-Policy": "no-referrer",
             "Cross-Origin-Resource-Policy": "same-origin",
             "Cache-Control": "no-store",
+            **answer.headers,
         }.items():
             self.send_header(name, value)
         self.end_headers()
         self.wfile.write(answer.body)
+
+    def handle_one_request(self) -> None:
+        """Await a request, not for ever."""
+        self.server.reads(self.connection)
+        super().handle_one_request()
 
     def handle(self) -> None:
         """Serve one connection; a page that goes away is nothing to complain about."""

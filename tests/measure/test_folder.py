@@ -119,9 +119,35 @@ def test_a_full_disk_is_one_line(told, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_old_run_comes_back_if_the_new_one_cannot_take_its_place(written, monkeypatch):
+def test_old_and_new_run_are_exchanged_at_once(written, monkeypatch):
+    """At no moment is there none: the name is never free, and never moved aside."""
     from pathlib import Path
 
+    def never(self, target):
+        raise AssertionError("by steps")
+
+    with reserved(written) as folder:
+        (folder / "run.json").write_text("{}")
+        monkeypatch.setattr(Path, "replace", never)
+    assert (written / "run.json").read_text() == "{}"
+    assert [path.name for path in written.parent.iterdir()] == ["where"]
+
+
+def test_what_a_killed_process_has_left_is_removed(written):
+    left = written.parent / f".{written.name}.partial-abc"
+    left.mkdir()
+    other = written.parent / f".{written.name}s.partial-abc"
+    other.mkdir()
+    with reserved(written) as folder:
+        (folder / "run.json").write_text("{}")
+    assert not left.exists() and other.exists()
+
+
+def test_the_old_run_comes_back_if_the_new_one_cannot_take_its_place(written, monkeypatch):
+    """Where the system cannot exchange two folders at once."""
+    from pathlib import Path
+
+    monkeypatch.setattr("rmfs.files._exchanged", lambda one, other: False)
     replace, calls = Path.replace, []
 
     def fails_once(self, target):
