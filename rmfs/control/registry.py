@@ -32,6 +32,8 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "workload": "rmfs.control.poa.workload:Workload",
         "first-come": "rmfs.control.poa.order_rules:FirstCome",
         "due-time": "rmfs.control.poa.order_rules:DueTime",
+        "slack": "rmfs.control.poa.order_rules:Slack",
+        "critical-ratio": "rmfs.control.poa.order_rules:CriticalRatio",
         "frequency-age": "rmfs.control.poa.order_rules:FrequencyAge",
         "random": "rmfs.control.poa.order_rules:RandomOrder",
         "linear": "rmfs.control.poa.linear:Linear",

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import pydantic
 from pydantic import Field
 
 from rmfs.scenario.distributions import Normal
-from rmfs.scenario.quantities import Block, Positive, Share, not_below
+from rmfs.scenario.quantities import Block, NotNegative, Positive, Share, not_below
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,11 +62,44 @@ class NormalDue(Block):
         return Normal(mean=self.mean_s, sd=self.sd_s, min=self.min_s, max=self.max_s)
 
 
-Due = Annotated[PriorityDue | NormalDue, Field(discriminator="mode")]
+class DepartureDue(Block):
+    """Orders are due when a truck leaves: the first that leaves so long after their arrival."""
+
+    mode: Literal["departures"] = "departures"
+    times_s: Annotated[tuple[NotNegative, ...], pydantic.Strict(strict=False)] = Field(
+        min_length=1, description="s of the cycle at which trucks leave, in order"
+    )
+    cycle_s: float = Field(
+        86400.0, ge=1, validate_default=True, description="s after which everything comes again"
+    )
+    lead_s: NotNegative = Field(
+        3600.0, description="an order that comes less s before a truck leaves goes with the next"
+    )
+
+    @pydantic.field_validator("cycle_s")
+    @classmethod
+    def _in_order(cls, value: float, info: pydantic.ValidationInfo) -> float:
+        times_s = info.data.get("times_s", ())
+        if any(later <= sooner for sooner, later in pairwise(times_s)):
+            raise ValueError("times_s must be in order")
+        if times_s and times_s[-1] >= value:
+            raise ValueError(f"must be more than the last of times_s = {times_s[-1]:g}")
+        return value
+
+    def sampler(self) -> Callable[[float], float]:
+        """Return the function that turns a number in [0, 1) into an offset in seconds."""
+        return partial(_always, self.lead_s)
+
+
+Due = Annotated[PriorityDue | NormalDue | DepartureDue, Field(discriminator="mode")]
 
 
 def _by_priority(share: float, urgent_s: float, ordinary_s: float, uniform: float) -> float:
     return urgent_s if uniform < share else ordinary_s
+
+
+def _always(offset_s: float, _uniform: float) -> float:
+    return offset_s
 
 
 def _in_ms(quantile: Callable[[float], Any], uniform: float) -> float:

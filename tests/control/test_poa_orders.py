@@ -8,7 +8,14 @@ from assigning import stocked
 from doubles import Situation, small_layout
 
 from rmfs.control.poa.near_best_pod import NearBestPod
-from rmfs.control.poa.order_rules import DueTime, FirstCome, FrequencyAge, RandomOrder
+from rmfs.control.poa.order_rules import (
+    CriticalRatio,
+    DueTime,
+    FirstCome,
+    FrequencyAge,
+    RandomOrder,
+    Slack,
+)
 from rmfs.control.poa.related import Related
 from rmfs.control.poa.workload import Workload
 
@@ -40,6 +47,42 @@ class TestWhichOrder:
             situation.order(due_s, s0=1)
         made = decide(situation, situation.make(DueTime))
         assert [order for order, _ in made] == [3, 1, 2, 0]
+
+    def test_slack_and_critical_ratio(self, situation) -> None:
+        """Work of 60 s per line and 10 s per unit, 100 s left already.
+
+        Order 0: due in 400, work 70: slack 330, ratio 5.7. Order 1: due in 420, work 160 (two
+        lines, four units): 260, 2.6. Order 2: due in 170, work 70: 100, 2.4. Order 3: due in 350,
+        work 110: 240, 3.2. Order 4: overdue by 40, work 70: -110, -0.6.
+        """
+        situation.world.now_s = 100.0
+        wanted = ({"s0": 1}, {"s0": 2, "s1": 2}, {"s0": 1}, {"s0": 5}, {"s1": 1})
+        for due_s, units in zip((500.0, 520.0, 270.0, 450.0, 60.0), wanted, strict=True):
+            situation.order(due_s, **units)
+        made = decide(situation, situation.make(Slack))
+        assert [order for order, _ in made] == [4, 2, 3, 1, 0]
+
+    def test_critical_ratio_prefers_little_time_per_work(self, situation) -> None:
+        """As above: 2.4, 2.6, 3.2, 5.7 after the one overdue; ties go to the older order."""
+        situation.world.now_s = 100.0
+        wanted = ({"s0": 1}, {"s0": 2, "s1": 2}, {"s0": 1}, {"s0": 5}, {"s1": 1}, {"s0": 1})
+        due = (500.0, 520.0, 270.0, 450.0, 60.0, 270.0)
+        for due_s, units in zip(due, wanted, strict=True):
+            situation.order(due_s, **units)
+        made = decide(situation, situation.make(CriticalRatio))
+        assert [order for order, _ in made] == [4, 2, 5, 1, 3, 0]
+
+    def test_what_work_is_counted_is_a_parameter(self, situation) -> None:
+        """Without any work, slack is the due time; with 300 s per line, two lines come first."""
+        for due_s, units in ((100.0, {"s0": 1}), (200.0, {"s0": 1, "s1": 1})):
+            situation.order(due_s, **units)
+        made = decide(situation, situation.make(Slack, line_s=300.0, unit_s=0.0))
+        assert [order for order, _ in made] == [1, 0]
+        other = stocked()
+        for due_s, units in ((100.0, {"s0": 1}), (200.0, {"s0": 1, "s1": 1})):
+            other.order(due_s, **units)
+        made = decide(other, other.make(Slack, line_s=0.0, unit_s=0.0))
+        assert [order for order, _ in made] == [0, 1]
 
     def test_frequency_and_age(self, situation) -> None:
         """Units ordered so far: 1 + 1 of SKU 0, 6 + 2 of SKU 1.

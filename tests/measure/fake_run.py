@@ -193,7 +193,7 @@ class Skus:
 
 def simulation(place, traffic):
     """What a recorder asks of a simulation: two disturbances last from begin to end."""
-    scenario = SimpleNamespace(energy=None, packing=None)
+    scenario = SimpleNamespace(energy=None, packing=None, orders=SimpleNamespace(due=None))
     disturbances = SimpleNamespace(within=lambda start_s, end_s: (2, end_s - start_s))
     return SimpleNamespace(
         layout=layout(),

@@ -124,6 +124,29 @@ def delayed(run, whole_s: float) -> dict[str, float]:
     }
 
 
+def served(orders) -> dict[str, float]:
+    """Who was done in time, order by order; urgent orders have half an hour, others two hours."""
+    told = {"urgent": [], "ordinary": []}
+    for row in orders.itertuples():
+        if row.completed_s == row.completed_s or row.due_s < END:
+            offset_s = round(row.due_s - row.created_s, 5)
+            kind = {1800.0: "urgent", 7200.0: "ordinary"}[offset_s]
+            told[kind].append(row.completed_s <= row.due_s)
+    late = sorted((orders["completed_s"] - orders["due_s"]).dropna())
+    at = 0.95 * (len(late) - 1)
+    below = int(at)
+    waiting = orders[orders["completed_s"].isna()]
+    return {
+        "on_time_share": np.mean(told["urgent"] + told["ordinary"]),
+        "on_time_urgent_share": np.mean(told["urgent"]),
+        "on_time_ordinary_share": np.mean(told["ordinary"]),
+        "lateness_p95_s": late[below] + (at - below) * (late[below + 1] - late[below]),
+        "lateness_max_s": late[-1],
+        "orders_overdue_end": (waiting["due_s"] < END).sum(),
+        "oldest_order_end_s": END - waiting["created_s"].min(),
+    }
+
+
 def recomputed(run) -> dict[str, float]:
     """Figures from `orders`, `trips` and `stations`, and where these say nothing from others."""
     orders, trips, stations = run.table("orders"), run.table("trips"), run.table("stations")
@@ -143,6 +166,7 @@ def recomputed(run) -> dict[str, float]:
         **sizes(run),
         **inventory(run),
         **decided(run),
+        **served(orders),
         "pods_lifted": robots["pods_lifted"].sum(),
         "robot_queueing_share": robots["queueing_s"].mean() / DURATION_S,
         "sim_per_wall": END / run.footprint["wall_s"],

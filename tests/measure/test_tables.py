@@ -73,6 +73,12 @@ EXPECTED = {
     "order_turnover_median_s": 210.0,
     "order_throughput_time_median_s": 150.0,
     "late_share": 0.0,
+    # order 1 was due at 300, order 2 is at 1000
+    "on_time_share": 1.0,
+    "lateness_p95_s": -90.0,
+    "lateness_max_s": -90.0,
+    "orders_overdue_end": 0,
+    "oldest_order_end_s": 350.0,
     # order 2 waits from 150 to the end
     "backlog_orders_mean": 350.0 / 400.0,
     "backlog_orders_end": 1,

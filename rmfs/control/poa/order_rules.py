@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
+import pydantic
 
 from rmfs.control.decisions import AssignOrder
 from rmfs.control.poa.filling import FastLaneParameters, Filling
@@ -13,6 +14,8 @@ from rmfs.control.poa.ties import first_row
 from rmfs.control.trackers.frequency import Frequency
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from rmfs.control.view import View
     from rmfs.world.orders import Order
     from rmfs.world.stations import PickStation
@@ -107,6 +110,67 @@ class DueTime(OrderRule):
             return None
         orders = self.view.orders
         return orders.at_row[first_row(rows, orders, "due-time", self.draw)]
+
+
+class WorkParameters(OrderRuleParameters):
+    """Parameters of POA rules that go by the time left and the work to be done in it."""
+
+    line_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 60.0
+    """Seconds of work of an order line: until its pod is there."""
+    unit_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 10.0
+    """Seconds of work of a unit."""
+
+
+class _ByWork(OrderRule):
+    """Chooses by due time and work; of the same score, the order that came first."""
+
+    parameters_model = WorkParameters
+
+    @abstractmethod
+    def _scores(
+        self, left_s: NDArray[np.float64], work_s: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Return a score of each order, the smaller the sooner."""
+
+    def choose_order(self) -> Order | None:
+        """Choose the order with the smallest score."""
+        rows = self.servable_rows()
+        if not len(rows):
+            return None
+        orders, given = self.view.orders, self.parameters
+        assert isinstance(given, WorkParameters)
+        units = orders.units[rows]
+        work_s = given.line_s * (units > 0).sum(axis=1) + given.unit_s * units.sum(axis=1)
+        scores = self._scores(orders.due_s[rows] - self.view.now_s, work_s)
+        best = rows[scores == scores.min()]
+        return orders.at_row[first_row(best, orders, "first-come", self.draw)]
+
+
+class Slack(_ByWork):
+    """Fills free slots with the orders that have the least slack.
+
+    Slack: time until an order is due, less its work (`line_s`, `unit_s`). Ties: the order that came
+    first. Source: the rule of least slack in job shops (Panwalkar, Iskander 1977).
+    """
+
+    def _scores(
+        self, left_s: NDArray[np.float64], work_s: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        return left_s - work_s
+
+
+class CriticalRatio(_ByWork):
+    """Fills free slots with the orders that have the least time left per work.
+
+    Ratio: time until an order is due / its work (`line_s`, `unit_s`); less than 1 cannot be kept.
+    Orders by slack per remaining work come in the same order, as that is the ratio less 1. Ties:
+    the order that came first. Source: the same survey.
+    """
+
+    def _scores(
+        self, left_s: NDArray[np.float64], work_s: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        return left_s / np.maximum(work_s, 1e-9)
 
 
 class FrequencyAge(OrderRule):

@@ -14,6 +14,7 @@ from rmfs.measure.measures.orders import Backlog, OrderTimes
 from rmfs.measure.measures.packing import Packing
 from rmfs.measure.measures.planning import Planning, Safety
 from rmfs.measure.measures.replenishment import Inventory, Replenishment
+from rmfs.measure.measures.service import Service
 from rmfs.measure.measures.speed import Speed
 from rmfs.measure.measures.stations import Stations
 from rmfs.measure.measures.throughput import Potential, Throughput
@@ -41,6 +42,7 @@ SHIPPED: tuple[type[Measure], ...] = (
     Energy,
     Batteries,
     Packing,
+    Service,
     Decisions,
     Optimisers,
     Speed,

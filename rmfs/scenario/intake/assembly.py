@@ -50,7 +50,11 @@ class Assembly(ABC, Generic[T]):
     def intake(self, record: Callable[[T], None] | None) -> Intake[T]:
         """Return the intake, which tells `record` of all that comes."""
         processes = [*self._regular(), *self._batches()]
-        return Intake(processes, record, self._stream)
+        return Intake(processes, record, self._stream, self._finish())
+
+    def _finish(self) -> Callable[[T], T] | None:
+        """Return what makes of each thing that comes another one; None: nothing does."""
+        return None
 
     @abstractmethod
     def _regular(self) -> Iterator[Process[T]]:

@@ -93,6 +93,8 @@ class Intake(Generic[T]):
         Told of each.
     stream
         The orders of a file, if they come from one.
+    finish
+        Makes of each what comes.
     """
 
     def __init__(
@@ -100,8 +102,10 @@ class Intake(Generic[T]):
         processes: Sequence[Process[T]],
         record: Callable[[T], None] | None = None,
         stream: OrderStream | None = None,
+        finish: Callable[[T], T] | None = None,
     ) -> None:
         self._processes = processes
+        self._finish = finish
         self._record = record
         self.stream = stream
 
@@ -136,6 +140,8 @@ class Intake(Generic[T]):
         """
         for process in self._processes:
             while (thing := process.draw(now_us, state)) is not None:
+                if self._finish is not None:
+                    thing = self._finish(thing)
                 if self._record is not None:
                     self._record(thing)
                 yield thing

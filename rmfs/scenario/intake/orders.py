@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 from rmfs.random import Stream
 from rmfs.scenario.clock import nearest_us
+from rmfs.scenario.departures import Departures
+from rmfs.scenario.due import DepartureDue
 from rmfs.scenario.intake.assembly import Assembly
 from rmfs.scenario.intake.backlog import BacklogOrders
 from rmfs.scenario.intake.batches import Batch, Batches, add
@@ -77,6 +79,12 @@ class _Orders(Assembly[OrderArrival]):
                 yield Timed(at_zero(demand.initial_orders), make)
             yield self._poisson(demand)
 
+    def _finish(self) -> Callable[[OrderArrival], OrderArrival] | None:
+        due = self._scenario.orders.due
+        if not isinstance(due, DepartureDue):
+            return None
+        return partial(_for_departure, Departures(due, self._gone_s), self._stream)
+
     def _poisson(self, demand: PoissonDemand) -> Timed[OrderArrival]:
         scale = float(self._site.pick_stations) if demand.per_station else 1.0
         come = self._arrivals(demand.profile, demand.orders_per_h, scale, Stream.ORDER_ARRIVALS)
@@ -129,6 +137,15 @@ def _from_stream(
     if due_us == NO_DUE_US:
         due_us = time_us + nearest_us(due(substreams.at(ordinal)()))
     return OrderArrival(time_us, *stream.lines(ordinal), due_us, redraws=0, in_file=ordinal)
+
+
+def _for_departure(
+    departures: Departures, stream: OrderStream | None, order: OrderArrival
+) -> OrderArrival:
+    """Let an order be due at a departure, unless its file says when it is."""
+    if stream is not None and order.in_file >= 0 and stream.due_us[order.in_file] != NO_DUE_US:
+        return order
+    return order._replace(due_us=departures.next_us(order.due_us))
 
 
 def _in_batch(draw: Contents, ordinal: int, now_us: int, state: State) -> OrderArrival | None:

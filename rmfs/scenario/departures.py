@@ -1,0 +1,35 @@
+"""Departures of trucks, to which due times are moved on."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from typing import TYPE_CHECKING
+
+from rmfs.scenario.clock import Cycle, nearest_us
+
+if TYPE_CHECKING:
+    from rmfs.scenario.due import DepartureDue
+
+
+class Departures:
+    """Moves due times on to the next departure.
+
+    Parameters
+    ----------
+    given
+        When trucks leave.
+    gone_s
+        Time of the cycle at time zero.
+    """
+
+    def __init__(self, given: DepartureDue, gone_s: float) -> None:
+        self._cycle = Cycle(given.cycle_s, gone_s)
+        self._phases_us = [nearest_us(time_s) for time_s in given.times_s]
+
+    def next_us(self, time_us: int) -> int:
+        """Return the first departure that is not before a time."""
+        phase_us = self._cycle.phase_us(time_us)
+        which = bisect_left(self._phases_us, phase_us)
+        if which == len(self._phases_us):
+            return time_us - phase_us + self._cycle.length_us + self._phases_us[0]
+        return time_us - phase_us + self._phases_us[which]
