@@ -95,6 +95,8 @@ lock: $(VENV)/.installed ## Pin the newest packages that pyproject.toml allows: 
 	$(BIN)/uv pip compile pyproject.toml --quiet --extra docs --constraint requirements.txt --universal \
 	  --python-version 3.11 --generate-hashes --custom-compile-command "make lock" \
 	  --output-file docs/requirements.txt
+	$(PIP) install --require-hashes -r requirements.txt
+	$(BIN)/python -m tests.tools.supply
 
 .PHONY: clean
 clean: ## Remove what was installed and built; results/ stays

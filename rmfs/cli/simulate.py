@@ -59,7 +59,11 @@ def run(
         ),
     ] = None,
     force: Annotated[
-        bool, typer.Option("--force", help="Replace the run folder if there is one.")
+        bool,
+        typer.Option(
+            "--force",
+            help="Replace the run folder if there is one; run what may not fit into memory.",
+        ),
     ] = False,
     set_: Annotated[
         list[str] | None,
@@ -146,6 +150,7 @@ def run(
     """Simulate a warehouse and write a run folder."""
     from rmfs.config import parse_override
     from rmfs.measure.folder import fill, load_run, reserved
+    from rmfs.room import forced
     from rmfs.scenario import StreamRecorder, write_streams
     from rmfs.simulation.checkpoints import Checkpoints
 
@@ -160,6 +165,7 @@ def run(
         raise InputError("--checkpoint-every, --resume: not with --live, --record or --decisions")
     with ExitStack() as stack:
         stack.enter_context(terminable())
+        stack.enter_context(forced(force))
         watching: dict[str, Any] = {}
         if live:
             from rmfs.view.commands import watched

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from rmfs import layout as layouts
-from rmfs import measure
+from rmfs import measure, room
 from rmfs.config import LARGEST_SEED
 from rmfs.control.pp import planner_settings
 from rmfs.control.problems import Problem
@@ -177,6 +177,7 @@ streams, remark, allow_not_well_formed, traffic_maker
         changes = [*overrides, *as_overrides(set or {})]
         inputs = load_inputs(layout, scenario, controllers, changes)
         plan, work, rules = inputs.layout, inputs.scenario, inputs.controllers
+        _require_room(plan, work)
         self.names = name_of(layout), name_of(scenario), name_of(controllers)
         self.inputs = inputs
         self.pacing_named = pacing
@@ -312,3 +313,17 @@ def _with_answers(pacing: PacingSettings) -> Paced:
     if not answers:
         raise InputError(f"pacing replay: {pacing.run}: that run asked no optimiser")
     return Replay(pacing, answers)  # type: ignore[arg-type]
+
+
+def _require_room(plan: Layout, work: Scenario) -> None:
+    """Refuse what does not fit into memory."""
+    demand = work.demand
+    orders = getattr(demand, "orders", 0) or getattr(demand, "initial_orders", 0)
+    skus = getattr(work.skus, "count", 0)
+    needed = (
+        plan.waypoints * room.WAYPOINT_BYTES
+        + skus * (plan.pods * room.STOCK_BYTES + room.SKU_BYTES)
+        + orders * room.ORDER_BYTES
+    )
+    told = f"{plan.waypoints} waypoints, {skus} SKUs on {plan.pods} pods, {orders} orders"
+    room.require(needed, f"a run with {told}")

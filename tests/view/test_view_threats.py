@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import http.client
 import json
+import shutil
 import socket
 import threading
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
+from rmfs.measure import RunFolder, load_run
+from rmfs.measure.report import write_report
 from rmfs.view import server as servers
+from rmfs.view.export import export
 from rmfs.view.server import Answer, Server
 
 JSON = {"Content-Type": "application/json"}
@@ -180,3 +185,20 @@ def test_headers_without_end(server: Server) -> None:
     with socket.create_connection(("127.0.0.1", server.server_port), timeout=20) as line:
         line.sendall(b"GET /" + b"a" * 70_000 + b" HTTP/1.1\r\n\r\n")
         assert line.recv(100).startswith(b"HTTP/1.1 414")
+
+
+def test_markup_in_names_stays_text(runs: list[RunFolder], tmp_path: Path) -> None:
+    """A run of a stranger, whose layout is called like a script, in report and exported page."""
+    evil = "<script>alert(1)</script><img src=x onerror=alert(1)>"
+    folder = tmp_path / "run"
+    shutil.copytree(runs[0].path, folder)
+    told = json.loads((folder / "run.json").read_text())
+    for part in ("layout", "scenario", "controllers"):
+        told[part]["name"] = evil
+    (folder / "run.json").write_text(json.dumps(told))
+    run = load_run(folder)
+    write_report(run, tmp_path / "report.html")
+    export([run], tmp_path / "page.html")
+    for name in ("report.html", "page.html"):
+        html = (tmp_path / name).read_text("utf-8")
+        assert "<script>alert" not in html and "<img src=x" not in html

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rmfs.layout.generator.assembly import Assembly
+from rmfs.layout.generator.extent import extent
+from rmfs.room import ROBOT_BYTES, TILE_BYTES, require
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -28,6 +30,12 @@ def generate(parameters: LayoutParameters, folder: Path | None = None) -> Layout
     Raises
     ------
     InputError
-        If there is no such kind of station, or a parameter of it is wrong.
+        If there is no such kind of station, a parameter of it is wrong, or the layout does not fit
+        into memory.
     """
+    size = extent(parameters)
+    tiles = size.rows * size.columns * parameters.tiers
+    robots = parameters.robots * parameters.tiers
+    needed = tiles * TILE_BYTES + robots * ROBOT_BYTES
+    require(needed, f"layout {parameters.name}: {tiles} tiles, {robots} robots")
     return Assembly(parameters, folder).layout()

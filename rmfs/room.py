@@ -1,0 +1,83 @@
+"""Whether what is asked for fits the memory of the machine, before it is begun."""
+
+from __future__ import annotations
+
+import re
+import resource
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+TILE_BYTES = 1600
+"""Of a layout, per tile of its area: measured while layouts of 10,000 to 100,000 are generated."""
+WAYPOINT_BYTES = 3200
+"""Of a run, per waypoint: tables of travel times, the planner's timetables."""
+STOCK_BYTES = 24
+"""Of a run, per SKU and pod: units, free units, and those drawn at the start."""
+SKU_BYTES = 400
+ORDER_BYTES = 1000
+"""Per order that waits at time zero."""
+ROBOT_BYTES = 20_000
+
+_force: ContextVar[bool] = ContextVar("force", default=False)
+
+
+@contextmanager
+def forced(force: bool = True) -> Iterator[None]:
+    """Within, what does not fit is begun all the same."""
+    token = _force.set(force)
+    try:
+        yield
+    finally:
+        _force.reset(token)
+
+
+def require(needed: float, what: str) -> None:
+    """Make sure that something fits into memory.
+
+    Parameters
+    ----------
+    needed
+        Bytes, roughly.
+    what
+        What takes them, in words and numbers.
+
+    Raises
+    ------
+    InputError
+        If more is needed than is free, and nobody forces it.
+    """
+    free = available()
+    if needed > free and not _force.get():
+        raise InputError(
+            f"{what}: would take about {spoken(needed)} of memory, and {spoken(free)} are free; "
+            "`rmfs run --force` begins it all the same"
+        )
+
+
+def spoken(size: float) -> str:
+    """Return a number of bytes in words."""
+    return f"{size / 1e9:.0f} GB" if size >= 1e10 else f"{size / 1e9:.1f} GB"
+
+
+def available() -> float:
+    """Return the bytes that this process may still take: of the machine, and of its own limit."""
+    limits = [float("inf")]
+    try:
+        told = Path("/proc/meminfo").read_text("utf-8")
+        found = re.search(r"^MemAvailable:\s+(\d+) kB", told, re.MULTILINE)
+        if found:
+            limits.append(int(found[1]) * 1024.0)
+        soft, _ = resource.getrlimit(resource.RLIMIT_AS)
+        if soft != resource.RLIM_INFINITY:
+            pages = int(Path("/proc/self/statm").read_text("utf-8").split()[0])
+            limits.append(float(soft - pages * resource.getpagesize()))
+    except OSError:  # another system: nothing is known, and nothing refused
+        pass
+    return min(limits)

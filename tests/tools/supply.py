@@ -1,0 +1,231 @@
+"""What rmfs is made with: bill of materials, licences, advisories: `python -m tests.tools.supply`.
+
+Names and versions are those of the lock files, licences those that packages state. Advisories are a
+stored list, so that the look at them needs no network; `--advisories FILE` takes a newer one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import re
+import subprocess
+import sys
+import tomllib
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+from packaging.version import Version
+
+from rmfs.files import write_text
+from tests.tools.checkout import ROOT
+
+BILL = ROOT / "docs" / "sbom.cdx.json"
+PAGE = ROOT / "docs" / "dependencies.md"
+ADVISORIES = Path(__file__).with_name("advisories.csv")
+
+COMPATIBLE = {
+    *("0BSD", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "CC0-1.0", "ISC", "LLVM-exception"),
+    *("MIT", "MIT-0", "MIT-CMU", "MPL-2.0", "PSF-2.0", "Unicode-3.0", "Zlib"),
+}
+"""Licences under which a package may be used by, and installed beside, one of the MIT licence.
+
+MPL-2.0 is one of files: what uses such a package is not touched by it.
+"""
+
+WORDS = (
+    (r"mozilla public license 2", "MPL-2.0"),
+    (r"apache", "Apache-2.0"),
+    (r"2-clause|bsd-2", "BSD-2-Clause"),
+    (r"bsd|kiwi", "BSD-3-Clause"),
+    (r"matplotlib|python software", "PSF-2.0"),
+    (r"isc", "ISC"),
+    (r"\bmit\b", "MIT"),
+)
+"""How licences are told where no expression of SPDX is: the first word found counts."""
+
+ELSEWHERE = {"colorama": "BSD-3-Clause"}
+"""Licences of packages that are locked for other systems and not installed here."""
+
+
+@dataclass(frozen=True, order=True)
+class Part:
+    """A package: where it comes from, name, version, licence (SPDX), and what for."""
+
+    ecosystem: str
+    name: str
+    version: str
+    licence: str
+    purpose: str
+
+    @property
+    def purl(self) -> str:
+        """Return its package URL."""
+        return f"pkg:{self.ecosystem}/{self.name}@{self.version}"
+
+
+def locked() -> set[tuple[str, str, str]]:
+    """Return ecosystem, name and version of everything that the lock files name."""
+    text = (ROOT / "requirements.txt").read_text("utf-8")
+    blocks = re.findall(r"^[^\s#].*", text, re.MULTILINE)
+    pins = [Requirement(block.split(" \\")[0]) for block in blocks]
+    python = {("pypi", canonicalize_name(pin.name), _version(pin)) for pin in pins}
+    crates = tomllib.loads((ROOT / "rmfs/traffic/Cargo.lock").read_text("utf-8"))["package"]
+    return python | {("cargo", one["name"], one["version"]) for one in crates if "source" in one}
+
+
+def _version(pin: Requirement) -> str:
+    (specifier,) = pin.specifier
+    return specifier.version
+
+
+def collected() -> list[Part]:
+    """Return all parts, with the licences that the installed packages and the crates state."""
+    needed = _needed_to_run()
+    licences = _of_crates()
+    parts = []
+    for ecosystem, name, version in sorted(locked()):
+        if ecosystem == "cargo":
+            parts.append(Part(ecosystem, name, version, licences[name, version], "compiled core"))
+            continue
+        purpose = "runs with rmfs" if name in needed else "extras and development"
+        parts.append(Part(ecosystem, name, version, licence_of(name), purpose))
+    return parts
+
+
+def _needed_to_run() -> set[str]:
+    """Return the packages that an installation without extras takes."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    todo = [Requirement(text).name for text in project["dependencies"]]
+    found: set[str] = set()
+    while todo:
+        name = canonicalize_name(todo.pop())
+        if name in found:
+            continue
+        found.add(name)
+        try:
+            needs = [Requirement(text) for text in metadata.requires(name) or []]
+        except metadata.PackageNotFoundError:
+            continue
+        todo += [r.name for r in needs if r.marker is None or "extra" not in str(r.marker)]
+    return found
+
+
+def licence_of(name: str) -> str:
+    """Return the licence that an installed package states, as SPDX has it; `unknown` if none."""
+    try:
+        told = metadata.metadata(name)
+    except metadata.PackageNotFoundError:
+        return ELSEWHERE.get(name, "unknown")
+    if "License-Expression" in told:
+        return str(told["License-Expression"])
+    classifiers = [one for one in told.get_all("Classifier", []) if one.startswith("License")]
+    said = " ".join([*classifiers, *told.get_all("License", [])]).lower()[:400]
+    return next((spdx for word, spdx in WORDS if re.search(word, said)), "unknown")
+
+
+def _of_crates() -> dict[tuple[str, str], str]:
+    command = ["cargo", "metadata", "--offline", "--locked", "--format-version", "1"]
+    manifest = ["--manifest-path", str(ROOT / "rmfs/traffic/Cargo.toml")]
+    told = subprocess.run([*command, *manifest], capture_output=True, check=True).stdout
+    found = json.loads(told)["packages"]
+    return {(p["name"], p["version"]): p["license"].replace("/", " OR ") for p in found}
+
+
+def unfit(licence: str) -> list[str]:
+    """Return what of a licence's expression is not known to be compatible.
+
+    Of alternatives one is enough; of what holds together, all count.
+    """
+    flat = re.sub(r"[()]", " ", licence)
+    missing: list[str] = []
+    for part in re.split(r"\s+AND\s+", flat):
+        choices = [re.split(r"\s+WITH\s+", one.strip()) for one in re.split(r"\s+OR\s+", part)]
+        if not any(set(choice) <= COMPATIBLE for choice in choices):
+            missing.append(part.strip())
+    return missing
+
+
+def affected(advisories: Path, parts: set[tuple[str, str, str]] | None = None) -> list[str]:
+    """Return the locked packages to which a stored advisory applies.
+
+    Parameters
+    ----------
+    advisories
+        CSV: ecosystem, name, version in which it is mended, identifier, what is wrong.
+    parts
+        Default those of the lock files.
+    """
+    found = []
+    with advisories.open(newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            for ecosystem, name, version in sorted(locked() if parts is None else parts):
+                same = (ecosystem, name) == (row["ecosystem"], row["name"])
+                if same and Version(version) < Version(row["mended"]):
+                    found.append(f"{name} {version}: {row['id']}, {row['what']}")
+    return found
+
+
+def bill(parts: list[Part]) -> dict[str, Any]:
+    """Return the bill of materials, in the form of CycloneDX 1.5."""
+    return {
+        "bomFormat": "CycloneDX",
+        "specVersion": "1.5",
+        "version": 1,
+        "metadata": {"component": {"type": "application", "name": "rmfs", "bom-ref": "rmfs"}},
+        "components": [
+            {
+                "type": "library",
+                "bom-ref": part.purl,
+                "name": part.name,
+                "version": part.version,
+                "purl": part.purl,
+                "scope": "optional" if part.purpose.startswith("extras") else "required",
+                "licenses": [{"expression": part.licence}],
+                "properties": [{"name": "rmfs:purpose", "value": part.purpose}],
+            }
+            for part in parts
+        ],
+    }
+
+
+def page(parts: list[Part]) -> str:
+    """Return the page that lists all parts."""
+    rows = "\n".join(
+        f"| {part.name} | {part.version} | {part.licence} | {part.purpose} |" for part in parts
+    )
+    return f"""# Dependencies
+
+What rmfs is made with, in the versions of the lock files, and the licence that each package
+states. All of them may be used with a program of the MIT licence; a test holds that. The same list
+as a bill of materials (CycloneDX 1.5) is the file `docs/sbom.cdx.json`. `python -m
+tests.tools.supply` writes both, and looks for known weaknesses in a stored list of advisories,
+which needs no network.
+
+| package | version | licence | what for |
+|---|---|---|---|
+{rows}
+"""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Return the exit code: 1 if a licence does not fit, or an advisory applies."""
+    parser = argparse.ArgumentParser(prog="python -m tests.tools.supply", description=__doc__)
+    parser.add_argument("--advisories", type=Path, default=ADVISORIES, help="list to look at")
+    given = parser.parse_args(arguments)
+    parts = collected()
+    write_text(BILL, json.dumps(bill(parts), indent=1) + "\n")
+    write_text(PAGE, page(parts))
+    problems = [f"{p.name}: licence {p.licence}" for p in parts if unfit(p.licence)]
+    problems += affected(given.advisories)
+    print(*problems, f"{len(parts)} packages, {len(problems)} problems", sep="\n")
+    return bool(problems)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
