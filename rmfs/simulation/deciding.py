@@ -230,9 +230,9 @@ class Deciding:
 
     def record(self, problem: Problem, wall_ns: int, count: int, by_rule: int) -> None:
         """Take note of a call; decisions by a solution are told with the question."""
-        now_s, wall_s = self._world.now_s, wall_ns / 1e9
-        self.statistics[problem].record(wall_ns, count, now_s)
-        self._events.decision(problem.value, now_s, wall_s, by_rule)
+        now_s, statistics = self._world.now_s, self.statistics[problem]
+        statistics.record(wall_ns, count, now_s)
+        self._events.decision(statistics.problem, now_s, wall_ns / 1e9, by_rule)
 
 
 def is_foreign(controller: Controller[Any]) -> bool:

@@ -142,11 +142,13 @@ class DecisionPhase:
         """Go through the steps that are due until none is; false if the outside has to decide."""
         outside, due = self.outside, self._due
         while outside.pending is None:
-            step, self._interrupted = self._interrupted, -1
+            step = self._interrupted
             if step < 0:
                 step = due.take()
                 if step < 0:
                     return True
+            else:
+                self._interrupted = -1
             try:
                 self._do(step)
             except Awaits as awaits:

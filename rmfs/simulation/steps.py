@@ -70,9 +70,12 @@ class Due:
     def connect(self) -> None:
         """Take note of who is asked after which trigger."""
         self._masks = []
+        asked = set(STEP_OF)
+        if self._world.batteries is None:
+            asked.remove(Problem.CA)  # robots have as much energy as they need
         for trigger in Trigger:
             mask = 0
-            for problem in self._controllers.calls[trigger] & STEP_OF.keys():
+            for problem in self._controllers.calls[trigger] & asked:
                 mask |= 1 << STEP_OF[problem]
             mask |= (trigger in _ARRIVALS_AFTER) << ARRIVALS
             mask |= (trigger in _LATE_BINDING_AFTER) << LATE_BINDING

@@ -202,16 +202,20 @@ class StationTeams(TaskAllocation[P]):
         Most stations have none: looking at these first, and not at each robot, is what keeps this
         cheap in big fleets.
         """
+        resting = self.view.resting
+        if not resting:
+            return
         everybody = self.looks_elsewhere() or self.may_be_moved(consult)
-        news = self._stations_with_news()
-        for robot in list(self.view.resting.values()):
+        news = set() if everybody else self._stations_with_news()
+        for robot in list(resting.values()):
             if not everybody and self._station_of[robot.index] not in news:
                 continue
-            if robot.index in self.view.resting:
+            if robot.index in resting:
                 task = self._fetch(robot, consult) or self.instead_of_rest(robot, consult)
                 if task is not None:
                     yield task
-                    news = self._stations_with_news()
+                    if not everybody:
+                        news = self._stations_with_news()
 
     def _stations_with_news(self) -> set[int]:
         """Stations with work for which no pod has been looked for in vain."""
