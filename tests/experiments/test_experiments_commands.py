@@ -286,7 +286,8 @@ def test_what_says_nothing_is_not_printed(tmp_path, monkeypatch, capsys):
     a = {"late_share": [0.0, 1e-7], "pick_station_idle_share": [0.5, 0.5]}
     b = {"late_share": [0.1, 0.2], "pick_station_idle_share": [-2.2e-16, 0.0]}
     pd.DataFrame(head | a).to_csv("a.csv", index=False)
-    pd.DataFrame(head | b | {"units_per_h": [600.0, 620.0 + 1e-12]}).to_csv("b.csv", index=False)
+    slower = {"units_per_h": [600.0, 620.0 + 1e-12], "wall_s": [2.0, 20.0]}
+    pd.DataFrame(head | b | slower).to_csv("b.csv", index=False)
     for more in ([], ["--all"]):
         assert main(["compare", "a.csv", "b.csv", *more]) == 0
         out = told(capsys)
