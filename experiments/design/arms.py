@@ -336,10 +336,10 @@ def _arm(
         for key, value in levels.items()
         if value is None and key in design.base
     }
-    inputs = {part: settings.pop(part, None) for part in PARTS}
+    inputs = {part: settings.pop(part, "default") for part in PARTS}
     for part, given in inputs.items():
         if not isinstance(given, str):
-            problems.append(f"base: {part} is missing (a name or a file)")
+            problems.append(f"base: {part} = {given!r} is neither a name nor a file")
     pacing = settings.pop("pacing", design.pacing)
     overrides: Overrides = []
     for key, value in settings.items():

@@ -119,7 +119,7 @@ def test_short_names_tell_factors_apart():
         ({"factors": {"robots": [8]}}, "factor robots: is no parameter"),
         ({"factors": {"layout.robots": [8, 8]}}, "level 8 is there more than once"),
         ({"factors": {"seed": [{"label": "a"}]}}, "factor seed: a column of the results"),
-        ({"base": {"layout": "basic", "scenario": "basic"}}, "base: controllers is missing"),
+        ({"base": {"layout": 7}}, "base: layout = 7 is neither a name nor a file"),
         ({"seeded": ["seed"]}, "seeded: seed: must begin with"),
         ({"arms_file": "nothing.csv"}, "nothing.csv: no such file"),
         ({"exclude": [{"layout.robots": [8, 16]}]}, "no arms are left"),
@@ -156,6 +156,16 @@ def test_problems_of_arms_are_told(design, changes, told):
 def test_a_wrong_design_file_is_refused(design, changes, told):
     with pytest.raises(InputError, match=told):
         experiments.plan(design(**changes))
+
+
+def test_what_a_design_does_not_name_is_the_default(design):
+    plan = experiments.plan(design(base={"layout": "basic"}))
+    assert plan.problems == []
+    assert plan.arms[0].inputs == {
+        "layout": "basic",
+        "scenario": "default",
+        "controllers": "default",
+    }
 
 
 def test_an_unknown_design_lists_the_shipped_ones():
