@@ -160,6 +160,9 @@ class FreeTraffic:
     def reset_statistics(self) -> None:
         pass
 
+    def motion(self) -> dict[str, np.ndarray]:
+        return {}
+
     def state_report(self) -> str:
         return ""
 
