@@ -9,6 +9,7 @@ import pytest
 from ledger import check_delays
 
 import rmfs
+from rmfs.measure.recorder import TASKS
 from rmfs.measure.tables.delays import PARTS, by_order
 
 SCENARIOS: dict[str, tuple[str, str, str, dict[str, Any]]] = {
@@ -38,31 +39,39 @@ def test_the_parts_add_up(run: Any) -> None:
 
 
 def test_hindered_is_what_the_planner_says(run: Any) -> None:
-    """Looked up trip by trip, in another way than the table does it."""
+    """Looked up trip by trip, in another way than the table does it.
+
+    To the planner's delays comes what a robot waits before it sets off, until another one has left
+    the pod's place.
+    """
     trips, lines = run.table("trips"), run.table("delays")
     picks = run.table("picks").groupby(["order", "sku"])["time_s"].max()
-    orders = run.table("orders").set_index("order")["assigned_s"]
-    compared = planned_s = told_s = 0.0
+    assigned = run.table("orders").set_index("order")["assigned_s"]
+    tasks = run.recorder.tasks.columns()
+    planned, told = [], []
     for line in lines.itertuples():
         if (line.order, line.sku) not in picks:
             continue  # before the measured time
-        own = trips[
-            (trips["robot"] == line.robot) & (trips["end_s"] <= picks[line.order, line.sku])
-        ]
-        if len(own) < 2 or own.iloc[-2]["start_s"] < orders[line.order]:
+        picked_s, assigned_s = picks[line.order, line.sku], assigned[line.order]
+        own = trips[(trips["robot"] == line.robot) & (trips["end_s"] <= picked_s)]
+        if len(own) < 2 or own.iloc[-2]["start_s"] < assigned_s:
             continue  # the order came later than the robot set off, or the pod was carried before
         to_pod, to_station = own.iloc[-2], own.iloc[-1]
         if (to_pod["kind"], to_station["kind"]) != ("to_pod", "to_station"):
             continue
         if line.drive_free_s == 0:
             continue  # at the station already, when the order came
-        compared += 1
-        planned_s += to_pod["hindered_s"] + max(to_station["hindered_s"], 0.0)
-        told_s += line.drive_hindered_s
-        assert line.drive_hindered_s >= to_pod["hindered_s"] - 1e-9
-    assert compared > 5
-    # what was told may be more: robots that wait for another one to leave their pod's place
-    assert planned_s - 1e-6 <= told_s <= planned_s + 0.2 * lines["drive_free_s"].sum()
+        ours = (tasks["robot"] == line.robot) & (tasks["kind"] == TASKS.index("pick"))
+        begun_s = tasks["begin_s"][ours & (tasks["begin_s"] <= picked_s)].max()
+        waited_s = to_pod["start_s"] - max(begun_s, assigned_s)
+        planned.append(waited_s + to_pod["hindered_s"] + max(to_station["hindered_s"], 0.0))
+        told.append(line.drive_hindered_s)
+    more_s = np.array(told) - np.array(planned)
+    assert len(more_s) > 5
+    assert more_s.min() > -1e-6
+    # a way there in two trips, or more: the earlier ones are not looked up here
+    assert (more_s < 1e-6).mean() > 0.85
+    assert sum(told) <= 1.15 * sum(planned)
 
 
 def test_more_robots_hinder_each_other_more() -> None:
