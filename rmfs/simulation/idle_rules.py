@@ -28,6 +28,7 @@ def idle_rules(
     controllers: ControllerSet,
     statistics: Mapping[Problem, DecisionStatistics],
     end_s: float,
+    outside: frozenset[Problem] = frozenset(),
 ) -> list[str]:
     """Say which rules of POA, RPS, ROA and TA have decided nothing for long while work waits.
 
@@ -35,12 +36,14 @@ def idle_rules(
     ----------
     end_s
         Simulated time from the first event to the end, s.
+    outside
+        Problems decided outside: their rules cannot be blamed.
     """
     found = []
     for problem in (Problem.POA, Problem.RPS, Problem.ROA, Problem.TA):
         rule, told = controllers[problem], statistics[problem]
         idle_s = end_s - max(told.last_s, 0.0)
-        if rule.is_dummy or idle_s < max(SHARE * end_s, LEAST_S):
+        if rule.is_dummy or problem in outside or idle_s < max(SHARE * end_s, LEAST_S):
             continue
         waits = _waits(problem, world, after_rps=Problem.RPS in rule.waits_for)
         if waits:

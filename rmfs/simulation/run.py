@@ -267,7 +267,8 @@ streams, remark, allow_not_well_formed, traffic_maker
                 f"the run is at {self.now_s:g} s of {self.end_s:g} s: its results come at its end"
             )
         statistics = self.deciding.statistics
-        idle = idle_rules(self.world, self.controller_set, statistics, self.end_s)
+        outside = self.phase.outside.problems
+        idle = idle_rules(self.world, self.controller_set, statistics, self.end_s, outside)
         for told in idle:
             warnings.warn(told, IdleRuleWarning, stacklevel=2)
         marks = "".join(

@@ -18,6 +18,7 @@ from rmfs.control.problems import Problem
 from rmfs.errors import InputError
 from rmfs.learning import NAME, DecisionEnv, Reward
 from rmfs.measure.dictionary import reproducible
+from rmfs.simulation.idle_rules import IdleRuleWarning
 
 RULES_FILE = Path(__file__).parents[1] / "simulation" / "every_rule.py"
 sys.path.append(str(RULES_FILE.parent))
@@ -226,6 +227,14 @@ def test_time_passes_between_decisions() -> None:
         *_, info = env.step(0)
         total += info["elapsed_s"]
     assert total == pytest.approx(240)
+
+
+def test_no_rule_is_blamed_for_an_agent_that_decides_nothing() -> None:
+    env = made("poa", "ta", duration_s=900)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", IdleRuleWarning)
+        _, _, footprint = played(env, 1, lambda env, info: env.decline)
+    assert footprint["units_picked"] == 0
 
 
 def test_a_picture_of_the_run() -> None:
