@@ -6,6 +6,7 @@ import io
 import pickle
 from typing import TYPE_CHECKING, Any
 
+from rmfs.control.base import Parameters
 from rmfs.control.trackers import Tracker
 from rmfs.control.travel import Travel
 from rmfs.control.view import View
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
     from rmfs.control.base import Controller
 
 _WORLD = ("rmfs.world.", "rmfs.layout.", "rmfs.scenario.", "rmfs.traffic.")
+_ATOMS = (Parameters, View, Travel, Tracker)
+_KNOWN: dict[type, bool] = {}
+"""Whether objects of a type are referred to: told once per type, there are hundreds of objects."""
 
 
 class RuleState:
@@ -45,17 +49,15 @@ class _Keeper(ArrayPickler):
     ) -> None:
         super().__init__(stream)
         self._shared = shared
-        self._atoms = (type(controller.parameters), View, Travel, Tracker)
         self._controller = controller
 
     def persistent_id(self, thing: object) -> int | None:
         kind = type(thing)
-        is_shared = (
-            thing is self._controller
-            or kind.__module__.startswith(_WORLD)
-            or isinstance(thing, self._atoms)
-        )
-        if not is_shared or isinstance(thing, type):
+        is_shared = _KNOWN.get(kind)
+        if is_shared is None:
+            is_shared = issubclass(kind, _ATOMS) or kind.__module__.startswith(_WORLD)
+            is_shared = _KNOWN[kind] = is_shared and not issubclass(kind, type)
+        if not is_shared and thing is not self._controller:
             return None
         self._shared.append(thing)
         return len(self._shared) - 1
