@@ -70,7 +70,10 @@ def main(arguments: list[str] | None = None) -> None:
     study.publish(overview(frame, (level,), COLUMNS), name, ["units_per_h", "paced_s"])
     if level == THINKING and not given.planning:
         print(picture(study, frame))
-    require_optimised(study)
+    # plans that take long to think of grow stale: that is what is shown
+    require_optimised(
+        study, frame[frame[THINKING].str.startswith("work ")] if given.planning else None
+    )
 
 
 if __name__ == "__main__":
