@@ -119,7 +119,8 @@ def tolerable_tote_s(split: pd.DataFrame, whole: pd.DataFrame) -> pd.Series[floa
     """Return what a packer may take per further tote until splitting saves no work, s, by seed.
 
     One picker works at each pick station. Splitting saves `pickers x (1 - whole / split)` of their
-    time, by units per hour, and takes a packer so long for every tote beyond an order's first.
+    time, by units per hour, and takes a packer so long for every tote beyond an order's first; nan
+    if nothing was split.
 
     Parameters
     ----------
@@ -128,14 +129,15 @@ def tolerable_tote_s(split: pd.DataFrame, whole: pd.DataFrame) -> pd.Series[floa
     """
     saved_s = 3600.0 * split["pick_stations"] * (1 - whole["units_per_h"] / split["units_per_h"])
     orders_per_h = 3600.0 * split["orders_packed"] / split["duration_s"]
-    totes: pd.Series[float] = saved_s / (orders_per_h * (split["totes_per_order"] - 1))
-    return totes
+    further_per_h = orders_per_h * (split["totes_per_order"] - 1)
+    return saved_s / further_per_h.where(further_per_h > 0)
 
 
 def tolerable_way_s(split: pd.DataFrame, whole: pd.DataFrame, way_s: float) -> pd.Series[float]:
     """Return the way at which orders are packed as early as whole ones in the mean, s, by seed.
 
-    Only split orders go to the wall. Negative where they are later even without any way.
+    Only split orders go to the wall; nan if none was. Negative where they are later even without
+    any way.
 
     Parameters
     ----------
@@ -145,8 +147,8 @@ def tolerable_way_s(split: pd.DataFrame, whole: pd.DataFrame, way_s: float) -> p
         Of `split`.
     """
     earlier_s = whole["order_cycle_mean_s"] - split["order_cycle_mean_s"]
-    way: pd.Series[float] = way_s + earlier_s / split["orders_packed_split_share"]
-    return way
+    share = split["orders_packed_split_share"]
+    return way_s + earlier_s / share.where(share > 0)
 
 
 def even(frame: pd.DataFrame) -> Table:

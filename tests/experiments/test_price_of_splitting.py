@@ -68,4 +68,4 @@ def test_the_study_as_a_command(tmp_path, capsys):
         assert (tmp_path / f"price-of-splitting{name}-smoke.md").is_file()
     told = (tmp_path / "price-of-splitting-smoke.csv").read_text("utf-8").splitlines()
     assert sum(row.startswith(('"backlog', '"arrivals')) for row in told) == 16
-    assert "totes_held_mean" in capsys.readouterr().out
+    assert "| backlog, any slots, 60 s" in capsys.readouterr().out
