@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import json
 import os
 import re
 import shutil
@@ -113,16 +114,36 @@ def add_folders(wheel: Path) -> None:
     }
     whole = wheel.with_suffix(".new")
     with zipfile.ZipFile(wheel) as old, zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED) as new:
+        content = {entry.filename: old.read(entry) for entry in old.infolist()}
+        changed = {name: repeatable(bill) for name, bill in content.items() if "/sboms/" in name}
         for entry in old.infolist():
-            content = old.read(entry)
+            one = changed.get(entry.filename, content[entry.filename])
             if entry.filename.endswith(".dist-info/RECORD"):
-                content = b"".join(map(recorded, added, added.values())) + content
-            new.writestr(entry, content, zipfile.ZIP_DEFLATED)
+                told = {**added, **changed}
+                rest = [line for line in one.splitlines(True) if _name(line) not in changed]
+                one = b"".join([*map(recorded, told, told.values()), *rest])
+            new.writestr(entry, one, zipfile.ZIP_DEFLATED)
         for name, content in added.items():
             entry = zipfile.ZipInfo(name, _AGE)
             entry.external_attr = 0o644 << 16
             new.writestr(entry, content, zipfile.ZIP_DEFLATED)
     whole.replace(wheel)
+
+
+def repeatable(bill: bytes) -> bytes:
+    """Return maturin's bill of materials without what differs from build to build.
+
+    That is a number drawn at random, the time of day, and the folder of the build.
+    """
+    told = json.loads(bill.replace(f"file://{ROOT}/".encode(), b"file:///"))
+    told.pop("serialNumber", None)
+    told.get("metadata", {}).pop("timestamp", None)
+    return json.dumps(told, indent=1).encode()
+
+
+def _name(line: bytes) -> str:
+    """Return the file that a line of a record is about."""
+    return line.decode().rsplit(",", 2)[0]
 
 
 def recorded(name: str, content: bytes) -> bytes:

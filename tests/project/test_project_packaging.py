@@ -1,4 +1,5 @@
 import importlib.util
+import json
 import zipfile
 from pathlib import Path
 from types import ModuleType
@@ -39,6 +40,33 @@ def test_a_wheel_takes_one_name_and_carries_the_folders_below_it(
     for name in ("solvers/models/solution.py", "experiments/designs/smoke.toml"):
         assert f"rmfs/{name}" in names
     assert "rmfs/shipped/layouts/default.toml" in names
+
+
+def test_the_bill_of_materials_of_a_wheel_repeats(backend: ModuleType, tmp_path: Path) -> None:
+    """Maturin writes a random number, the time and the folder of the build into it."""
+    wheels = []
+    for number in range(2):
+        bill = {
+            "serialNumber": f"urn:uuid:{number}",
+            "metadata": {"timestamp": f"2026-01-0{number + 1}T00:00:00Z", "tools": ["a"]},
+            "components": [{"bom-ref": f"path+file://{backend.ROOT}/rmfs/traffic#x@1"}],
+        }
+        wheel = tmp_path / f"rmfs-{number}-py3-none-any.whl"
+        name = "rmfs-0.dist-info/sboms/x.json"
+        with zipfile.ZipFile(wheel, "w") as bare:
+            text = json.dumps(bill)
+            bare.writestr(zipfile.ZipInfo(name), text)
+            bare.writestr(zipfile.ZipInfo("rmfs-0.dist-info/RECORD"), f"{name},sha256=x,1\n")
+        backend.add_folders(wheel)
+        wheels.append(wheel.read_bytes())
+        with zipfile.ZipFile(wheel) as whole:
+            told = whole.read(name)
+            record = whole.read("rmfs-0.dist-info/RECORD")
+        assert str(backend.ROOT).encode() not in told
+        assert json.loads(told)["components"] and json.loads(told)["metadata"]["tools"]
+        assert record.count(name.encode()) == 1
+        assert backend.recorded(name, told) in record
+    assert wheels[0] == wheels[1]
 
 
 def test_the_source_distribution_carries_the_folders_of_the_wheel(backend: ModuleType) -> None:
