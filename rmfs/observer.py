@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Call
     from rmfs.layout.model import Layout
     from rmfs.scenario import Scenario
-    from rmfs.scenario.streams import OrderStream
+    from rmfs.scenario.streams import BundleStream, OrderStream
     from rmfs.world import World
     from rmfs.world.orders import Bundle, Order
     from rmfs.world.put_wall import Parcel
@@ -77,8 +77,8 @@ class Observed:
         What counts motion and knows travel times.
     disturbances
         What goes wrong.
-    order_stream
-        The orders of a file, if the scenario names one.
+    order_stream, bundle_stream
+        The orders and the bundles of a file, if the scenario names one.
     """
 
     layout: Layout
@@ -87,6 +87,7 @@ class Observed:
     traffic: MotionCounts
     disturbances: Troubles
     order_stream: OrderStream | None
+    bundle_stream: BundleStream | None
 
 
 class Observer:

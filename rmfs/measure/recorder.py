@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Call
     from rmfs.layout.model import Layout
     from rmfs.observer import MotionCounts, Observed, Troubles
-    from rmfs.scenario.streams import OrderStream
+    from rmfs.scenario.streams import BundleStream, OrderStream
     from rmfs.world.orders import Bundle, Order
     from rmfs.world.put_wall import Parcel
     from rmfs.world.world import World
@@ -43,8 +43,8 @@ class Recorder(Observer):
     ----------
     start_s, end_s
         The measured time.
-    order_stream
-        The orders of a file, if the scenario names one.
+    order_stream, bundle_stream
+        The orders and the bundles of a file, if the scenario names one.
     units
         Picked units.
     lines
@@ -96,6 +96,7 @@ class Recorder(Observer):
         self.layout: Layout
         self.world: World
         self.order_stream: OrderStream | None = None
+        self.bundle_stream: BundleStream | None = None
         self.traffic: MotionCounts
         self.start_s = 0.0
         self.end_s = nan
@@ -114,7 +115,7 @@ class Recorder(Observer):
         self.open_orders: dict[int, Order] = {}
         self.bundles = Log(
             **{"time_s": "f8", "created_s": "f8", "assigned_s": "f8", "sku": "i4", "units": "i4"},
-            **{"space": "f8", "pod": "i4", "station": "i2", "robot": "i2"},
+            **{"space": "f8", "pod": "i4", "station": "i2", "in_file": "i4", "robot": "i2"},
         )
         self.open_bundles: dict[int, Bundle] = {}
         self.visits = Log(station="i2", pod="i4", robot="i2", begin_s="f8", end_s="f8")
@@ -153,7 +154,7 @@ class Recorder(Observer):
     def run_started(self, run: Observed) -> None:
         """Keep hold of the world and the traffic."""
         self.layout, self.world, self.traffic = run.layout, run.world, run.traffic
-        self.order_stream = run.order_stream
+        self.order_stream, self.bundle_stream = run.order_stream, run.bundle_stream
         self._disturbances = run.disturbances
         if run.scenario.energy is not None:
             self.energy.begin(run.traffic, run.layout.robots, run.world.batteries)
@@ -330,4 +331,5 @@ def bundle_row(bundle: Bundle) -> tuple[Any, ...]:
         bundle.space,
         bundle.pod,
         bundle.station,
+        bundle.in_file,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rmfs.scenario import Site, bundle_intake, order_intake
+from rmfs.scenario.streams import BundleStream, OrderStream
 from rmfs.world.orders import Bundle, Order
 
 if TYPE_CHECKING:
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
 
     from rmfs.layout.model import Layout
     from rmfs.scenario import BundleArrival, OrderArrival, Scenario, StreamRecorder
-    from rmfs.scenario.streams import OrderStream
     from rmfs.simulation.agenda import Agenda
     from rmfs.simulation.events import Events
     from rmfs.world import World
@@ -64,7 +64,14 @@ class ArrivalProcess:
     @property
     def order_stream(self) -> OrderStream | None:
         """The orders of a file, if the scenario names one."""
-        return self._orders.stream
+        stream = self._orders.stream
+        return stream if isinstance(stream, OrderStream) else None
+
+    @property
+    def bundle_stream(self) -> BundleStream | None:
+        """The bundles of a file, if the scenario names one."""
+        stream = self._bundles.stream
+        return stream if isinstance(stream, BundleStream) else None
 
     def top_up(self) -> None:
         """Make the orders and bundles that come now."""
@@ -104,6 +111,7 @@ class ArrivalProcess:
         bundle = Bundle(
             world.bundles_created, arrival.sku, arrival.units, arrival.space, world.now_s
         )
+        bundle.in_file = arrival.in_file
         world.add_bundle(bundle)
         self._events.bundle_created(bundle)
 

@@ -88,7 +88,7 @@ class Snapshot(Generic[K]):
 
 def _never_changing(simulation: Kernel) -> list[Any]:
     """What all copies of a simulation may share, and the fleet, which copies itself."""
-    from_file = simulation.arrivals.order_stream
+    from_files = simulation.arrivals.order_stream, simulation.arrivals.bundle_stream
     return [
         simulation.traffic,
         simulation.layout,
@@ -96,7 +96,7 @@ def _never_changing(simulation: Kernel) -> list[Any]:
         simulation.controllers,
         simulation.world.skus,
         simulation.view.travel.tables,
-        *([] if from_file is None else [from_file]),
+        *(stream for stream in from_files if stream is not None),
     ]
 
 

@@ -427,6 +427,7 @@ class Kernel:
             self.traffic,
             self.disturbances,
             self.arrivals.order_stream,
+            self.arrivals.bundle_stream,
         )
 
     def __getstate__(self) -> dict[str, Any]:

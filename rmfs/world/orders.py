@@ -134,6 +134,8 @@ class Bundle:
         The replenishment station with space reserved, or -1.
     stored_s
         When its transfer into the pod began.
+    in_file
+        Its place among the bundles of a file, or -1.
     """
 
     index: int
@@ -146,3 +148,4 @@ class Bundle:
     station: int = -1
     assigned_s: float = nan
     stored_s: float = nan
+    in_file: int = -1

@@ -158,6 +158,7 @@ def bundle(index, created, *, station=-1, pod=-1, assigned=nan, stored=nan):
         station=station,
         assigned_s=assigned,
         stored_s=stored,
+        in_file=-1,
     )
 
 
@@ -202,6 +203,7 @@ def simulation(place, traffic):
         traffic=traffic,
         disturbances=disturbances,
         order_stream=None,
+        bundle_stream=None,
     )
 
 

@@ -38,7 +38,7 @@ def test_tables_are_read_back(written):
     assert run_folder.footprint["orders_completed"] == 1
     for name in TABLES:
         # its orders come from no file, and are done when they are picked
-        empty = name in ("order_lines", "parcels", "totes")
+        empty = name in ("order_lines", "bundle_lines", "parcels", "totes")
         assert bool(len(run_folder.table(name))) == (not empty), name
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from rmfs.measure.tables.bundle_lines import BUNDLE_LINES as BUNDLE_LINES
+from rmfs.measure.tables.bundle_lines import bundle_lines as bundle_lines
 from rmfs.measure.tables.connections import CONNECTIONS as CONNECTIONS
 from rmfs.measure.tables.connections import EDGES as EDGES
 from rmfs.measure.tables.connections import connections as connections
@@ -64,6 +66,7 @@ MAKERS = {
     "totes": totes,
     "picks": picks,
     "bundles": bundles,
+    "bundle_lines": bundle_lines,
     "visits": visits,
     "trips": trips,
     "connections": connections,
@@ -88,6 +91,7 @@ DECLARED: dict[str, Sequence[Column]] = {
     "totes": TOTES,
     "picks": PICKS,
     "bundles": BUNDLES,
+    "bundle_lines": BUNDLE_LINES,
     "visits": VISITS,
     "trips": TRIPS,
     "connections": CONNECTIONS,

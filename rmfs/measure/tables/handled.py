@@ -55,12 +55,17 @@ def picks(logs: Logs) -> pd.DataFrame:
 
 def bundles(logs: Logs) -> pd.DataFrame:
     """Every bundle that was waiting or stored during the measured time, by arrival."""
-    frame = logs.bundles.rename(columns={"time_s": "stored_s"})
-    frame = frame[~(frame["stored_s"] < logs.start_s)]
-    frame = frame.sort_values("created_s", kind="stable", ignore_index=True)
+    frame = seen_bundles(logs).drop(columns="in_file")
     frame["turnover_s"] = frame["stored_s"] - frame["created_s"]
     frame["throughput_time_s"] = frame["stored_s"] - frame["assigned_s"]
     return tidy("bundles", BUNDLES, frame)
+
+
+def seen_bundles(logs: Logs) -> pd.DataFrame:
+    """Return the bundles of the table of bundles, with their places in a file."""
+    frame = logs.bundles.rename(columns={"time_s": "stored_s"})
+    frame = frame[~(frame["stored_s"] < logs.start_s)]
+    return frame.sort_values("created_s", kind="stable", ignore_index=True)
 
 
 def visits(logs: Logs) -> pd.DataFrame:

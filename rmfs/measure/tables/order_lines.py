@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from rmfs.measure.tables.logs import Logs
     from rmfs.scenario.streams import OrderStream
+    from rmfs.scenario.streams.order_file import OrderFile
 
 ORDER_LINES = (
     Column("order", INTEGER, "", "Order, as in the table of orders"),
@@ -32,8 +33,6 @@ ORDER_LINES = (
 
 def order_lines(logs: Logs) -> pd.DataFrame:
     """Every line of the orders in the table of orders that come from a file; else nothing."""
-    import pandas as pd
-
     stream = logs.recorder.order_stream
     orders = seen(logs)
     orders = orders[orders["in_file"] >= 0]
@@ -55,6 +54,13 @@ def order_lines(logs: Logs) -> pd.DataFrame:
             "file_sku": np.array(names_of_skus(logs.world.skus), dtype=object)[sku],
         },
     )
+    return with_columns_of(file, line, frame)
+
+
+def with_columns_of(file: OrderFile, line: NDArray[np.int64], frame: pd.DataFrame) -> pd.DataFrame:
+    """Add the user's own columns of a file to a table of some of its lines."""
+    import pandas as pd
+
     for name, (codes, texts) in file.columns.items():
         given = pd.Series(np.array(texts, dtype=object)[codes[line]])
         frame[f"file_{name}"] = given.astype("str")

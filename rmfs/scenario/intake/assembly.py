@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.parameters.calendar import DownPeriods
     from rmfs.scenario.parameters.rates import AnyRate
     from rmfs.scenario.skus import SkuSet
-    from rmfs.scenario.streams import OrderStream
+    from rmfs.scenario.streams import BundleStream, OrderStream
 
 T = TypeVar("T")
 
@@ -45,7 +45,7 @@ class Assembly(ABC, Generic[T]):
         self._seed = seed
         self._gone_s = scenario.time_of_day_s
         self._openings = Openings(down, self._gone_s)
-        self._stream: OrderStream | None = None
+        self._stream: OrderStream | BundleStream | None = None
 
     def intake(self, record: Callable[[T], None] | None) -> Intake[T]:
         """Return the intake, which tells `record` of all that comes."""

@@ -87,6 +87,7 @@ class _Bundles(Assembly[BundleArrival]):
 
     def _from_file(self) -> Timed[BundleArrival]:
         stream = bundle_stream(self._scenario, self._skus, self._site.largest_pod)
+        self._stream = stream
         space_per_unit: list[float] = self._skus.space_per_unit.tolist()
         make = partial(_from_stream, stream, space_per_unit)
         return Timed(self._at_times(stream.time_us.tolist()), make)
@@ -139,8 +140,9 @@ def _in_batch(source: BundleSource, ordinal: int, now_us: int, _state: State) ->
 def _from_stream(
     stream: BundleStream, space_per_unit: list[float], candidate: Candidate, _state: State
 ) -> BundleArrival:
-    sku, units = int(stream.sku[candidate.ordinal]), int(stream.units[candidate.ordinal])
-    return BundleArrival(candidate.time_us, sku, units, units * space_per_unit[sku])
+    ordinal = candidate.ordinal
+    sku, units = int(stream.sku[ordinal]), int(stream.units[ordinal])
+    return BundleArrival(candidate.time_us, sku, units, units * space_per_unit[sku], ordinal)
 
 
 def _record(recorder: StreamRecorder, bundle: BundleArrival) -> None:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from rmfs.scenario.intake.state import State
     from rmfs.scenario.orders import OrderContent
-    from rmfs.scenario.streams import OrderStream
+    from rmfs.scenario.streams import BundleStream, OrderStream
 
 
 class OrderArrival(NamedTuple):
@@ -51,12 +51,16 @@ class OrderArrival(NamedTuple):
 
 
 class BundleArrival(NamedTuple):
-    """A bundle that comes now: so many units of one SKU, and the space units they take."""
+    """A bundle that comes now: so many units of one SKU, and the space units they take.
+
+    `in_file` is its place among the bundles of a file, or -1.
+    """
 
     time_us: int
     sku: int
     units: int
     space: float
+    in_file: int = -1
 
 
 @runtime_checkable
@@ -92,7 +96,7 @@ class Intake(Generic[T]):
     record
         Told of each.
     stream
-        The orders of a file, if they come from one.
+        The orders or bundles of a file, if they come from one.
     finish
         Makes of each what comes.
     """
@@ -101,7 +105,7 @@ class Intake(Generic[T]):
         self,
         processes: Sequence[Process[T]],
         record: Callable[[T], None] | None = None,
-        stream: OrderStream | None = None,
+        stream: OrderStream | BundleStream | None = None,
         finish: Callable[[T], T] | None = None,
     ) -> None:
         self._processes = processes

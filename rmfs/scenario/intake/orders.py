@@ -17,7 +17,7 @@ from rmfs.scenario.intake.intake import Intake, OrderArrival, Process
 from rmfs.scenario.intake.timed import Timed, at_zero, share_of
 from rmfs.scenario.parameters import BacklogDemand, StreamDemand
 from rmfs.scenario.sources import order_stream
-from rmfs.scenario.streams.stream import NO_DUE_US
+from rmfs.scenario.streams.stream import NO_DUE_US, OrderStream
 from rmfs.scenario.substreams import Substreams
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.intake.thinning import Candidate
     from rmfs.scenario.parameters import PoissonDemand, Scenario
     from rmfs.scenario.skus import SkuSet
-    from rmfs.scenario.streams import OrderStream, StreamRecorder
+    from rmfs.scenario.streams import StreamRecorder
 
 
 def order_intake(
@@ -83,7 +83,8 @@ class _Orders(Assembly[OrderArrival]):
         due = self._scenario.orders.due
         if not isinstance(due, DepartureDue):
             return None
-        return partial(_for_departure, Departures(due, self._gone_s), self._stream)
+        stream = self._stream if isinstance(self._stream, OrderStream) else None
+        return partial(_for_departure, Departures(due, self._gone_s), stream)
 
     def _poisson(self, demand: PoissonDemand) -> Timed[OrderArrival]:
         scale = float(self._site.pick_stations) if demand.per_station else 1.0

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 class OrderFile:
     """Names and further columns of n orders with m lines in all, as their file has them.
 
+    Of bundles each is an order of one line.
+
     Attributes
     ----------
     names

@@ -53,7 +53,7 @@ def read_bundles(
 
     The columns are time (s or ISO 8601, not decreasing), sku (its name or id) and quantity (units),
     in any order; order (any name) may be there, due must be empty. Each line is a bundle. Further
-    columns are left alone.
+    columns are kept (`BundleStream.file`).
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def read_bundles(
     problems = Problems(path)
     rows = BundleRows(skus, problems, _word(path), largest, zero)
     _read(path, rows, problems)
-    return rows.builder.build()
+    return replace(rows.builder.build(), file=rows.file.build())
 
 
 def first_moment(path: Path) -> datetime | None:

@@ -225,6 +225,7 @@ class BundleRows:
         zero: datetime | None = None,
     ) -> None:
         self.builder = BundleStreamBuilder()
+        self.file = OrderFileBuilder(())
         self._fields = _Fields(skus)
         self._times = Times(zero)
         self._space_per_unit = skus.space_per_unit
@@ -234,17 +235,18 @@ class BundleRows:
         self._time_us = 0
 
     def begin(self, further: Sequence[str]) -> None:
-        """Further columns are left alone (see `Rows`)."""
+        """Keep what the further columns hold (see `Rows`)."""
+        self.file = OrderFileBuilder(further)
 
     def take(self, number: int, fields: Sequence[str]) -> None:
         """Take a row (see `Rows`)."""
         try:
-            self._take(fields)
+            self._take(number, fields)
         except FieldError as error:
             self._problems.add(f"{self._word} {number}: {error}")
 
-    def _take(self, fields: Sequence[str]) -> None:
-        time, _, sku, quantity, due, *_ = fields
+    def _take(self, number: int, fields: Sequence[str]) -> None:
+        time, name, sku, quantity, due, *further = fields
         time_us = self._times.us("time", time)
         index, units = self._fields.sku(sku), self._fields.units(quantity)
         if due:
@@ -261,6 +263,8 @@ class BundleRows:
             )
         self._time_us = time_us
         self.builder.add(time_us, index, units)
+        self.file.add_order(name)
+        self.file.add_line(number, further)
 
     def end(self) -> None:
         """Nothing is left to check."""

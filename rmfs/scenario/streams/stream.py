@@ -71,11 +71,14 @@ class BundleStream(_Frozen):
         When each arrives, shape (n,).
     sku, units
         SKU (index) and units of each, shape (n,).
+    file
+        What the file they come from says beside that, if they come from one; a line each.
     """
 
     time_us: NDArray[np.int64]
     sku: NDArray[np.int64]
     units: NDArray[np.int64]
+    file: OrderFile | None = None
 
     def __len__(self) -> int:
         return len(self.time_us)
@@ -127,7 +130,7 @@ class BundleStreamBuilder:
 
     def build(self) -> BundleStream:
         """Return the bundles added so far."""
-        return BundleStream(*map(_copied, (self._time_us, self._sku, self._units)))
+        return BundleStream(_copied(self._time_us), _copied(self._sku), _copied(self._units))
 
 
 def _copied(column: array[int]) -> NDArray[np.int64]:
