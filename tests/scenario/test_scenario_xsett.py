@@ -209,7 +209,7 @@ def test_fixed_orders(tmp_path: Path):
         (3_250_000, (1,), (1,)),
     ]
     bundles = drive(bundle_intake(scenario, skus, SITE, 1), FakeState(2), DAY_US)
-    assert [tuple(bundle) for bundle in bundles] == [(1_500_000, 1, 3, 6.0)]
+    assert [tuple(bundle) for bundle in bundles] == [(1_500_000, 1, 3, 6.0, 0)]
     assert noted(notes, "fixed orders have no due times")
     assert noted(notes, "BufferBundlesUntilInventoryLoad") is False
     with pytest.raises(InputError, match="OrderFile: is empty, but OrderMode is Fixed"):
