@@ -5,7 +5,7 @@ from __future__ import annotations
 from time import perf_counter_ns
 from typing import TYPE_CHECKING, Any
 
-from rmfs.control.asks import Ask, told_by
+from rmfs.control.asks import Ask, By, told_by
 from rmfs.control.legality import reason, why_not
 from rmfs.control.problems import Problem
 from rmfs.errors import RuleError
@@ -87,7 +87,7 @@ class Deciding:
         try:
             for told in given:
                 spent_ns += perf_counter_ns() - start
-                decision, call = told_by(told, answer)
+                decision, call = told if type(told) is By else (told, answer)
                 if type(decision) is Ask:
                     self._optimisers.ask(problem, controller, decision)
                 else:

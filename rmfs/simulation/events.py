@@ -37,6 +37,8 @@ class Events(Observer):
             vars(self).pop(name, None)
             if len(listeners) == 1:
                 setattr(self, name, listeners[0])
+            elif len(listeners) == 2:
+                setattr(self, name, _Both(*listeners))
             elif listeners:
                 setattr(self, name, _All(listeners))
 
@@ -47,9 +49,22 @@ class _All:
     def __init__(self, listeners: Sequence[Callable[..., None]]) -> None:
         self._listeners = tuple(listeners)
 
-    def __call__(self, *arguments: object, **named: object) -> None:
+    def __call__(self, *arguments: object) -> None:
         for listener in self._listeners:
-            listener(*arguments, **named)
+            listener(*arguments)
+
+
+class _Both:
+    """Calls two methods with the same arguments: most callbacks have as many."""
+
+    __slots__ = ("_first", "_second")
+
+    def __init__(self, first: Callable[..., None], second: Callable[..., None]) -> None:
+        self._first, self._second = first, second
+
+    def __call__(self, *arguments: object) -> None:
+        self._first(*arguments)
+        self._second(*arguments)
 
 
 _CALLBACKS = [name for name in vars(Observer) if not name.startswith("_")]

@@ -113,6 +113,6 @@ class Due:
         bits = self.bits
         if not bits:
             return -1
-        lowest = bits & -bits
-        self.bits = bits & ~lowest
-        return lowest.bit_length() - 1
+        rest = bits & (bits - 1)
+        self.bits = rest
+        return (bits ^ rest).bit_length() - 1

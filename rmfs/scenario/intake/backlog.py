@@ -32,9 +32,13 @@ class Rest:
 
     def ends(self, now_us: int) -> bool:
         """Say whether the process may go on at a time."""
-        until_us = self._openings.open_from_us(max(now_us, self._blocked_us))
-        self.until_us = until_us if until_us > now_us else NEVER_US
-        return until_us == now_us
+        blocked_us = self._blocked_us
+        until_us = self._openings.open_from_us(now_us if now_us >= blocked_us else blocked_us)
+        if until_us > now_us:
+            self.until_us = until_us
+            return False
+        self.until_us = NEVER_US
+        return True
 
     def block(self, now_us: int, until_s: float) -> None:
         """Let nothing go on before a time."""
