@@ -29,6 +29,8 @@ class Alarms:
 
     Attributes
     ----------
+    punctual
+        Problems whose controllers name times.
     overdue
         Problems whose time has come and whose controller has not been asked since.
     """
@@ -45,12 +47,12 @@ class Alarms:
         self._controllers = controllers
         self._due = due
         self._set: dict[Problem, tuple[float, int]] = {}
-        self._punctual: frozenset[Problem] = frozenset()
+        self.punctual: frozenset[Problem] = frozenset()
         self.overdue: set[Problem] = set()
 
     def connect(self, problems: Iterable[Problem]) -> None:
         """Take note of which of the controllers installed now name times."""
-        self._punctual = frozenset(
+        self.punctual = frozenset(
             problem
             for problem in problems
             if type(self._controllers[problem]).next_event_s is not Controller.next_event_s
@@ -60,7 +62,7 @@ class Alarms:
         """Take note that a controller was asked: it may name another time now."""
         if self.overdue:
             self.overdue.discard(problem)
-        if problem in self._punctual:
+        if problem in self.punctual:
             self._enter(problem)
 
     def cancel(self, problem: Problem) -> None:

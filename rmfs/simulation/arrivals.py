@@ -126,12 +126,12 @@ class ArrivalProcess:
     @property
     def waiting_orders(self) -> int:
         """Orders not yet at a station."""
-        return len(self._world.orders)
+        return len(self._world.orders.orders)
 
     @property
     def waiting_bundles(self) -> int:
         """Bundles not yet assigned to a station and a pod."""
-        return len(self._world.bundles)
+        return len(self._world.bundles.bundles)
 
     @property
     def stored_space(self) -> float:

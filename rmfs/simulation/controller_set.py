@@ -37,6 +37,8 @@ class ControllerSet:
 
     Attributes
     ----------
+    installed
+        Per problem, the controller; the same mapping throughout the run.
     calls
         Per trigger, the problems whose controllers are to be asked after it.
     listeners
@@ -49,7 +51,7 @@ class ControllerSet:
         self._view = view
         self._seed = seed
         self._lookahead = lookahead
-        self._installed: dict[Problem, Controller[Any]] = {}
+        self.installed: dict[Problem, Any] = {}
         self._consulted: dict[Problem, Controller[Any]] = {}
         self._generations = dict.fromkeys(Problem, 0)
         self.calls: list[frozenset[Problem]] = []
@@ -60,7 +62,7 @@ class ControllerSet:
 
     def __getitem__(self, problem: Problem) -> Any:
         """Look up the controller of a problem."""
-        return self._installed[problem]
+        return self.installed[problem]
 
     def consulted(self, problem: Problem) -> Any:
         """Look up who answers TA's questions about a problem: whoever decides it.
@@ -77,7 +79,7 @@ class ControllerSet:
 
     def put(self, problem: Problem, controller: Controller[Any]) -> None:
         """Let a controller that exists already take over a problem."""
-        self._installed[problem] = controller
+        self.installed[problem] = controller
         self._connect()
 
     def _create(self, choice: Choice) -> None:
@@ -88,18 +90,18 @@ class ControllerSet:
         created = choice.controller(choice.parameters, self._view, rng)
         if created.looks_ahead:
             created.lookahead = self._lookahead
-        self._installed[problem] = created
+        self.installed[problem] = created
 
     def _connect(self) -> None:
         """Work out who is asked after, and told of, each trigger, and who decides what."""
-        self._consulted = dict(self._installed)
-        for controller in self._installed.values():
+        self._consulted = dict(self.installed)
+        for controller in self.installed.values():
             for problem in controller.decides:
                 self._consulted[problem] = controller
-        everyone = self._installed.items()
+        everyone = self.installed.items()
         self.calls = [
             frozenset(p for p, c in everyone if trigger in c.triggers | c.subscriptions)
             for trigger in Trigger
         ]
-        told: list[Controller[Any] | Tracker] = [*self._view.trackers, *self._installed.values()]
+        told: list[Controller[Any] | Tracker] = [*self._view.trackers, *self.installed.values()]
         self.listeners = [[one.hear for one in told if t in one.hears] for t in Trigger]

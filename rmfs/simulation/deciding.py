@@ -53,7 +53,7 @@ class Deciding:
     ) -> None:
         self._world = world
         self._events = events
-        self._controllers = controllers
+        self._controllers = controllers.installed
         self._alarms = alarms
         self._apply: Callable[[Any, Call | None], None]
         self._optimisers: OptimiserGateway
@@ -109,7 +109,9 @@ class Deciding:
         spent_ns += perf_counter_ns() - start - self._nested_ns
         self._nested_ns = nested_ns
         self.record(problem, spent_ns, count, by_rule)
-        self._alarms.asked(problem)
+        alarms = self._alarms
+        if alarms.overdue or problem in alarms.punctual:
+            alarms.asked(problem)
 
     def _blame(self, error: Exception, problem: Problem, last: Any) -> None:
         """Add to an error whose decisions were being taken; the innermost controller is named."""

@@ -171,7 +171,7 @@ class DecisionPhase:
             problem = Problem.MM if step == steps.MANAGE else steps.PROBLEM_OF[step]
             if problem in self.outside.problems and problem not in ASKED_BY_TA:
                 raise Awaits(Question(problem, "turn"))
-            self._deciding.ask(problem, self._controllers[problem].decide())
+            self._deciding.ask(problem, self._controllers.installed[problem].decide())
 
     def _give_tasks(self) -> None:
         """Start tasks prepared ahead, then ask TA, with whom repositioning is asked as well."""
@@ -185,7 +185,7 @@ class DecisionPhase:
         outside.taken = 0  # all that was answered in this attempt is asked again, in its order
         self._start_prepared()
         outside.drop_taken()
-        rule = self._controllers[Problem.TA]
+        rule = self._controllers.installed[Problem.TA]
         orders_too = Problem.POA in rule.decides
         overdue = Problem.TA in self._alarms.overdue
         if world.asking or world.resting or orders_too or overdue:
