@@ -40,6 +40,7 @@ CONTROLLERS: Mapping[str, tuple[str, ...]] = {
     "balance": ("ta-balance",),
     "sequence": ("ta-routes",),
     "replenishment": ("stocking",),
+    "charging": ("ca-schedule",),
 }
 """Shipped sets of controllers that ask a family; seeds take turns where there are several."""
 
@@ -48,6 +49,14 @@ _PARAMETERS: Mapping[str, Mapping[str, Any]] = {
     "stocking": {
         "scenario.replenishment.resume_below_share": 0.8,
         "scenario.replenishment.pause_above_share": 0.9,
+    },
+    "ca-schedule": {
+        "layout.other_stations.charger.kind": "charger",
+        "layout.other_stations.charger.parameters.power_w": 1000.0,
+        "scenario.energy.robot_kg": 100.0,
+        "scenario.energy.battery.capacity_wh": 200.0,
+        "scenario.energy.battery.initial_least_share": 0.3,
+        "scenario.energy.battery.initial_most_share": 0.8,
     },
 }
 """What is changed so that a set asks often enough in the time."""
@@ -65,6 +74,24 @@ _EASIER: Mapping[tuple[str, str], Mapping[str, Any]] = {
     ("replenishment", "small"): {"controllers.rps.bundles": 8},
 }
 """What is changed so that small questions can be solved to proven optimality."""
+
+_PLACES: Mapping[str, Mapping[str, int]] = {
+    "small": {"other_stations.charger.north": 1, "other_stations.charger.south": 1},
+    "medium": {"other_stations.charger.north": 3, "other_stations.charger.south": 2},
+    "real": {
+        "pick_stations.north": 1,
+        "pick_stations.south": 1,
+        "other_stations.charger.north": 3,
+        "other_stations.charger.south": 3,
+    },
+    "double": {
+        "pick_stations.north": 0,
+        "pick_stations.south": 0,
+        "other_stations.charger.north": 4,
+        "other_stations.charger.south": 4,
+    },
+}
+"""Plug-in places at the sides of a site; at the large ones they take those of pick stations."""
 
 _FEW: Mapping[str, Mapping[str, Any]] = {
     "backlog": {"scenario.demand.orders": 10},
@@ -134,6 +161,8 @@ def _of_run(family: str, size: str, load: str, seed: int, controllers: str) -> I
     changes |= {**site.set, **(TWICE[load] if size == "double" else {})}
     if controllers != "stocking" or site.scenarios[load] not in _AS_NEEDED:
         changes |= _PARAMETERS.get(controllers, {})
+    if family == "charging":
+        changes |= {f"layout.{key}": number for key, number in _PLACES[size].items()}
     if (family, size) in _EASIER:
         changes |= {**_EASIER[family, size], **(_FEW[load] if family == "planning" else {})}
     run = {

@@ -39,7 +39,7 @@ class Site:
 
 SITES: Mapping[str, Site] = {
     "small": Site("small", {"backlog": "small", "arrivals": "small-arrivals"}, {}, 1800.0, (1, 2)),
-    "medium": Site("default", {"backlog": "default", "arrivals": "poisson"}, {}, 900.0, (1, 2)),
+    "medium": Site("default-32", {"backlog": "default", "arrivals": "poisson"}, {}, 900.0, (1, 2)),
     "real": Site("large", {"backlog": "large", "arrivals": "large-arrivals"}, {}, 600.0, (1,)),
     "double": Site(
         "large",
