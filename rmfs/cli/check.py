@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rmfs.cli.groups import names_of
+from rmfs.cli.options import ControllersOption, LayoutOption, ScenarioOption
 
 if TYPE_CHECKING:
     from rmfs.layout.model import Layout
@@ -14,25 +14,9 @@ if TYPE_CHECKING:
 
 
 def check(
-    layout: Annotated[
-        str,
-        typer.Option(
-            help="Name of a shipped layout, or a file.", autocompletion=names_of("layouts")
-        ),
-    ] = "default",
-    scenario: Annotated[
-        str,
-        typer.Option(
-            help="Name of a shipped scenario, or a file.", autocompletion=names_of("scenarios")
-        ),
-    ] = "default",
-    controllers: Annotated[
-        str,
-        typer.Option(
-            help="Name of a shipped set of controllers, or a file.",
-            autocompletion=names_of("controllers"),
-        ),
-    ] = "default",
+    layout: LayoutOption = "default",
+    scenario: ScenarioOption = "default",
+    controllers: ControllersOption = "default",
     set_: Annotated[
         list[str] | None,
         typer.Option(

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rmfs.cli.exit_codes import GIVEN_UP, UNSAFE
-from rmfs.cli.groups import names_of
+from rmfs.cli.options import ControllersOption, LayoutOption, ScenarioOption
 from rmfs.cli.terminal import progress, step, terminable
 from rmfs.errors import InputError, InternalError, RuleError
 
@@ -31,25 +31,9 @@ LONGEST = 100
 
 
 def run(
-    layout: Annotated[
-        str,
-        typer.Option(
-            help="Name of a shipped layout, or a file.", autocompletion=names_of("layouts")
-        ),
-    ] = "default",
-    scenario: Annotated[
-        str,
-        typer.Option(
-            help="Name of a shipped scenario, or a file.", autocompletion=names_of("scenarios")
-        ),
-    ] = "default",
-    controllers: Annotated[
-        str,
-        typer.Option(
-            help="Name of a shipped set of controllers, or a file.",
-            autocompletion=names_of("controllers"),
-        ),
-    ] = "default",
+    layout: LayoutOption = "default",
+    scenario: ScenarioOption = "default",
+    controllers: ControllersOption = "default",
     seed: Annotated[int, typer.Option(min=0, help="Seed of all random streams.")] = 0,
     out: Annotated[
         Path | None,

@@ -75,20 +75,26 @@ _EASIER: Mapping[tuple[str, str], Mapping[str, Any]] = {
 }
 """What is changed so that small questions can be solved to proven optimality."""
 
-_PLACES: Mapping[str, Mapping[str, int]] = {
-    "small": {"other_stations.charger.north": 1, "other_stations.charger.south": 1},
-    "medium": {"other_stations.charger.north": 3, "other_stations.charger.south": 2},
-    "real": {
-        "pick_stations.north": 1,
-        "pick_stations.south": 1,
-        "other_stations.charger.north": 3,
-        "other_stations.charger.south": 3,
+_PLACES: Mapping[tuple[str, str], Mapping[str, Any]] = {
+    ("charging", "small"): {
+        "layout.other_stations.charger.north": 1,
+        "layout.other_stations.charger.south": 1,
     },
-    "double": {
-        "pick_stations.north": 0,
-        "pick_stations.south": 0,
-        "other_stations.charger.north": 4,
-        "other_stations.charger.south": 4,
+    ("charging", "medium"): {
+        "layout.other_stations.charger.north": 3,
+        "layout.other_stations.charger.south": 2,
+    },
+    ("charging", "real"): {
+        "layout.pick_stations.north": 1,
+        "layout.pick_stations.south": 1,
+        "layout.other_stations.charger.north": 3,
+        "layout.other_stations.charger.south": 3,
+    },
+    ("charging", "double"): {
+        "layout.pick_stations.north": 0,
+        "layout.pick_stations.south": 0,
+        "layout.other_stations.charger.north": 4,
+        "layout.other_stations.charger.south": 4,
     },
 }
 """Plug-in places at the sides of a site; at the large ones they take those of pick stations."""
@@ -161,8 +167,7 @@ def _of_run(family: str, size: str, load: str, seed: int, controllers: str) -> I
     changes |= {**site.set, **(TWICE[load] if size == "double" else {})}
     if controllers != "stocking" or site.scenarios[load] not in _AS_NEEDED:
         changes |= _PARAMETERS.get(controllers, {})
-    if family == "charging":
-        changes |= {f"layout.{key}": number for key, number in _PLACES[size].items()}
+    changes |= _PLACES.get((family, size), {})
     if (family, size) in _EASIER:
         changes |= {**_EASIER[family, size], **(_FEW[load] if family == "planning" else {})}
     run = {
