@@ -478,7 +478,7 @@ class Kernel:
                 f"nothing has moved since {self._moved_us / 1e6:.0f} s\n"
                 f"{self.traffic.state_report()}"
             )
-        self.traffic.motion()  # brings robots up to now, whether anybody measures or not
+        self.traffic.motion()  # robots forget the moves they have made
         self.events.sampled(self.world.now_s)
         self._sample_again(number + 1)
 

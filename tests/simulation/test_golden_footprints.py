@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import rmfs
+from rmfs.simulation.kernel import Kernel
 
 GOLDEN = Path(__file__).with_name("golden_footprints.json")
 
@@ -103,9 +105,11 @@ OPTIMISERS = {
 """Decided by solvers: equal on one machine, not promised across processors."""
 
 
-def hashes(given: dict[str, Any], columns: list[str]) -> dict[str, str]:
+def hashes(
+    given: dict[str, Any], columns: list[str], driver: Callable[..., None] = Kernel.run
+) -> dict[str, str]:
     """Run a case; hash what it measured and how its robots moved."""
-    run = rmfs.simulate(**given, trace=True)
+    run = rmfs.simulate(**given, trace=True, driver=driver)
     footprint = run.footprint[columns].to_json(double_precision=15)
     motion = hashlib.sha256()
     for name, values in sorted(run.trace.items()):

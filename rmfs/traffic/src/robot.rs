@@ -128,9 +128,11 @@ impl Robot {
         self.place.is_some_and(|(own, _)| own == station)
     }
 
-    /// The waypoint where the robot stands or will stop next.
-    pub fn next_stop(&self) -> u32 {
-        self.moves.front().map_or(self.anchor, |step| step.to)
+    /// The waypoint where the robot stands at `now` or will stop next. Moves that have ended may
+    /// not have been recorded yet.
+    pub fn next_stop(&self, now: Us) -> u32 {
+        let under_way = self.moves.iter().find(|step| step.end > now);
+        under_way.or(self.moves.back()).map_or(self.anchor, |step| step.to)
     }
 
     /// Station of the current step, or `NONE`.

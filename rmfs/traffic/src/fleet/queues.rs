@@ -52,7 +52,7 @@ impl Fleet {
                 self.network.zone[node as usize] == station
                     || self.network.stations[station as usize].contains(&node)
             };
-            if inside(state.anchor) || inside(state.next_stop()) {
+            if inside(state.anchor) || inside(state.next_stop(self.now)) {
                 break;
             }
             let (node, heading, end) = state.destination();

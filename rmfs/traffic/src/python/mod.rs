@@ -225,7 +225,7 @@ impl Core {
     }
 
     fn next_stop(&self, robot: usize) -> PyResult<u32> {
-        Ok(self.robot(robot)?.next_stop())
+        Ok(self.robot(robot)?.next_stop(self.fleet.now))
     }
 
     fn blocked(&self) -> Vec<u32> {
