@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 ROBOTS, RECOVERY, RULE = "layout.robots", "recovery", "rule"
 NONE = "none"
+_FIGURES = [(column, part) for column in ("robots", "more, %") for part in ("mean", HALF)]
 ENOUGH = 0.95
 """Share of what the stations can do that a fleet is to reach."""
 
@@ -87,15 +88,13 @@ def needed(frame: pd.DataFrame, enough: float = ENOUGH) -> Table:
     )
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for recovery in frame[RECOVERY].unique():
-        found = interval(each[recovery].dropna())
-        more = (100 * (each[recovery] / each[NONE] - 1)).dropna()
-        row = {("robots", "mean"): found.mean, ("robots", HALF): found.half_width}
-        row |= {("more, %", "mean"): nan, ("more, %", HALF): nan}
-        if recovery != NONE and len(more) > 1:
-            apart = interval(more)
-            row |= {("more, %", "mean"): apart.mean, ("more, %", HALF): apart.half_width}
-        row |= {("seeds", ""): float(found.count)}
-        rows[str(recovery)] = row
+        row = dict.fromkeys(_FIGURES, nan)
+        # without the seeds that no fleet is enough for, the mean would be too small
+        if each[recovery].notna().all():
+            row |= _figures("robots", each[recovery])
+        if recovery != NONE and each[[recovery, NONE]].notna().all(axis=None):
+            row |= _figures("more, %", 100 * (each[recovery] / each[NONE] - 1))
+        rows[str(recovery)] = row | {("seeds", ""): float(each[recovery].count())}
     decimals = {
         **{("robots", "mean"): 2, ("robots", HALF): 2, ("more, %", "mean"): 1},
         **{("more, %", HALF): 1, ("seeds", ""): 0},
@@ -103,9 +102,16 @@ def needed(frame: pd.DataFrame, enough: float = ENOUGH) -> Table:
     caption = (
         f"Robots needed for {enough:.0%} of what the pick stations can do, interpolated between "
         "fleets seed by seed, and how many more than without batteries; 95% confidence intervals "
-        "(Student's t)."
+        "(Student's t); no figure where some seed reaches it with no fleet of the design, or with "
+        "each."
     )
     return Table(rows_frame(rows, "recovery"), decimals, caption)
+
+
+def _figures(column: str, values: pd.Series) -> dict[tuple[str, str], float]:
+    """Return the entries of a row for a mean and its interval."""
+    found = interval(values)
+    return {(column, "mean"): found.mean, (column, HALF): found.half_width}
 
 
 def main(arguments: list[str] | None = None) -> None:

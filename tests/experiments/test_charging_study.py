@@ -33,3 +33,14 @@ def test_more_robots_than_without_batteries():
     assert table.loc["none", ("robots", "mean")] == pytest.approx(9.98, abs=0.02)
     assert table.loc["plug-in", ("more, %", "mean")] == pytest.approx(20.0, abs=0.5)
     assert isnan(table.loc["none", ("more, %", "mean")])
+
+
+def test_no_figure_where_a_seed_reaches_it_with_no_fleet():
+    """The mean of the other seeds would be too small."""
+    rows = [("none", 1, 8, 0.9), ("none", 1, 12, 1.0), ("none", 2, 8, 0.9), ("none", 2, 12, 0.94)]
+    frame = pd.DataFrame(
+        rows, columns=["recovery", "replication", "layout.robots", "station_share"]
+    )
+    table = needed(frame).frame
+    assert isnan(table.loc["none", ("robots", "mean")])
+    assert table.loc["none", ("seeds", "")] == 1
