@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.streams import BundleStream, OrderStream
     from rmfs.world import World
     from rmfs.world.orders import Bundle, Order
+    from rmfs.world.pickers import Handled
     from rmfs.world.put_wall import Parcel
 
 
@@ -119,6 +120,12 @@ class Observer:
         late_bound: bool,
     ) -> None:
         """A unit left a pod for an order; `late_bound`: added to the pod's task on its way."""
+
+    def unit_handled(self, handled: Handled) -> None:
+        """How the picker handled the unit just picked; only where the scenario has pickers."""
+
+    def picker_left(self, picker: int, station: int, from_s: float, to_s: float) -> None:
+        """A picker has been at a pick station during [from_s, to_s) and leaves it."""
 
     def line_picked(self, time_s: float, order: Order, sku: int, units: int) -> None:
         """The last unit of an order line was picked."""

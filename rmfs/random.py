@@ -32,6 +32,7 @@ class Stream(IntEnum):
     TRAINING = 15
     BATTERIES = 20
     PACKING = 21
+    PICKERS = 22
 
 
 def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rmfs.world import World
     from rmfs.world.batteries import Batteries
     from rmfs.world.orders import Order
+    from rmfs.world.pickers import Staff
     from rmfs.world.put_wall import PutWall
     from rmfs.world.robots import Robot
 
@@ -111,6 +112,11 @@ class View:
     def put_wall(self) -> PutWall | None:
         """Where the parts of split orders come together; None if they are done when picked."""
         return self._world.put_wall
+
+    @property
+    def staff(self) -> Staff | None:
+        """People at the pick stations; None if every unit takes the same time."""
+        return self._world.staff
 
     @property
     def split_orders(self) -> Mapping[int, Order]:

@@ -14,6 +14,7 @@ from rmfs.control.solutions import to_text
 from rmfs.measure.energy import EnergyLog
 from rmfs.measure.log import Log
 from rmfs.measure.packing import PackingLog
+from rmfs.measure.pickers import PickerLog
 from rmfs.observer import Observer
 from rmfs.world import tasks
 from rmfs.world.tasks import VisitTask
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from rmfs.observer import MotionCounts, Observed, Troubles
     from rmfs.scenario.streams import BundleStream, OrderStream
     from rmfs.world.orders import Bundle, Order
+    from rmfs.world.pickers import Handled
     from rmfs.world.put_wall import Parcel
     from rmfs.world.world import World
 
@@ -88,6 +90,8 @@ class Recorder(Observer):
         What robots draw.
     packing
         What became of orders after the pick stations.
+    pickers
+        People at the pick stations.
     charge_kinds
         Numbers of the tasks in which robots go for energy.
     """
@@ -132,6 +136,7 @@ class Recorder(Observer):
         self.samples: list[tuple[float, dict[str, float]]] = []
         self.energy = EnergyLog()
         self.packing = PackingLog()
+        self.pickers = PickerLog()
         self.charge_kinds: list[int] = []
         self.stored_space_start = 0.0
         self.motion: dict[str, NDArray[Any]] = {}
@@ -160,6 +165,8 @@ class Recorder(Observer):
             self.energy.begin(run.traffic, run.layout.robots, run.world.batteries)
         if run.scenario.packing is not None:
             self.packing.begin(run.scenario.packing, run.world)
+        if run.world.staff is not None:
+            self.pickers.begin(run.world.staff)
         visits = [kind.part("task", VisitTask).kind for kind in run.layout.other_kinds]
         self.charge_kinds = [n for n, kind in enumerate(visits, len(TASKS)) if kind == "charge"]
         self._task_number = {kind: number for number, kind in enumerate([*TASKS, *visits])}
@@ -180,6 +187,7 @@ class Recorder(Observer):
             self.sampled(time_s)
         self.energy.ended()
         self.packing.ended(time_s)
+        self.pickers.ended(time_s)
         self.motion = self.traffic.motion()
         self.heat = self.traffic.heat()
         self.trips = self.traffic.trips()
@@ -234,6 +242,14 @@ class Recorder(Observer):
         self._picked_by = robot
         self.units.add(time_s, order.index, sku, pod, robot, station, late_bound)
         self.energy.picked(order.index, station)
+
+    def unit_handled(self, handled: Handled) -> None:
+        """Write down how the unit was handled."""
+        self.pickers.handled(handled)
+
+    def picker_left(self, picker: int, station: int, from_s: float, to_s: float) -> None:
+        """Write the presence down."""
+        self.pickers.presence.add(picker, station, from_s, to_s)
 
     def line_picked(self, time_s: float, order: Order, sku: int, units: int) -> None:
         """Write the line down."""

@@ -16,7 +16,13 @@ if TYPE_CHECKING:
     from rmfs import foreign
 from rmfs.config import Table
 
-_FILES = (("skus", "file"), ("skus", "words"), ("demand", "file"), ("replenishment", "file"))
+_FILES = (
+    ("skus", "file"),
+    ("skus", "words"),
+    ("demand", "file"),
+    ("replenishment", "file"),
+    ("pickers", "unit_time", "file"),
+)
 """Keys that name files."""
 
 
@@ -77,8 +83,14 @@ def asked_of_layout(name_or_path: str | Path) -> list[tuple[list[str], Any]]:
 
 def named_files(scenario: Scenario) -> dict[str, Path]:
     """Return the files that a scenario names, by their keys, such as `demand.file`."""
-    found = {f"{name}.{key}": getattr(getattr(scenario, name), key, None) for name, key in _FILES}
-    return {key: path for key, path in found.items() if path is not None}
+    found: dict[str, Path] = {}
+    for keys in _FILES:
+        value: Any = scenario
+        for key in keys:
+            value = getattr(value, key, None)
+        if value is not None:
+            found[".".join(keys)] = value
+    return found
 
 
 def _anchor_files(table: Table, folder: Path) -> None:
@@ -86,7 +98,9 @@ def _anchor_files(table: Table, folder: Path) -> None:
 
     In an override they are relative to the working directory, as every path on the command line.
     """
-    for name, key in _FILES:
-        block = table.get(name)
+    for *names, key in _FILES:
+        block: Any = table
+        for name in names:
+            block = block.get(name) if isinstance(block, dict) else None
         if isinstance(block, dict) and isinstance(block.get(key), str):
             block[key] = str(folder / block[key])

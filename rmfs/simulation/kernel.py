@@ -34,6 +34,7 @@ from rmfs.simulation.pacing import InstantPacing, pacing_of
 from rmfs.simulation.packing.stage import packing_stage
 from rmfs.simulation.past import PastOrders
 from rmfs.simulation.phase import DecisionPhase
+from rmfs.simulation.pickers.setup import staffed
 from rmfs.simulation.service import services_of
 from rmfs.simulation.steps import Due
 from rmfs.simulation.triggers import Triggers
@@ -147,6 +148,16 @@ class Kernel:
         packing = packing_stage(
             scenario.packing, layout, services, seed, agenda=agenda, world=world, events=events
         )
+        people, self._roster = staffed(
+            scenario.pickers,
+            layout,
+            services,
+            seed,
+            scenario.time_of_day_s,
+            agenda=agenda,
+            world=world,
+            events=events,
+        )
         self.dispatch = Dispatch(layout, world, fleet, events, installed, services)
         self.chargers = Chargers(layout, services, fleet)
         visits = Visits(world, self.view, self.dispatch, seed)
@@ -214,7 +225,7 @@ class Kernel:
             layout, scenario.disturbances, seed, agenda=agenda, fleet=fleet, chargers=self.chargers
         )
         self._spectators = tuple(observers)
-        inside = [*masses, *packing, late_binding, *visits.controllers]
+        inside = [*masses, *packing, *people, late_binding, *visits.controllers]
         events.tell([*inside, *observers, Triggers(due)])
         self._due = due
         self._end_us = us_at(self.end_s)
@@ -444,6 +455,8 @@ class Kernel:
         self.optimisers.begin(m for choice in choices for m in choice.controller.optimisers)
         self.events.run_started(self.observed())
         self.disturbances.begin()
+        if self._roster is not None:
+            self._roster.begin()
         if self.guard is not None:
             self.guard.begin()
         self.arrivals.top_up()

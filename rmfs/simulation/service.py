@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rmfs.simulation.events import Events
     from rmfs.world import World
     from rmfs.world.orders import Order
+    from rmfs.world.pickers import Handled
     from rmfs.world.stations import PickStation, ReplenishmentStation, Station
 
 
@@ -45,6 +46,18 @@ class Outlet(Protocol):
         ...
 
 
+class Hands(Protocol):
+    """Who picks at pick stations (`rmfs.simulation.pickers`)."""
+
+    def are_at(self, station: int) -> bool:
+        """Whether somebody is there; if not, `go_on` is called when somebody comes."""
+        ...
+
+    def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:
+        """Begin with a unit, which would keep station and robot so long by the layout."""
+        ...
+
+
 class PickService:
     """The picker of one station.
 
@@ -56,6 +69,8 @@ class PickService:
     ----------
     outlet
         Where orders go from here; None if they are done with their last pick.
+    hands
+        Who picks; None if every unit takes the time that the layout says.
     """
 
     def __init__(
@@ -75,6 +90,7 @@ class PickService:
         self._robot_until_us = 0
         self._finished: list[Order] = []
         self.outlet: Outlet | None = None
+        self.hands: Hands | None = None
 
     def go_on(self) -> None:
         """Do what can be done now for the robot at the head."""
@@ -88,7 +104,8 @@ class PickService:
             end_task(self._world, self._events, station.robot)
         elif now_us >= self._busy_until_us:
             if task.can_pick:
-                self._pick(task)
+                if self.hands is None or self.hands.are_at(station.index):
+                    self._pick(task)
             else:
                 # POA may still assign one of the orders at this instant
                 self._agenda.when_settled(partial(self._pick_or_leave, task))
@@ -112,14 +129,20 @@ class PickService:
             self._hand_on()  # the unit before has been transferred at this very instant
         pick = world.pick_unit(task)
         line, order = pick.line, pick.line.order
-        self._busy_until_us = agenda.now_us + self._transfer_us
-        self._robot_until_us = agenda.now_us + self._pick_us
-        agenda.at(self._busy_until_us, self._unit_transferred)
-        if self._pick_us != self._transfer_us:
-            agenda.at(self._robot_until_us, self.go_on)
         now_s = world.now_s
+        transfer_us, pick_us, handled = self._transfer_us, self._pick_us, None
+        if self.hands is not None:
+            handled = self.hands.handle(index, task.pod, line.sku, transfer_us / 1e6, pick_us / 1e6)
+            transfer_us, pick_us = round(handled.seconds * 1e6), round(handled.robot_s * 1e6)
+        self._busy_until_us = agenda.now_us + transfer_us
+        self._robot_until_us = agenda.now_us + pick_us
+        agenda.at(self._busy_until_us, self._unit_transferred)
+        if pick_us != transfer_us:
+            agenda.at(self._robot_until_us, self.go_on)
         events.station_busy(index, now_s, self._busy_until_us / 1e6)
         events.unit_picked(now_s, order, line.sku, task.pod, task.robot, index, pick.late_bound)
+        if handled is not None:
+            events.unit_handled(handled)
         if line.picked_units == line.units:
             events.line_picked(now_s, order, line.sku, line.units)
             if not order.unpicked_units:

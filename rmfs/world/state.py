@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rmfs.scenario import SkuSet
     from rmfs.world.batteries import Batteries
     from rmfs.world.orders import Order
+    from rmfs.world.pickers import Staff
     from rmfs.world.put_wall import PutWall
 
 
@@ -75,6 +76,8 @@ class WorldState:
         What robots carry to draw from; None if it is as much as they need.
     put_wall
         Where the parts of split orders come together; None if orders are done with their picks.
+    staff
+        People at the pick stations; None if every unit takes the same time.
     split_orders
         Orders with parts of which units are still to be picked, by index.
     tasks_dropped
@@ -131,6 +134,7 @@ class WorldState:
         self.stations: list[Station[Any]] = [*self.work_stations, *self.other_stations]
         self.batteries: Batteries | None = None
         self.put_wall: PutWall | None = None
+        self.staff: Staff | None = None
         self.split_orders: dict[int, Order] = {}
         self.tasks_dropped = 0
         self.orders_created = 0

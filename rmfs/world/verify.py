@@ -40,6 +40,8 @@ def verify(world: World, orders: Iterable[Order] = ()) -> None:
         station.verify(world.robots)
     if world.put_wall is not None:
         world.put_wall.verify()
+    if world.staff is not None:
+        world.staff.verify()
     for order in orders:
         _check(order.unpicked_units == 0 and order.open_units == 0, f"order {order.index} complete")
 

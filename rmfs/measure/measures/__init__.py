@@ -12,6 +12,7 @@ from rmfs.measure.measures.heading import Heading
 from rmfs.measure.measures.motion import Motion, RobotTime
 from rmfs.measure.measures.orders import Backlog, OrderTimes
 from rmfs.measure.measures.packing import Packing
+from rmfs.measure.measures.pickers import Pickers
 from rmfs.measure.measures.planning import Planning, Safety
 from rmfs.measure.measures.replenishment import Inventory, Replenishment
 from rmfs.measure.measures.service import Service
@@ -42,6 +43,7 @@ SHIPPED: tuple[type[Measure], ...] = (
     Energy,
     Batteries,
     Packing,
+    Pickers,
     Service,
     Decisions,
     Optimisers,

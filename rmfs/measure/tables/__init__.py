@@ -38,6 +38,8 @@ from rmfs.measure.tables.packing import PARCELS as PARCELS
 from rmfs.measure.tables.packing import TOTES as TOTES
 from rmfs.measure.tables.packing import parcels as parcels
 from rmfs.measure.tables.packing import totes as totes
+from rmfs.measure.tables.pickers import PICKERS as PICKERS
+from rmfs.measure.tables.pickers import pickers as pickers
 from rmfs.measure.tables.robots import ROBOTS as ROBOTS
 from rmfs.measure.tables.robots import robots as robots
 from rmfs.measure.tables.series import SERIES as SERIES
@@ -65,6 +67,7 @@ MAKERS = {
     "parcels": parcels,
     "totes": totes,
     "picks": picks,
+    "pickers": pickers,
     "bundles": bundles,
     "bundle_lines": bundle_lines,
     "visits": visits,
@@ -90,6 +93,7 @@ DECLARED: dict[str, Sequence[Column]] = {
     "parcels": PARCELS,
     "totes": TOTES,
     "picks": PICKS,
+    "pickers": PICKERS,
     "bundles": BUNDLES,
     "bundle_lines": BUNDLE_LINES,
     "visits": VISITS,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import nan
 from typing import TYPE_CHECKING
 
 from rmfs.measure.columns import FLAG, INTEGER, REAL, Column
@@ -21,6 +22,18 @@ PICKS = (
     Column("robot", INTEGER, "", "Robot that brought the pod"),
     Column("station", INTEGER, "", "Pick station"),
     Column("late_bound", FLAG, "", "Whether it was bound after the robot got its task"),
+    Column(
+        "picker",
+        INTEGER,
+        "",
+        "Who picked it, as in the table of pickers; -1 where the scenario has no pickers: then the "
+        "following columns are empty, too",
+    ),
+    Column("handling_s", REAL, "s", "For how long it kept the picker, rework included"),
+    Column("layer", INTEGER, "", "Layer of the pod, 0 at the floor; -1 where pods have none"),
+    Column("fatigue", REAL, "share", "Of the picker when the pick began"),
+    Column("error", FLAG, "", "Whether a wrong unit was picked"),
+    Column("noticed", FLAG, "", "Whether that was noticed and put right"),
 )
 
 BUNDLES = (
@@ -50,7 +63,13 @@ VISITS = (
 
 def picks(logs: Logs) -> pd.DataFrame:
     """One row per unit picked in the measured time."""
-    return tidy("picks", PICKS, logs.units_now.reset_index(drop=True))
+    frame = logs.units_now.reset_index(drop=True)
+    if logs.recorder.pickers.staff is not None:
+        frame = frame.join(logs.picks_by_hand)
+    else:
+        nothing = {"picker": -1, "handling_s": nan, "layer": -1, "fatigue": nan}
+        frame = frame.assign(**nothing, error=False, noticed=False)
+    return tidy("picks", PICKS, frame)
 
 
 def bundles(logs: Logs) -> pd.DataFrame:

@@ -45,6 +45,12 @@ class Logs:
         return self._since(self.units)
 
     @cached_property
+    def picks_by_hand(self) -> pd.DataFrame:
+        """How pickers handled the units of the measured time; empty without pickers."""
+        told = framed(self.recorder.pickers.units)
+        return told.iloc[len(self.units) - len(self.units_now) :].reset_index(drop=True)
+
+    @cached_property
     def lines(self) -> pd.DataFrame:
         """Lines finished."""
         return framed(self.recorder.lines)

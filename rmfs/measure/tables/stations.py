@@ -101,7 +101,7 @@ def stations(logs: Logs) -> pd.DataFrame:
             "idle_share": 1.0 - busy / logs.duration_s,
             "active_share": [_active_share(logs, one) for one in range(number)],
             "units_per_h_at_pile_on": [
-                _at_pile_on(layout, station, piled)
+                _at_pile_on(layout, station, piled, with_pickers=logs.world.staff is not None)
                 for station, piled in zip(layout.stations, pile_on, strict=True)
             ],
             "units_per_visit": pile_on,
@@ -120,9 +120,11 @@ def busy_until(logs: Logs, station: int, at_s: NDArray[np.float64]) -> NDArray[n
     return covered(own["begin_s"].to_numpy(), own["end_s"].to_numpy(), at_s)
 
 
-def _at_pile_on(layout: Layout, station: Station, units_per_visit: float) -> float:
+def _at_pile_on(
+    layout: Layout, station: Station, units_per_visit: float, *, with_pickers: bool
+) -> float:
     """Return the rate of a pick station; without any visit as if pods never changed."""
-    if not isinstance(station, PickStation):
+    if not isinstance(station, PickStation) or with_pickers:
         return float("nan")
     return units_per_h(layout, station, units_per_visit if units_per_visit > 0 else float("inf"))
 

@@ -22,6 +22,7 @@ from rmfs.scenario.parameters.orders import WordOrders as WordOrders
 from rmfs.scenario.parameters.orders import not_above_skus as not_above_skus
 from rmfs.scenario.parameters.packing import Packing as Packing
 from rmfs.scenario.parameters.packing import ToteTravel as ToteTravel
+from rmfs.scenario.parameters.pickers import Pickers as Pickers
 from rmfs.scenario.parameters.replenishment import BacklogReplenishment as BacklogReplenishment
 from rmfs.scenario.parameters.replenishment import NeededReplenishment as NeededReplenishment
 from rmfs.scenario.parameters.replenishment import PoissonReplenishment as PoissonReplenishment

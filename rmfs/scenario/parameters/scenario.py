@@ -13,6 +13,7 @@ from rmfs.scenario.parameters.disturbances import Disturbances
 from rmfs.scenario.parameters.energy import Energy
 from rmfs.scenario.parameters.orders import AnyOrders, Orders, WordOrders, not_above_skus
 from rmfs.scenario.parameters.packing import Packing
+from rmfs.scenario.parameters.pickers import Pickers
 from rmfs.scenario.parameters.replenishment import BacklogReplenishment, Replenishment
 from rmfs.scenario.parameters.skus import GeneratedSkus, LetterSkus, Skus
 from rmfs.scenario.quantities import Block, NotNegative, Positive, Share
@@ -61,6 +62,9 @@ class Scenario(Block):
     packing: Packing | None = Field(
         None,
         description="what becomes of orders after the pick stations; default: they are done then",
+    )
+    pickers: Pickers | None = Field(
+        None, description="people at the pick stations; default: every unit takes the same time"
     )
 
     @pydantic.field_validator("start", mode="before")

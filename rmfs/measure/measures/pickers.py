@@ -1,0 +1,82 @@
+"""People at the pick stations; empty cells where the scenario has no pickers."""
+
+from __future__ import annotations
+
+from math import nan
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import COUNT_OR_EMPTY, LESS, REAL, Column
+from rmfs.measure.measures.reckoning import ratio
+
+if TYPE_CHECKING:
+    from rmfs.measure.ended import EndedRun
+
+
+class Pickers(Measure):
+    """Times, work, fatigue and errors of pickers."""
+
+    columns = (
+        Column(
+            "pickers_mean",
+            REAL,
+            "pickers",
+            "Pickers present, time average; empty where the scenario has no pickers, as are the "
+            "following columns",
+        ),
+        Column(
+            "pick_time_mean_s",
+            REAL,
+            "s",
+            "Mean time for which a unit kept its picker, rework included",
+            better=LESS,
+        ),
+        Column("pick_time_variation", REAL, "share", "Coefficient of variation of these times"),
+        Column("picker_busy_share", REAL, "share", "Time of pickers with a unit / time present"),
+        Column(
+            "picker_work_variation",
+            REAL,
+            "share",
+            "Coefficient of variation of the busy shares of all who were present: 0 if the work is "
+            "balanced",
+            better=LESS,
+        ),
+        Column(
+            "picker_fatigue_mean",
+            REAL,
+            "share",
+            "Fatigue of the picker when a pick began, mean over units",
+            better=LESS,
+        ),
+        Column("picker_fatigue_max", REAL, "share", "The same, largest", better=LESS),
+        Column("pick_errors", COUNT_OR_EMPTY, "units", "Units picked wrongly", better=LESS),
+        Column(
+            "pick_errors_unnoticed",
+            COUNT_OR_EMPTY,
+            "units",
+            "Of these, units that nobody noticed",
+            better=LESS,
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Look at the units and at the table of pickers."""
+        if run.recorder.pickers.staff is None:
+            return {
+                column.name: None if column.dtype == COUNT_OR_EMPTY else nan
+                for column in self.columns
+            }
+        done, people = run.logs.picks_by_hand, run.tables["pickers"]
+        there = people[people["present_s"] > 0]
+        mean_s, share = done["handling_s"].mean(), there["busy_share"]
+        return {
+            "pickers_mean": ratio(people["present_s"].sum(), run.logs.duration_s),
+            "pick_time_mean_s": mean_s,
+            "pick_time_variation": ratio(done["handling_s"].std(ddof=0), mean_s),
+            "picker_busy_share": ratio(people["work_s"].sum(), people["present_s"].sum()),
+            "picker_work_variation": ratio(share.std(ddof=0), share.mean()),
+            "picker_fatigue_mean": done["fatigue"].mean(),
+            "picker_fatigue_max": done["fatigue"].max(),
+            "pick_errors": int(done["error"].sum()),
+            "pick_errors_unnoticed": int((done["error"] & ~done["noticed"]).sum()),
+        }

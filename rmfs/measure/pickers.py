@@ -1,0 +1,52 @@
+"""What is written down of people at pick stations."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmfs.measure.log import Log
+
+if TYPE_CHECKING:
+    from rmfs.scenario.parameters import Pickers
+    from rmfs.world.pickers import Handled, Staff
+
+
+class PickerLog:
+    """Units and presence of pickers, if the scenario has them; empty logs otherwise.
+
+    Attributes
+    ----------
+    staff
+        The pickers; None if the scenario has none.
+    units
+        As many rows as there are units picked, in their order.
+    presence
+        When who was at which station.
+    """
+
+    def __init__(self) -> None:
+        self.staff: Staff | None = None
+        self.units = Log(
+            **{"picker": "i2", "handling_s": "f8", "layer": "i1", "fatigue": "f8"},
+            **{"error": "?", "noticed": "?"},
+        )
+        self.presence = Log(picker="i2", station="i2", begin_s="f8", end_s="f8")
+
+    @property
+    def given(self) -> Pickers | None:
+        """What the scenario says."""
+        return None if self.staff is None else self.staff.given
+
+    def begin(self, staff: Staff) -> None:
+        """Write down from now on."""
+        self.staff = staff
+
+    def handled(self, one: Handled) -> None:
+        """Write a unit down."""
+        self.units.add(one.picker, one.seconds, one.layer, one.fatigue, one.error, one.noticed)
+
+    def ended(self, time_s: float) -> None:
+        """Write down who is there at the end."""
+        for picker in self.staff.pickers if self.staff is not None else ():
+            if picker.station >= 0:
+                self.presence.add(picker.index, picker.station, picker.since_s, time_s)

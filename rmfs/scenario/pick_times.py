@@ -1,0 +1,145 @@
+"""How long a unit keeps a picker: draws, means, and the least that is possible."""
+
+from __future__ import annotations
+
+import csv
+import io
+from math import inf, isfinite, log, log2, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.files import read_bounded
+from rmfs.scenario.parameters.pickers import GammaTime, LognormalTime, MeasuredTime
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from rmfs.scenario.parameters.pickers import Learning, Pickers, UnitTime
+
+LONGEST_S = 86400.0
+"""No single unit takes a day."""
+
+
+class UnitTimes:
+    """How long units keep a picker, before anything of the picker counts.
+
+    Parameters
+    ----------
+    given
+        What the scenario says.
+
+    Raises
+    ------
+    InputError
+        If the file of measured times is broken.
+    """
+
+    def __init__(self, given: UnitTime) -> None:
+        self._given = given
+        self._measured = measured_s(given.file) if isinstance(given, MeasuredTime) else None
+
+    def draw_s(self, station_s: float, rng: np.random.Generator) -> float:
+        """Draw the time of a unit, in s.
+
+        Parameters
+        ----------
+        station_s
+            What the layout says of the station: the mean, but of measured times.
+        """
+        given = self._given
+        if isinstance(given, GammaTime):
+            square = given.variation**2
+            return float(rng.gamma(1.0 / square, station_s * square))
+        if isinstance(given, LognormalTime):
+            square = log(1.0 + given.variation**2)
+            return station_s * float(rng.lognormal(-0.5 * square, sqrt(square)))
+        if self._measured is not None:
+            return float(self._measured[int(rng.integers(len(self._measured)))])
+        return station_s
+
+    def mean_s(self, station_s: float) -> float:
+        """Return the mean of what is drawn."""
+        return station_s if self._measured is None else float(self._measured.mean())
+
+    def least_s(self, station_s: float) -> float:
+        """Return the least that can be drawn; 0 if a draw can be as near to 0 as it likes."""
+        if isinstance(self._given, GammaTime | LognormalTime):
+            return 0.0
+        return station_s if self._measured is None else float(self._measured.min())
+
+
+def learned(given: Learning | None, units: float) -> float:
+    """Return what the time of the next unit is multiplied by after so many units.
+
+    Unit n takes T1 (M + (1 - M) n**-b) with b = -log2(rate): Wright (1936) for M = 0, De Jong
+    (1957) with the incompressible share M. The time of unit `standard_units` is the unit.
+    """
+    if given is None:
+        return 1.0
+    stays, power = given.incompressible, log2(given.rate)
+    at: float = stays + (1.0 - stays) * (given.units_before + units + 1.0) ** power
+    standard: float = stays + (1.0 - stays) * given.standard_units**power
+    return at / standard
+
+
+def least_factor(given: Pickers) -> float:
+    """Return what the drawn time of a unit is multiplied by at least; 0 if there is no least.
+
+    Fatigue and errors only add to it.
+    """
+    if given.speed_variation:
+        return 0.0
+    least = 1.0 / max(given.speeds, default=1.0)
+    if given.layers is not None:
+        least *= min(given.layers.time_factors)
+    # the curve falls: nobody is faster than after more units than a run can have
+    return least * learned(given.learning, 1e300)
+
+
+def measured_s(path: Path) -> NDArray[np.float64]:
+    """Read measured times: a CSV file with a column `time_s`.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, lacks the column, or a time is none; names the line.
+    """
+    try:
+        text = read_bounded(path).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: not text in UTF-8") from None
+    reader = csv.reader(io.StringIO(text, newline=""), strict=True)
+    times: list[float] = []
+    try:
+        head = [name.strip() for name in next(reader, [])]
+        if head.count("time_s") != 1:
+            raise InputError(f"{path}: line 1: must have one column time_s (given: {head!s:.80})")
+        place = head.index("time_s")
+        for fields in reader:
+            if fields:
+                given = fields[place] if place < len(fields) else ""
+                times.append(_seconds(given, path, reader.line_num))
+    except csv.Error as error:
+        raise InputError(f"{path}: line {reader.line_num}: {error}") from None
+    if not times:
+        raise InputError(f"{path}: holds no time")
+    made = np.array(times)
+    made.setflags(write=False)
+    return made
+
+
+def _seconds(text: str, path: Path, line: int) -> float:
+    try:
+        value = inf if "_" in text else float(text)
+    except ValueError:
+        value = inf
+    if not isfinite(value) or not 0 < value <= LONGEST_S:
+        raise InputError(
+            f"{path}: line {line}: time_s must be a number of seconds above 0, to {LONGEST_S:g} "
+            f"(given: {text!r:.40})"
+        )
+    return value

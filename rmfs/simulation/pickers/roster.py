@@ -1,0 +1,102 @@
+"""Shifts and breaks: pickers come to their stations and leave them."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.observer import Observer
+    from rmfs.scenario.parameters.pickers import Roster
+    from rmfs.simulation.agenda import Agenda
+    from rmfs.simulation.service import Service
+    from rmfs.world import World
+    from rmfs.world.pickers import Picker, Staff
+
+
+class RosterClock:
+    """Lets pickers come and leave as the roster says; without one all come at time zero.
+
+    Parameters
+    ----------
+    given
+        What the scenario says.
+    gone_s
+        What the clock of the warehouse shows at time zero.
+    services
+        Of all stations, pick stations first: those that get a picker go on.
+    """
+
+    def __init__(
+        self,
+        given: Roster | None,
+        staff: Staff,
+        gone_s: float,
+        services: Sequence[Service],
+        *,
+        agenda: Agenda,
+        world: World,
+        events: Observer,
+    ) -> None:
+        self._staff, self._services = staff, services
+        self._agenda, self._world, self._events = agenda, world, events
+        self._gone_us = round(gone_s * 1e6)
+        self._cycle_us = 0
+        self._shifts_us: list[tuple[int, int]] = []
+        self._breaks_us: list[tuple[int, int]] = []
+        if given is not None:
+            self._cycle_us = round(given.cycle_s * 1e6)
+            self._shifts_us = [_us(period) for period in given.shifts_s]
+            self._breaks_us = [_us(period) for period in given.breaks_s]
+
+    def begin(self) -> None:
+        """Let those come who are there at time zero."""
+        self._change()
+
+    def _change(self) -> None:
+        """Let everybody come or leave whose time it is, and enter the next such time."""
+        staff, now_s = self._staff, self._world.now_s
+        shift = self._shift()
+        for picker in staff.pickers:
+            if picker.station >= 0 and picker.shift != shift:
+                self._leave(picker)
+        for picker in staff.pickers:
+            if picker.station < 0 and picker.shift == shift:
+                staff.come(picker, now_s)
+                self._services[picker.home].go_on()
+        staff.next_change_s = inf
+        if self._cycle_us:
+            wait_us = self._until_next_us()
+            staff.next_change_s = (self._agenda.now_us + wait_us) / 1e6
+            self._agenda.after(wait_us, self._change)
+
+    def _leave(self, picker: Picker) -> None:
+        station, since_s = picker.station, picker.since_s
+        now_s = self._world.now_s
+        self._staff.leave(picker, now_s)
+        self._events.picker_left(picker.index, station, since_s, max(now_s, picker.busy_until_s))
+
+    def _shift(self) -> int:
+        """Return the shift that works now, or -1."""
+        if not self._cycle_us:
+            return 0
+        at_us = self._in_cycle_us
+        if any(begin_us <= at_us < end_us for begin_us, end_us in self._breaks_us):
+            return -1
+        within = (n for n, (begin, end) in enumerate(self._shifts_us) if begin <= at_us < end)
+        return next(within, -1)
+
+    @property
+    def _in_cycle_us(self) -> int:
+        return (self._agenda.now_us + self._gone_us) % self._cycle_us
+
+    def _until_next_us(self) -> int:
+        at_us, cycle_us = self._in_cycle_us, self._cycle_us
+        borders = {us for period in (*self._shifts_us, *self._breaks_us) for us in period}
+        return min((border - at_us - 1) % cycle_us + 1 for border in borders)
+
+
+def _us(period: tuple[float, float]) -> tuple[int, int]:
+    return round(period[0] * 1e6), round(period[1] * 1e6)

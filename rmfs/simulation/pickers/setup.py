@@ -1,0 +1,108 @@
+"""The people of a scenario, if it names any."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.random import Stream, generator
+from rmfs.simulation.pickers.hands import SPEEDS, Hands
+from rmfs.simulation.pickers.roster import RosterClock
+from rmfs.simulation.service import PickService
+from rmfs.world.pickers import Picker, Staff
+from rmfs.world.pod_layers import PodLayers
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.layout.model import Layout
+    from rmfs.observer import Observer
+    from rmfs.scenario.parameters import Pickers
+    from rmfs.simulation.agenda import Agenda
+    from rmfs.simulation.service import Service
+    from rmfs.world import World
+
+
+def staffed(
+    given: Pickers | None,
+    layout: Layout,
+    services: Sequence[Service],
+    seed: int,
+    gone_s: float,
+    *,
+    agenda: Agenda,
+    world: World,
+    events: Observer,
+) -> tuple[list[Observer], RosterClock | None]:
+    """Make pickers, if the scenario has them; pick stations ask them from now on.
+
+    Parameters
+    ----------
+    gone_s
+        What the clock of the warehouse shows at time zero.
+
+    Returns
+    -------
+    Who observes the run for them, and what lets them come.
+
+    Raises
+    ------
+    InputError
+        If a shift has more pickers than there are pick stations, or a file of times is broken.
+    """
+    if given is None:
+        return [], None
+    unit_s = [station.unit_transfer_s for station in layout.pick_stations]
+    staff = world.staff = Staff(given, _people(given, len(unit_s), seed), unit_s)
+    hands = Hands(staff, _layers(given, layout, world), seed, world)
+    for service in services:
+        if isinstance(service, PickService):
+            service.hands = hands
+    clock = RosterClock(
+        given.roster, staff, gone_s, services, agenda=agenda, world=world, events=events
+    )
+    return [hands], clock
+
+
+def _people(given: Pickers, stations: int, seed: int) -> list[Picker]:
+    """Return all pickers, those of the first shift first."""
+    shifts = 1 if given.roster is None else len(given.roster.shifts_s)
+    counts = given.roster.pickers if given.roster is not None else ()
+    tired = 0.0 if given.fatigue is None else given.fatigue.initial
+    people: list[Picker] = []
+    for shift in range(shifts):
+        number = counts[shift] if counts else stations
+        if number > stations:
+            raise InputError(
+                f"scenario.pickers.roster.pickers: shift {shift} has {number} pickers, but the "
+                f"layout only {stations} pick stations"
+            )
+        for home in range(number):
+            index = len(people)
+            people.append(Picker(index, shift, home, _speed(given, index, seed), fatigue=tired))
+    return people
+
+
+def _speed(given: Pickers, index: int, seed: int) -> float:
+    if given.speeds:
+        return given.speeds[index % len(given.speeds)]
+    if not given.speed_variation:
+        return 1.0
+    square = given.speed_variation**2
+    rng = generator(seed, Stream.PICKERS, index, SPEEDS)
+    # who is almost motionless would keep a station for ever
+    return max(float(rng.gamma(1.0 / square, square)), 0.1)
+
+
+def _layers(given: Pickers, layout: Layout, world: World) -> PodLayers | None:
+    """Lay the stock of time zero into layers: pod by pod, SKU by SKU."""
+    if given.layers is None:
+        return None
+    skus = world.skus
+    layers = PodLayers(given.layers, skus.space_per_unit, skus.popularity, layout.pod_capacity)
+    contained = world.inventory.contained.T
+    for pod, sku in np.argwhere(contained > 0).tolist():
+        layers.put(pod, sku, int(contained[pod, sku]))
+    return layers
