@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rmfs.measure.bound import at_best
 from rmfs.observer import Observer
 from rmfs.solvers.models.run_bound import Throughput, solve, violations
 from rmfs.solvers.run_bound import run_bound
@@ -40,8 +41,11 @@ class Counter(Observer):
     def run_ended(self, time_s):
         """Fail if the run did what the proof says no run can do."""
         simulation = self.simulation
+        layout = at_best(simulation.layout, simulation.world.staff)
+        if layout is None:
+            return
         data = run_bound(
-            simulation.layout,
+            layout,
             simulation.world.skus,
             simulation.traffic,
             time_s - self.began_s,

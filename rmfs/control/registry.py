@@ -30,6 +30,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "related": "rmfs.control.poa.related:Related",
         "near-best-pod": "rmfs.control.poa.near_best_pod:NearBestPod",
         "workload": "rmfs.control.poa.workload:Workload",
+        "picker-load": "rmfs.control.poa.picker_load:PickerLoad",
         "first-come": "rmfs.control.poa.order_rules:FirstCome",
         "due-time": "rmfs.control.poa.order_rules:DueTime",
         "slack": "rmfs.control.poa.order_rules:Slack",
@@ -86,6 +87,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "backlog-threshold": "rmfs.control.sa.backlog_threshold:BacklogThreshold",
         "constant-ratio": "rmfs.control.sa.constant_ratio:ConstantRatio",
         "work-shifts": "rmfs.control.sa.work_shifts:WorkShifts",
+        "staffed": "rmfs.control.sa.staffed:Staffed",
         "dummy": "rmfs.control.dummies:DummySA",
     },
     Problem.MM: {

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import importlib
 import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rmfs.control.travel import TravelTimes
     from rmfs.layout.model import Layout
     from rmfs.scenario import SkuSet
+    from rmfs.world.pickers import Staff
 
 BOUND = "rmfs.solvers.run_bound:units_per_h_bound"
 """Module and function that work it out."""
@@ -36,6 +38,25 @@ def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration
     module, _, name = BOUND.partition(":")
     bound: float = getattr(importlib.import_module(module), name)(layout, skus, times, duration_s)
     return bound
+
+
+def at_best(layout: Layout, staff: Staff | None) -> Layout | None:
+    """Return a layout with the least times that pickers can have; None if there are none.
+
+    Without pickers it is the layout itself.
+    """
+    if staff is None:
+        return layout
+    stations = []
+    for station in layout.pick_stations:
+        full_s = station.unit_transfer_s
+        # the simulation rounds to microseconds
+        least_s = staff.least_s(full_s) * (1.0 - 1e-9) - 1e-6
+        if least_s <= 0.0:
+            return None
+        pick_s = max(station.unit_pick_s * (least_s / full_s) - 1e-6, 0.0)
+        stations.append(replace(station, unit_transfer_s=least_s, unit_pick_s=pick_s))
+    return replace(layout, pick_stations=type(layout.pick_stations)(stations))
 
 
 def warn_if_exceeded(units_per_h: float, bound: float) -> None:

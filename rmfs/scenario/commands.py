@@ -16,6 +16,7 @@ from rmfs.errors import InputError
 from rmfs.scenario.intake import Site, bundle_intake, export_stream, order_intake
 from rmfs.scenario.loading import load, load_with_notes
 from rmfs.scenario.parameters import Scenario, SkuFile, StreamDemand, StreamReplenishment
+from rmfs.scenario.pick_times import UnitTimes
 from rmfs.scenario.skus import SkuSet, write_sku_set
 from rmfs.scenario.sources import bundle_stream, order_stream, sku_set
 from rmfs.scenario.streams import digest
@@ -64,6 +65,8 @@ def check(scenario: Name, settings: Settings = None) -> None:
     anywhere = Site(1, 1, capacity=math.inf, largest_pod=math.inf)
     order_intake(config, skus, anywhere, seed=0)
     bundle_intake(config, skus, anywhere, seed=0)
+    if config.pickers is not None:
+        UnitTimes(config.pickers.unit_time)
     typer.echo(f"{scenario}: ok, {summary(skus)}")
     if isinstance(config.demand, StreamDemand):
         orders = order_stream(config, skus)

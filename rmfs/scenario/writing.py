@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from rmfs.errors import InputError
 from rmfs.files import write_text
 from rmfs.scenario.parameters import LetterSkus, SkuFile, StreamDemand, StreamReplenishment
+from rmfs.scenario.parameters.pickers import MeasuredTime
 from rmfs.scenario.skus import write_sku_set
 from rmfs.scenario.sources import bundle_stream, order_stream, sku_set
 from rmfs.scenario.streams import write_stream
@@ -25,7 +26,8 @@ def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
     ----------
     path
         The .toml file. What belongs to it stands beside: NAME-skus.json, NAME-words.txt,
-        NAME-orders.csv, NAME-bundles.csv.
+        NAME-orders.csv, NAME-bundles.csv,
+        NAME-times.csv.
 
     Returns
     -------
@@ -64,5 +66,11 @@ def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
         bundles = bundle_stream(scenario, skus, math.inf)
         named = {"file": Path(target.name), "digest": write_stream(bundles, skus, target)}
         changes["replenishment"] = scenario.replenishment.model_copy(update=named)
+    times = scenario.pickers.unit_time if scenario.pickers is not None else None
+    if scenario.pickers is not None and isinstance(times, MeasuredTime):
+        target = beside("times.csv")
+        write_text(target, times.file.read_text("utf-8-sig"))
+        copied = times.model_copy(update={"file": Path(target.name)})
+        changes["pickers"] = scenario.pickers.model_copy(update={"unit_time": copied})
     write_text(path, to_toml(scenario.model_copy(update=changes)))
     return written

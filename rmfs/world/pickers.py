@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.parameters.pickers import Pickers
 
 HOUR_S = 3600.0
+"""Seconds of an hour: rates of fatigue are per hour."""
 
 
 def after_work(fatigue: float, rate_per_h: float, work_s: float) -> float:

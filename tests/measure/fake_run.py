@@ -174,6 +174,7 @@ def world():
     return SimpleNamespace(
         inventory=inventory,
         skus=Skus(),
+        staff=None,
         storage=SimpleNamespace(place_of=np.array([1, -1, 3])),
         order_redraws=5,
         orders_short=2,

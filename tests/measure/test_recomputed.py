@@ -11,6 +11,7 @@ from rmfs.measure.columns import TEXT
 from rmfs.measure.dictionary import TABLES
 from rmfs.measure.measures.energy import Batteries, Energy
 from rmfs.measure.measures.packing import Packing
+from rmfs.measure.measures.pickers import Pickers
 from rmfs.simulation.run import simulate
 
 WARMUP_S, DURATION_S = 300.0, 1500.0
@@ -54,6 +55,10 @@ NOT_IN_TABLES = {
     ),
     **dict.fromkeys(
         (column.name for column in Packing.columns), "empty here; tests/simulation/test_packing.py"
+    ),
+    **dict.fromkeys(
+        (column.name for column in Pickers.columns),
+        "empty here; tests/simulation/test_pickers_in_runs.py",
     ),
     **dict.fromkeys(("planning_wall_s", "wall_s", "peak_rss_mb"), "of the machine, measured once"),
 }

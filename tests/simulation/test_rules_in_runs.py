@@ -93,6 +93,7 @@ RUNS: dict[str, dict[str, Any]] = {
     "ta swarm": {"ta": "swarm"},
     "sa constant-ratio": {"sa": "constant-ratio"},
     "sa backlog-threshold": {"sa": {"name": "backlog-threshold", "pause_s": 30.0}},
+    "sa staffed": {"sa": "staffed"},
     "sa work-shifts": {
         "sa": {
             "name": "work-shifts",

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import nan
 from typing import TYPE_CHECKING, Any
 
 from rmfs.measure.base import Measure
-from rmfs.measure.bound import units_per_h_bound, warn_if_exceeded
+from rmfs.measure.bound import at_best, units_per_h_bound, warn_if_exceeded
 from rmfs.measure.columns import INTEGER, MORE, REAL, Column
 from rmfs.measure.measures.reckoning import ratio
 
 if TYPE_CHECKING:
-    from rmfs.layout.model import Layout
     from rmfs.measure.ended import EndedRun
-    from rmfs.world.pickers import Staff
 
 
 class Throughput(Measure):
@@ -88,7 +85,7 @@ class Potential(Measure):
     def footprint(self, run: EndedRun) -> dict[str, Any]:
         """Compare with what no run can exceed, and with stations that never wait."""
         duration_s = run.logs.duration_s
-        layout = _at_best(run.layout, run.world.staff)
+        layout = at_best(run.layout, run.world.staff)
         if layout is None:
             return dict.fromkeys((column.name for column in self.columns), nan)
         bound = units_per_h_bound(layout, run.world.skus, run.recorder.traffic, duration_s)
@@ -101,22 +98,3 @@ class Potential(Measure):
                 skipna=run.world.staff is None
             ),
         }
-
-
-def _at_best(layout: Layout, staff: Staff | None) -> Layout | None:
-    """Return a layout with the least times that pickers can have; None if there are none.
-
-    Without pickers it is the layout itself.
-    """
-    if staff is None:
-        return layout
-    stations = []
-    for station in layout.pick_stations:
-        full_s = station.unit_transfer_s
-        # the simulation rounds to microseconds
-        least_s = staff.least_s(full_s) * (1.0 - 1e-9) - 1e-6
-        if least_s <= 0.0:
-            return None
-        pick_s = max(station.unit_pick_s * (least_s / full_s) - 1e-6, 0.0)
-        stations.append(replace(station, unit_transfer_s=least_s, unit_pick_s=pick_s))
-    return replace(layout, pick_stations=type(layout.pick_stations)(stations))

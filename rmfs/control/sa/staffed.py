@@ -1,0 +1,75 @@
+"""SA staffed: pick stations take new work while somebody is there who is not too tired."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING, Annotated
+
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.decisions import SwitchStation
+from rmfs.control.sa import StationActivation
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.world.pickers import Staff
+
+Share = Annotated[float, pydantic.Field(ge=0, le=1)]
+
+
+class StaffedParameters(Parameters):
+    """Parameters of SA staffed."""
+
+    tired: Share = 1.0
+    """Fatigue from which a picker gets no new work; 1: nobody is ever so tired."""
+    rested: Share = 0.5
+    """Fatigue at which a picker who was tired gets work again; below `tired`."""
+    look_every_s: Annotated[float, pydantic.Field(ge=1, le=86400)] = 60.0
+    """Seconds between two looks at fatigue, which changes all the time; from 1 to a day."""
+
+    @pydantic.model_validator(mode="after")
+    def _in_order(self) -> StaffedParameters:
+        if self.rested >= self.tired:
+            raise ValueError(f"rested must be below tired = {self.tired:g}")
+        return self
+
+
+class Staffed(StationActivation[StaffedParameters]):
+    """Follows the roster of the scenario, and gives pickers who are too tired a rest.
+
+    A pick station is on while a picker is there. From fatigue `tired` on it takes no new orders,
+    until the picker has rested; what is open there is finished first. Replenishment stations are
+    always on, and so are all stations where the scenario has no pickers.
+    """
+
+    parameters_model = StaffedParameters
+
+    def decide(self) -> Iterator[SwitchStation]:
+        """Yield the stations that are not as they should be."""
+        staff = self.view.staff
+        for station in self.view.stations:
+            on = staff is None or station.index >= len(staff.at_station)
+            if staff is not None and not on:
+                on = self._works(staff, station.index, active=station.active)
+            if station.active != on:
+                yield SwitchStation(station.index, active=on)
+
+    def next_event_s(self) -> float:
+        """When pickers come or leave, or fatigue is looked at."""
+        staff = self.view.staff
+        if staff is None:
+            return inf
+        if staff.given.fatigue is None or self.parameters.tired >= 1.0:
+            return staff.next_change_s
+        return min(staff.next_change_s, self.view.now_s + self.parameters.look_every_s)
+
+    def _works(self, staff: Staff, station: int, *, active: bool) -> bool:
+        picker = staff.at_station[station]
+        if picker is None:
+            return False
+        fatigue = staff.fatigue(picker, self.view.now_s)
+        if active:
+            return fatigue < self.parameters.tired or self.parameters.tired >= 1.0
+        return self.parameters.tired >= 1.0 or fatigue <= self.parameters.rested
