@@ -352,22 +352,20 @@ def meetings(site: Site, rows: list[Rows], end_us: int) -> Iterator[str]:
         widest = np.stack(
             [_widest(mine, t, size[r], site.pod_radius) for r, mine in enumerate(rows)]
         )
+        doubts = [np.empty((3, 0), dtype=int)]
         for one in range(len(rows) - 1):
             dx, dy = x[one + 1 :] - x[one], y[one + 1 :] - y[one]
             slack = far[one + 1 :] + far[one] + widest[one + 1 :] + widest[one]
-            doubt = (np.abs(dx) < slack) & (np.abs(dy) < slack)
-            others, when = np.nonzero(doubt & (tier[one + 1 :] == tier[one]))
-            for other, moment in zip(others + one + 1, when, strict=True):
-                if (
-                    math.hypot(dx[other - one - 1, moment], dy[other - one - 1, moment])
-                    < slack[other - one - 1, moment]
-                ):
-                    pair = (rows[one], rows[other], radius[one], radius[other])
-                    centre = int(t[moment])
-                    found = _settled(site, *pair, centre - STEP_US // 2, centre + STEP_US // 2)
-                    if found is not None:
-                        yield f"robots {one} and {other} touch at {found / 1e6:.6f} s"
-                        return
+            doubt = (np.abs(dx) < slack) & (np.abs(dy) < slack) & (tier[one + 1 :] == tier[one])
+            others, when = np.nonzero(doubt)
+            near = np.hypot(dx[others, when], dy[others, when]) < slack[others, when]
+            others, centre = others[near] + one + 1, t[when[near]]
+            doubts.append(np.stack([np.full(len(others), one), others, centre]))
+        found = _first_touch(site, rows, radius, np.concatenate(doubts, axis=1))
+        if found is not None:
+            time, one, other = found
+            yield f"robots {one} and {other} touch at {time / 1e6:.6f} s"
+            return
 
 
 def _reach(mine: Rows, t: np.ndarray) -> np.ndarray:
@@ -386,36 +384,61 @@ def _widest(mine: Rows, t: np.ndarray, size: np.ndarray, pod_radius: float) -> n
     return np.where(loaded[high + 1] > loaded[low], max(pod_radius, 0.0), size)
 
 
-def _settled(
-    site: Site, one: Rows, other: Rows, r1: float, r2: float, begin: int, end: int
-) -> int | None:
-    """Return when two robots touch within a span of time; None if they do not."""
-    cuts = {begin, end}
-    for mine in (one, other):
-        inside = mine.t0[(mine.t0 > begin) & (mine.t0 < end)]
-        cuts.update(int(cut) for cut in inside)
-    edges = sorted(max(cut, 0) for cut in cuts)
-    todo = [(a, b) for a, b in pairwise(edges) if b > a]
-    while todo:
-        a, b = todo.pop()
-        middle = np.array([(a + b) / 2])  # rows change at the edges only
-        x1, y1, tier1, v1, rides1, pod1, _ = one.at(site, middle)
-        x2, y2, tier2, v2, rides2, pod2, _ = other.at(site, middle)
-        if tier1[0] != tier2[0] or rides1[0] or rides2[0]:
-            continue
-        apart = (site.pod_radius if pod1[0] >= 0 else r1) + (
-            site.pod_radius if pod2[0] >= 0 else r2
+def _first_touch(
+    site: Site, rows: list[Rows], radius: np.ndarray, doubts: np.ndarray
+) -> tuple[int, int, int] | None:
+    """Return when, and which, two robots touch within half a step of times; None if none do.
+
+    Parameters
+    ----------
+    doubts
+        Columns of two robots and a time (us) each. All are settled together, span by span.
+    """
+    one, other, centre = doubts
+    begin, end = np.maximum(centre - STEP_US // 2, 0), centre + STEP_US // 2
+    touches: list[tuple[int, int, int]] = []
+    while len(begin):
+        # a span ends where either robot comes to another row; what is left is looked at next
+        cut = np.minimum(_next_rows(rows, one, begin), _next_rows(rows, other, begin))
+        rest = cut < end
+        stop = np.where(rest, cut, end)
+        middle = (begin + stop) / 2
+        x1, y1, tier1, v1, rides1, pod1 = _at(site, rows, one, middle)
+        x2, y2, tier2, v2, rides2, pod2 = _at(site, rows, other, middle)
+        size1 = np.where(pod1 >= 0, site.pod_radius, radius[one])
+        size2 = np.where(pod2 >= 0, site.pod_radius, radius[other])
+        free = np.hypot(x1 - x2, y1 - y2) - (size1 + size2 - TOUCH_M)
+        safe = (tier1 != tier2) | (rides1 > 0) | (rides2 > 0)
+        safe |= free >= (v1 + v2) * (stop - begin) / 2e6
+        meet = ~safe & ((free < 0) | (stop - begin <= FINEST_US))
+        touches += zip(middle[meet].astype(int), one[meet], other[meet], strict=True)
+        halve = ~safe & ~meet
+        half = (begin + stop) // 2
+        one, other = (np.concatenate([of[rest], of[halve], of[halve]]) for of in (one, other))
+        begin, end = (
+            np.concatenate([cut[rest], begin[halve], half[halve]]),
+            np.concatenate([end[rest], half[halve], stop[halve]]),
         )
-        distance = math.hypot(x1[0] - x2[0], y1[0] - y2[0])
-        if distance < apart - TOUCH_M:
-            return int(middle[0])
-        if distance - (v1[0] + v2[0]) * (b - a) / 2e6 >= apart - TOUCH_M:
-            continue
-        if b - a <= FINEST_US:
-            return int(middle[0])
-        half = (a + b) // 2
-        todo += [(a, half), (half, b)]
-    return None
+    return min(touches) if touches else None
+
+
+def _next_rows(rows: list[Rows], robots: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Return when each robot's next row begins after a time; never: the largest number."""
+    found = np.full(len(t), np.iinfo(np.int64).max)
+    for robot in np.unique(robots):
+        mine = robots == robot
+        begins = np.append(rows[robot].t0, np.iinfo(np.int64).max)
+        found[mine] = begins[np.searchsorted(rows[robot].t0, t[mine], side="right")]
+    return found
+
+
+def _at(site: Site, rows: list[Rows], robots: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Return what `Rows.at` does of many robots, each at a time of its own."""
+    found = np.empty((6, len(t)))
+    for robot in np.unique(robots):
+        mine = robots == robot
+        found[:, mine] = rows[robot].at(site, t[mine])[:6]
+    return found
 
 
 def problems(folder: Path) -> list[str]:

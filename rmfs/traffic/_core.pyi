@@ -88,6 +88,7 @@ class Core:
         elevators: list[list[int]],
         rides: list[tuple[int, int, int]],
         robots: list[tuple[int, float, int]],
+        pods: list[int],
         kinds: list[tuple[float, float, float, int, int]],
         planner: tuple[str, dict[str, float], int, object | None],
         budget: int,

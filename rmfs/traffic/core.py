@@ -56,6 +56,7 @@ def build(layout: Layout, options: Options) -> Core:
                 strict=True,
             )
         ),
+        layout.pod_waypoint.tolist(),
         [
             (
                 kind.acceleration_m_s2,

@@ -26,12 +26,14 @@ def test_cases_cover_what_there_is() -> None:
     cases = [whole(number) for number in range(300)]
     assert cases[:20] == [whole(number) for number in range(20)]
     assert {case["layout"] for case in cases} == {"small", "default", "study-128"} | {
-        *("study-tiers", "study-32")
+        *("study-tiers", "study-32", "large")
     }
     assert {case["set"]["controllers.pp.name"] for case in cases} == set(proof.PLANNERS)
     wrong = {kind for case in cases for kind in case["set"].get("scenario.disturbances", {})}
     assert wrong == {"closures", "breakdowns", "slow", "elevators_out", "chargers"}
-    assert any("scenario.energy.battery" in case["set"] for case in cases)
+    keys = {key for case in cases for key in case["set"]}
+    assert keys >= {"scenario.energy.battery", "scenario.packing"}
+    assert keys >= {"layout.other_stations.charger", "layout.other_stations.swap"}
 
 
 def test_it_goes_on_where_it_was(quick: None, tmp_path: Path, capsys) -> None:

@@ -1,9 +1,9 @@
 """Robot-days driven and proven safe: `python -m tests.tools.proof --robot-days 1000`.
 
-A case is a number: it says layout, robots, scenario, rules, planner, what goes wrong and whether
-robots have batteries. Each is run with a trace, which two checkers look at that share no code, and
-a ledger counts units. A row for each case is written as soon as it ends, so that the command may be
-stopped and called again, for days.
+A case is a number: it says layout, robots, scenario, rules, planner, what goes wrong, whether
+robots have batteries and whether orders are packed. Each is run with a trace, which two checkers
+look at that share no code, and a ledger counts units. A row for each case is written as soon as it
+ends, so that the command may be stopped and called again, for days.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ import warnings
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import pandas as pd
 
 import rmfs
 from tests.ledger import Ledger
@@ -38,6 +40,7 @@ SITES: tuple[tuple[str, str, tuple[int, ...]], ...] = (
     ("study-128", "pp-minimal", (128,)),
     ("study-tiers", "pp-minimal", (24, 43)),
     ("study-32", "pp-minimal", (32,)),
+    ("large", "large-arrivals", (20, 45)),
 )
 PLANNERS = ("time-windows",) * 9 + ("whca-n", "pibt", "far")
 RULES = ("default", "default", "default", "random", "sequ")
@@ -56,10 +59,13 @@ class Row:
     simulated_h: float
     disturbed: str
     battery: bool
+    packing: bool
     robot_days: float
     distance_km: float
     orders: int
     disturbances: int
+    charges: int
+    packed: int
     motions: int
     wall_s: float
     problem: str
@@ -90,13 +96,18 @@ def drawn(number: int) -> dict[str, Any]:
         if rng.random() < 0.4:
             wrong["elevators_out"] = [[rng.choice((0, 1)), 600.0, 1200.0]]
     elif planner == "time-windows" and rng.random() < 0.25 and layout != "small":
-        given["layout.other_stations.charger"] = {"kind": "charger", "within": 8}
+        kind = rng.choice(("charger", "charger", "swap"))
+        given[f"layout.other_stations.{kind}"] = {"kind": kind, "within": 8}
         given["scenario.energy.battery"] = {"capacity_wh": 500, "initial_least_share": 0.3}
-        if rng.random() < 0.5:
+        if kind == "charger" and rng.random() < 0.5:
             wrong["chargers"] = {"every_s": 3600.0, "lasting_s": 900.0}
     if wrong:
         given["scenario.disturbances"] = wrong
     rules = rng.choice(RULES if scenario == "small-arrivals" else RULES[:-1])
+    if rng.random() < 0.2:
+        # elsewhere whole orders go to the packers: to split them takes the time of many runs
+        rules = "pile-on-split" if layout in ("small", "default") else rules
+        given["scenario.packing"] = {"packers": 4, "order_s": 20.0, "bypass": False}
     return {
         "layout": layout,
         "scenario": scenario,
@@ -123,6 +134,8 @@ def proven(number: int) -> Row:
             "distance_km": round(float(footprint["distance_m"]) / 1000, 3),
             "orders": int(footprint["orders_completed"]),
             "disturbances": int(footprint["disturbances"]),
+            "charges": counted(footprint, "charges"),
+            "packed": counted(footprint, "orders_packed"),
             "motions": len(run.trace["robot"]),
         }
         problem = refuted(run, ledger)
@@ -130,7 +143,8 @@ def proven(number: int) -> Row:
         problem = f"{type(error).__name__}: {error} {traceback.format_exc()[-400:]}"
     hours = given["scenario.duration_s"] / HOUR_S
     robots = figures.pop("robots", given["layout.robots"])
-    empty = {"distance_km": 0.0, "orders": 0, "disturbances": 0, "motions": 0}
+    counts = ("orders", "disturbances", "charges", "packed", "motions")
+    empty = {"distance_km": 0.0, **dict.fromkeys(counts, 0)}
     return Row(
         case=number,
         layout=case["layout"],
@@ -141,11 +155,18 @@ def proven(number: int) -> Row:
         simulated_h=hours,
         disturbed=" ".join(sorted(wrong)),
         battery="scenario.energy.battery" in given,
+        packing="scenario.packing" in given,
         robot_days=round(robots * hours / 24, 4),
         **{**empty, **figures},
         wall_s=round(time.process_time() - began, 1),
         problem=" ".join(problem.split()),
     )
+
+
+def counted(footprint: Any, name: str) -> int:
+    """Return a figure of a footprint; 0 where it was not counted."""
+    value = footprint.get(name, 0)
+    return 0 if pd.isna(value) else int(value)
 
 
 def refuted(run: Any, ledger: Ledger) -> str:
@@ -219,9 +240,31 @@ def main(arguments: list[str] | None = None) -> int:
         return bool(row.problem)
     rows = drive(given.out, given.first, given.robot_days, given.seconds)
     days = sum(row.robot_days for row in rows)
+    disturbed = sum(24 * row.robot_days for row in rows if row.disturbances)
     failed = [row.case for row in rows if row.problem]
-    print(f"{len(rows)} cases, {days:.1f} robot-days, not right: {failed or 'none'}")
+    print(table(rows))
+    print(f"{len(rows)} cases, {days:.1f} robot-days, {disturbed:.0f} robot-hours disturbed")
+    print(f"not right: {failed or 'none'}")
     return bool(failed)
+
+
+def table(rows: list[Row]) -> str:
+    """Return sums over all cases, those that were disturbed, those of each layout and so on."""
+    parts: dict[str, list[Row]] = {"all": rows, "disturbed": [r for r in rows if r.disturbances]}
+    for name in ("layout", "planner", "rules"):
+        for value in sorted({getattr(row, name) for row in rows}):
+            parts[f"{name} {value}"] = [row for row in rows if getattr(row, name) == value]
+    parts["batteries"] = [row for row in rows if row.battery]
+    parts["packing"] = [row for row in rows if row.packing]
+    sums = ("robot_days", "distance_km", "orders", "disturbances", "charges", "packed")
+    lines = [" | ".join(("cases of", "cases", "robot_hours", *sums, "not right"))]
+    for name, mine in parts.items():
+        figures = [sum(getattr(row, one) for row in mine) for one in sums]
+        days = figures[0]
+        wrong = [row.case for row in mine if row.problem]
+        cells = [len(mine), round(24 * days), round(days, 1), *map(round, figures[1:])]
+        lines.append(" | ".join((name, *(f"{cell:,}" for cell in cells), str(wrong or "none"))))
+    return "\n".join(lines)
 
 
 if __name__ == "__main__":

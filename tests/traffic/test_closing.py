@@ -165,3 +165,57 @@ def test_tiers_without_elevators_are_reported():
     other = np.flatnonzero(layout.is_storage & ~np.isin(layout.tier, list(home)))
     assert lost.stations == []
     assert set(lost.storage) >= set(other.tolist())
+
+
+def test_a_loaded_robot_steps_aside_to_places_without_a_pod():
+    """A robot whose only way is closed waits with its pod at a free storage place."""
+    layout = load("small", [(["robots"], 6)])
+    tasks = RandomTasks(layout, seed=3)
+    tasks.traffic.delay(3, 91_666)
+    tasks.run(15)
+    tasks.traffic.close([355])
+    assert tasks.traffic.blocked() == [3]
+    tasks.run(40)
+    proved(tasks, 40)
+    waits_at = tasks.traffic.robot_waypoint(3)
+    others = [place for pod, place in enumerate(tasks.place) if pod != tasks.task[3][0]]
+    assert layout.is_storage[waits_at] and waits_at not in others
+    tasks.traffic.reopen([355])
+    tasks.run(200)
+    proved(tasks, 200)
+    assert 3 in {robot for time, robot in tasks.visits if time > 40}
+
+
+def test_pods_are_known_to_a_copy_through_bytes():
+    layout = load("small", [(["robots"], 6)])
+    tasks = RandomTasks(layout, seed=3)
+    tasks.traffic.delay(3, 91_666)
+    tasks.run(15)
+    tasks.traffic = Traffic.from_bytes(layout, tasks.traffic.to_bytes())
+    tasks.traffic.close([355])
+    tasks.run(40)
+    proved(tasks, 40)
+
+
+@pytest.mark.parametrize("name", ["small", "default", "study-tiers"])
+def test_what_is_cut_off_has_no_way(name):
+    """Places to or from which the unhindered time of a loaded robot is infinite, and no others."""
+    layout = load(name, [(["robots"], 2)])
+    traffic = Traffic(layout)
+    draw = random.Random(5)
+    aisles = np.flatnonzero(~layout.is_storage).tolist()
+    storage = np.flatnonzero(layout.is_storage)
+    for count in (1, 20, layout.waypoints // 10):
+        closed = draw.sample(aisles, count)
+        traffic.close(closed)
+        served, stations = np.ones(layout.waypoints, dtype=bool), []
+        for number, station in enumerate(layout.stations):
+            head = station.queue[0]
+            ways = np.isfinite(traffic.travel_times_to(head, True))
+            ways &= np.isfinite(traffic.travel_times_from(head, True))
+            if head in closed or not ways[storage].any():
+                stations.append(number)
+            else:
+                served &= ways
+        assert traffic.cut_off() == (storage[~served[storage]].tolist(), stations)
+        traffic.reopen(closed)

@@ -12,6 +12,7 @@ pub mod network;
 pub mod planner;
 pub mod postpone;
 pub mod random;
+pub mod reach;
 pub mod record;
 pub mod reservations;
 pub mod robot;

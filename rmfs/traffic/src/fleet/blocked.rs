@@ -61,7 +61,7 @@ impl Fleet {
     /// Sends a blocked robot that stands in the way of others to the nearest free storage place.
     pub(super) fn step_aside(&mut self, robot: u32) {
         self.settle(robot);
-        let Fleet { network, kinds, robots, table, pathfinder, costs, .. } = self;
+        let Fleet { network, kinds, robots, table, pathfinder, costs, stored, .. } = self;
         let state = &robots[robot as usize];
         let rests_well = network.storage[state.anchor as usize] || state.place.is_some();
         // a grid map has no storage places: there is nowhere to look
@@ -78,6 +78,7 @@ impl Fleet {
             ready: self.now.max(state.busy_until),
             goal: NONE,
             loaded: state.pod.is_some(),
+            stored,
             kind: &kinds[state.kind as usize],
             model: &costs.models[state.kind as usize],
             budget: self.budget,

@@ -7,6 +7,7 @@
 
 use std::sync::Arc;
 
+use crate::reach::{carried_from, carried_to};
 use crate::robot::{Phase, Robot};
 use crate::search::Move;
 
@@ -141,31 +142,23 @@ impl Fleet {
     }
 
     /// What cannot be served with what is closed.
-    pub fn cut_off(&mut self) -> CutOff {
-        let (carried, mut result) = (true, CutOff::default());
-        let kinds = 0..self.kinds.len() as u8;
+    pub fn cut_off(&self) -> CutOff {
+        let network = &*self.network;
         let storage: Vec<u32> =
-            (0..self.network.nodes as u32).filter(|&v| self.network.storage[v as usize]).collect();
-        let mut reached = vec![true; self.network.nodes];
-        for (station, places) in self.network.stations.clone().into_iter().enumerate() {
+            (0..network.nodes as u32).filter(|&v| network.storage[v as usize]).collect();
+        let mut result = CutOff::default();
+        let mut reached = vec![true; network.nodes];
+        for (station, places) in network.stations.iter().enumerate() {
             let head = places[0];
-            let mut serves = vec![true; self.network.nodes];
-            for kind in kinds.clone() {
-                let to = self.costs.towards(&self.network, head, kind, carried);
-                let from = self.costs.away_from(&self.network, head, kind, carried);
-                let count = self.network.heading_count();
-                for (node, times) in to.chunks(count).enumerate() {
-                    let arrives = times.iter().any(|&time| crate::costs::time(time).is_some());
-                    serves[node] &= arrives && crate::costs::time(from[node]).is_some();
-                }
-            }
-            if self.network.is_closed(head) || !storage.iter().any(|&v| serves[v as usize]) {
+            let (to, from) = (carried_to(network, head), carried_from(network, head));
+            let serves = |v: u32| to[v as usize] && from[v as usize];
+            if network.is_closed(head) || !storage.iter().any(|&v| serves(v)) {
                 result.stations.push(station as u32);
                 continue;
             }
-            reached.iter_mut().zip(serves).for_each(|(all, one)| *all &= one);
+            storage.iter().for_each(|&v| reached[v as usize] &= serves(v));
         }
-        let lost = |&v: &u32| self.network.is_closed(v) || !reached[v as usize];
+        let lost = |&v: &u32| network.is_closed(v) || !reached[v as usize];
         result.storage = storage.into_iter().filter(lost).collect();
         result
     }

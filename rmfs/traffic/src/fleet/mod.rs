@@ -125,6 +125,8 @@ pub struct Fleet {
     pub pathfinder: Pathfinder,
     pub costs: Cache,
     table: Table,
+    /// At which waypoints pods are stored.
+    stored: Vec<bool>,
     budget: u64,
     /// Plans whole legs; beside a rolling planner only the moves up in queues.
     per_leg: Box<dyn Planner>,
@@ -175,6 +177,7 @@ impl Fleet {
             rolling,
             costs: Cache::new(&network, &kinds, cost_bytes),
             table: Table::new(network.resources),
+            stored: vec![false; network.nodes],
             record: Record::new(robots.len(), &network, with_trace),
             queues: vec![Vec::new(); network.stations.len()],
             robots: Vec::new(),
@@ -200,6 +203,18 @@ impl Fleet {
             fleet.occupy(id as u32);
         }
         Ok(fleet)
+    }
+
+    /// Puts pods at waypoints, where they are stored at the start.
+    ///
+    /// # Errors
+    /// If there is no such waypoint; nothing has changed then.
+    pub fn put_pods(&mut self, waypoints: &[u32]) -> Result<(), String> {
+        if let Some(waypoint) = waypoints.iter().find(|&&v| v as usize >= self.network.nodes) {
+            return Err(format!("no waypoint {waypoint} for a pod"));
+        }
+        waypoints.iter().for_each(|&waypoint| self.stored[waypoint as usize] = true);
+        Ok(())
     }
 
     /// Replaces what is left of a robot's program; a moving robot goes on to its next stop first.

@@ -95,11 +95,13 @@ impl Fleet {
             (state.program.pop_front().expect("a transfer"), state.anchor, state.heading);
         match step {
             Step::Lift(pod) => {
+                self.stored[node as usize] = false;
                 self.record.transfer(robot, self.now, node, heading, pod, Piece::Lift);
                 self.emit(EventKind::Lifted, robot, pod);
             }
             Step::SetDown(pod) => {
                 state.pod = None;
+                self.stored[node as usize] = true;
                 self.record.transfer(robot, self.now, node, heading, pod, Piece::SetDown);
                 self.emit(EventKind::SetDown, robot, pod);
             }

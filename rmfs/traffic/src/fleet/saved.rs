@@ -23,7 +23,7 @@ use super::{Counters, Due, Event, Fleet, Leg};
 const MAGIC: &[u8] = b"rmfs-traffic";
 
 /// Changes whenever the bytes mean something else.
-const VERSION: u8 = 2;
+const VERSION: u8 = 3;
 
 type Agenda = BinaryHeap<Reverse<(Us, u32, Due, u32)>>;
 
@@ -32,6 +32,7 @@ struct Saved<'a> {
     /// Of network and kinds.
     fingerprint: u32,
     closed: Vec<u32>,
+    stored: Cow<'a, [bool]>,
     now: Us,
     robots: Cow<'a, [Robot]>,
     table: Cow<'a, Table>,
@@ -63,6 +64,7 @@ impl Fleet {
         let saved = Saved {
             fingerprint: self.network.fingerprint(&self.kinds),
             closed: self.network.closed(),
+            stored: Cow::Borrowed(&self.stored),
             now: self.now,
             robots: Cow::Borrowed(&self.robots),
             table: Cow::Borrowed(&self.table),
@@ -121,6 +123,7 @@ impl Fleet {
             network.set_closed(node, false);
         }
         saved.closed.iter().for_each(|&node| network.set_closed(node, true));
+        self.stored = saved.stored.into_owned();
         self.now = saved.now;
         self.robots = saved.robots.into_owned();
         self.table = saved.table.into_owned();

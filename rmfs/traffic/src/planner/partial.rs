@@ -66,6 +66,7 @@ impl Partial {
             ready: self.time,
             goal: agent.goal,
             loaded: agent.loaded,
+            stored: &[],
             kind: &scene.kinds[agent.kind as usize],
             model: &scene.costs.models[agent.kind as usize],
             budget: 1,

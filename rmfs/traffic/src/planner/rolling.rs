@@ -62,6 +62,7 @@ pub fn search(
         ready,
         goal: agent.goal,
         loaded: agent.loaded,
+        stored: &[],
         kind: &scene.kinds[agent.kind as usize],
         model: &scene.costs.models[agent.kind as usize],
         budget: labels,

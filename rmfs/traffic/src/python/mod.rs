@@ -138,6 +138,7 @@ impl Core {
         elevators: Vec<Vec<u32>>,
         rides: Vec<(u32, u32, Us)>,
         robots: Vec<(u32, f64, u8)>,
+        pods: Vec<u32>,
         kinds: Vec<KindTuple>,
         planner: (String, HashMap<String, f64>, u64, Option<Py<PyAny>>),
         budget: u64,
@@ -163,14 +164,17 @@ impl Core {
         let fault = Fault::default();
         let in_python = code.as_ref().map(|_| settings.rhythm()).transpose();
         let in_python = in_python.map_err(PyValueError::new_err)?;
-        let fleet = guarded(|| {
+        let fleet = guarded(|| -> Result<Fleet, String> {
             let network = Network::new(plan)?;
             let robots = placed(&network, &robots)?;
             let planner = match (code, in_python) {
                 (Some(code), Some(rhythm)) => in_python_with(code, rhythm, &network, &fault),
                 _ => build(&settings, &network)?,
             };
-            Fleet::new(network, kinds, &robots, planner, budget, cost_bytes, with_trace)
+            let mut fleet =
+                Fleet::new(network, kinds, &robots, planner, budget, cost_bytes, with_trace)?;
+            fleet.put_pods(&pods)?;
+            Ok(fleet)
         });
         let fleet = fleet.map_err(|said| internal_error(&said))?;
         Ok(Self::over(fleet.map_err(PyValueError::new_err)?, in_python, fault))

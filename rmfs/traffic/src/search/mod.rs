@@ -284,7 +284,8 @@ impl<'a> Search<'a> {
 
     fn is_goal(&self, node: u32) -> bool {
         if self.query.goal == NONE {
-            self.network.storage[node as usize]
+            let has_pod = || self.query.stored[node as usize];
+            self.network.storage[node as usize] && !(self.query.loaded && has_pod())
         } else {
             node == self.query.goal
         }

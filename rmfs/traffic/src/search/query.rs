@@ -55,9 +55,12 @@ pub struct Query<'a> {
     pub heading: u8,
     /// Earliest departure; the robot is at rest at `start` then.
     pub ready: Us,
-    /// Where to go; `NONE`: to the nearest storage place that nobody holds.
+    /// Where to go; `NONE`: to the nearest storage place that nobody holds, and for a loaded robot
+    /// one without a pod.
     pub goal: u32,
     pub loaded: bool,
+    /// At which waypoints pods are stored; needed without a goal only.
+    pub stored: &'a [bool],
     pub kind: &'a Kind,
     pub model: &'a Model,
     /// Labels that may be looked at.

@@ -1,0 +1,53 @@
+//! Whereto, and from where, a pod can be carried at all, however long that takes.
+
+use crate::network::Network;
+
+/// Which waypoints a loaded robot can drive to from `source`, whatever it wants there.
+///
+/// Queues are open to it, since any waypoint may be its goal; stored pods and what is closed are not.
+pub fn carried_from(network: &Network, source: u32) -> Vec<bool> {
+    let ends = |node: u32| network.storage[node as usize] && node != source;
+    spread(network, source, ends, |node, next| {
+        for heading in 0..network.heading_count() as u8 {
+            let ahead = network.ahead(node, heading).map(|(to, _)| to);
+            next.extend(ahead.filter(|&to| network.may_enter(node, to, to, false)));
+        }
+        next.extend(network.rides_from(node).map(|ride| ride.to));
+    })
+}
+
+/// From which waypoints a loaded robot can drive to `goal`.
+pub fn carried_to(network: &Network, goal: u32) -> Vec<bool> {
+    let ends = |node: u32| network.storage[node as usize] && node != goal;
+    spread(network, goal, ends, |node, next| {
+        for heading in 0..network.heading_count() as u8 {
+            let behind = network.behind(node, heading).iter().map(|&(from, _)| from);
+            next.extend(behind.filter(|&from| network.may_enter(from, node, goal, true)));
+        }
+        next.extend(network.rides_to(node).map(|ride| ride.from));
+    })
+}
+
+/// Goes from waypoint to waypoint, but on from none that `ends` it.
+fn spread(
+    network: &Network,
+    first: u32,
+    ends: impl Fn(u32) -> bool,
+    neighbours: impl Fn(u32, &mut Vec<u32>),
+) -> Vec<bool> {
+    let mut reached = vec![false; network.nodes];
+    let (mut open, mut next) = (vec![first], Vec::new());
+    reached[first as usize] = true;
+    while let Some(node) = open.pop() {
+        if ends(node) {
+            continue;
+        }
+        neighbours(node, &mut next);
+        for node in next.drain(..) {
+            if !std::mem::replace(&mut reached[node as usize], true) {
+                open.push(node);
+            }
+        }
+    }
+    reached
+}
