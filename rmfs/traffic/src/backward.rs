@@ -10,6 +10,12 @@ const SAFETY: f64 = 0.999_99;
 /// States are counted twice: at rest (0) and rolling on (1).
 pub const ROLLING: usize = 1;
 
+/// Beside them stand times of states that nobody comes to, so that they are only values.
+const STRAIGHT: usize = 2;
+
+/// Entries of an index of (waypoint, heading): they are looked up together.
+const ENTRIES: usize = 4;
+
 /// Least times to cover an extent along one axis: as runs, or as a part of one that is paid for.
 #[derive(Clone, Copy, Debug, Default)]
 struct Bound {
@@ -51,8 +57,6 @@ pub struct Backward {
     /// Lower bounds of the time to the goal by column and by row; empty: not used.
     columns_to_go: Vec<Bound>,
     rows_to_go: Vec<Bound>,
-    /// Times with their stamps of states that nobody comes to, so that they are only values.
-    straight: Vec<(u32, u32)>,
     walk: Vec<(u32, f64)>,
 }
 
@@ -60,8 +64,7 @@ impl Backward {
     /// Memory for searches on `network`.
     pub fn new(network: &Network) -> Self {
         let headings = network.heading_count();
-        let queue = Buckets::new(network.nodes * headings * 2);
-        let straight = vec![(0, UNREACHABLE); network.nodes * headings];
+        let queue = Buckets::new(network.nodes * headings * ENTRIES);
         let arrivals = (0..network.nodes as u32)
             .flat_map(|node| {
                 (0..headings as u8).map(move |heading| arrival(network, node, heading))
@@ -78,7 +81,6 @@ impl Backward {
             rows: Vec::new(),
             columns_to_go: Vec::new(),
             rows_to_go: Vec::new(),
-            straight,
             walk: Vec::new(),
         }
     }
@@ -98,15 +100,14 @@ impl Backward {
         self.columns_to_go.clear();
         self.queue.clear();
         for heading in 0..self.headings as u8 {
-            self.queue.improve(network.index(goal, heading) * 2, 0, 0);
+            self.queue.improve(network.index(goal, heading) * ENTRIES, 0, 0);
         }
     }
 
     /// The least time found so far from rest at an index of (waypoint, heading).
     pub fn best(&self, index: usize) -> u32 {
-        let (stamp, straight) = self.straight[index];
-        let turning = self.queue.best(index * 2);
-        if stamp == self.queue.stamp { straight.min(turning) } else { turning }
+        let entry = index * ENTRIES;
+        self.queue.best(entry).min(self.queue.best(entry + STRAIGHT))
     }
 
     /// A lower bound of the time from the start to rest at a waypoint.
@@ -137,7 +138,7 @@ impl Backward {
     }
 
     /// The least time in which straight lines lead from a waypoint to the goal, if that is used.
-    fn straight_to_goal(&self, network: &Network, node: u32) -> u32 {
+    pub fn straight_to_goal(&self, network: &Network, node: u32) -> u32 {
         if self.columns_to_go.is_empty() {
             return 0;
         }
@@ -176,9 +177,9 @@ impl Backward {
     /// Searches on until every state with a total time below `limit` is known.
     pub fn advance(&mut self, network: &Network, model: &Model, limit: u32) {
         while let Some((cost, state)) = self.queue.pop(limit) {
-            let index = state / 2;
+            let index = state / ENTRIES;
             let (node, heading) = ((index / self.headings) as u32, (index % self.headings) as u8);
-            if state % 2 == ROLLING {
+            if state % ENTRIES == ROLLING {
                 self.roll_back(network, model, node, heading, cost);
             } else {
                 self.come_from(network, model, node, heading, cost);
@@ -245,10 +246,7 @@ impl Backward {
             if self.comes(network, node, before, heading) {
                 self.offer(network, node, before, 0, cost);
             } else {
-                let known = &mut self.straight[index];
-                if known.0 != self.queue.stamp || cost < known.1 {
-                    *known = (self.queue.stamp, cost);
-                }
+                self.queue.note(index * ENTRIES + STRAIGHT, cost);
             }
         }
     }
@@ -273,7 +271,7 @@ impl Backward {
     }
 
     fn offer(&mut self, network: &Network, node: u32, heading: u8, rolling: usize, cost: u32) {
-        let state = network.index(node, heading) * 2 + rolling;
+        let state = network.index(node, heading) * ENTRIES + rolling;
         if cost < self.queue.best(state) {
             let bound = if rolling == ROLLING {
                 self.bound_rolling(network, node, heading)

@@ -11,7 +11,7 @@ pub struct Buckets {
     /// Least cost of each state, and in which search that was.
     best: Vec<(u32, u32)>,
     /// Number of the current search.
-    pub stamp: u32,
+    stamp: u32,
     buckets: Vec<Vec<(u32, u32)>>,
     at: usize,
     waiting: usize,
@@ -44,6 +44,13 @@ impl Buckets {
     pub fn best(&self, state: usize) -> u32 {
         let (stamp, cost) = self.best[state];
         if stamp == self.stamp { cost } else { UNREACHABLE }
+    }
+
+    /// Keeps a cost for a state if it is less than the one known; the state never gets its turn.
+    pub fn note(&mut self, state: usize, cost: u32) {
+        if cost < self.best(state) {
+            self.best[state] = (self.stamp, cost);
+        }
     }
 
     /// Offers a cost for a state; `total` (cost and bound of the rest) says when it is its turn.

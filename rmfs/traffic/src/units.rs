@@ -14,12 +14,17 @@ pub const TURN: MicroTurn = 1_000_000;
 
 /// Rounds a non-negative time in seconds down: the start of an occupation.
 pub fn floor_us(seconds: f64) -> Us {
-    (seconds * 1e6).floor() as Us
+    // a conversion cuts off: many times quicker than the functions of the platform
+    let time = seconds * 1e6;
+    let cut = time as Us;
+    cut - Us::from(cut as f64 > time)
 }
 
 /// Rounds a non-negative time in seconds up: the end of an occupation.
 pub fn ceil_us(seconds: f64) -> Us {
-    (seconds * 1e6).ceil() as Us
+    let time = seconds * 1e6;
+    let cut = time as Us;
+    cut + Us::from((cut as f64) < time)
 }
 
 /// The heading of the vector `(dx, dy)`, rounded so that it does not depend on the platform's libm.
@@ -55,6 +60,15 @@ mod tests {
         assert_eq!(heading_of(0.0, 1.0), 250_000);
         assert_eq!(heading_of(-1.0, 0.0), 500_000);
         assert_eq!(heading_of(0.0, -1.0), 750_000);
+    }
+
+    #[test]
+    fn times_are_rounded_down_and_up() {
+        for seconds in [0.0, 1e-7, 0.1, 0.3, 1.0, 2.999_999_9, 12.5, 86_400.000_000_4, 1e9] {
+            let time: f64 = seconds * 1e6;
+            assert_eq!(floor_us(seconds), time.floor() as Us);
+            assert_eq!(ceil_us(seconds), time.ceil() as Us);
+        }
     }
 
     #[test]

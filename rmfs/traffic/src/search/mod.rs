@@ -305,7 +305,7 @@ impl<'a> Search<'a> {
         scanned.scans += 1;
         let mut beyond = FOREVER;
         for heading in 0..self.network.heading_count() as u8 {
-            beyond = beyond.min(self.drive(index, &label, heading, upto));
+            beyond = self.drive(index, &label, heading, upto, beyond);
         }
         if label.scans == 0 {
             self.ride(index, &label);
@@ -325,6 +325,15 @@ impl<'a> Search<'a> {
             None => self.memory.guide.to_go(self.network, node, heading),
         };
         time(entry)
+    }
+
+    /// A lower bound of what [`Search::to_go`] says of a waypoint: straight lines, where these are
+    /// used.
+    fn straight_to_goal(&self, node: u32) -> Us {
+        if self.query.goal == NONE || self.query.times.is_some() {
+            return 0;
+        }
+        Us::from(self.memory.guide.straight_to_goal(self.network, node))
     }
 
     /// Total time over a label: when it is reached, and a (weighted) bound of the rest.

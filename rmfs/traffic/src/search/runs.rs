@@ -7,10 +7,17 @@ use super::{Label, Search};
 
 impl Search<'_> {
     /// Offers the useful stops of a straight run in one direction whose total time lies between
-    /// what was scanned before and `upto`. Returns the least total time beyond.
-    pub(super) fn drive(&mut self, parent: u32, label: &Label, heading: u8, upto: Us) -> Us {
+    /// what was scanned before and `upto`. Returns the least total time beyond, or `beyond` if that
+    /// is less.
+    pub(super) fn drive(
+        &mut self,
+        parent: u32,
+        label: &Label,
+        heading: u8,
+        upto: Us,
+        mut beyond: Us,
+    ) -> Us {
         let network = self.network;
-        let mut beyond = FOREVER;
         let ready = label.arrival + Us::from(self.query.model.turning(label.heading, heading));
         if ready > label.until {
             return beyond;
@@ -21,14 +28,20 @@ impl Search<'_> {
         self.memory.line.push((label.node, 0.0));
         let mut settled = 0;
         let mut here = (label.node, 0.0);
+        let mut nearest = Us::MAX;
         while let Some((next, length)) = network.ahead(here.0, heading) {
             if !self.may_enter(here.0, next) {
                 break;
             }
             here = (next, here.1 + length);
+            let arrival = ready + Us::from(self.query.model.run(here.1));
+            let straight = self.straight_to_goal(next);
+            if self.nothing_ahead(arrival, straight, nearest, upto.max(beyond)) {
+                break;
+            }
+            nearest = straight;
             self.memory.line.push(here);
             if let Some(to_go) = self.to_go(next, heading) {
-                let arrival = ready + Us::from(self.query.model.run(here.1));
                 let estimate = self.estimate(next, arrival, to_go);
                 if arrival + to_go > self.latest {
                     // of no use, now or later
@@ -49,6 +62,15 @@ impl Search<'_> {
             }
         }
         beyond
+    }
+
+    /// Whether no stop from here on along a line can be reached so soon that its total time is below
+    /// `bound`. `straight` and `nearest`: how far the goal is at least from here and from the
+    /// waypoint before.
+    fn nothing_ahead(&self, arrival: Us, straight: Us, nearest: Us, bound: Us) -> bool {
+        // once the line leads away from the goal, it does so to its end
+        let to_go = if straight >= nearest { straight } else { 0 };
+        arrival + to_go * self.weight / 4 >= bound || arrival + to_go > self.latest
     }
 
     fn may_enter(&self, from: u32, to: u32) -> bool {
