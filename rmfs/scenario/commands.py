@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -37,6 +38,7 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Set a parameter, as in `rmfs run`."),
 ]
+MOMENTS = ["%Y-%m-%d", "%Y-%m-%dT%H:%M:%S"]
 Force = Annotated[bool, typer.Option("--force", help="Replace a file that exists.")]
 
 
@@ -91,6 +93,47 @@ def import_command(
     _vacant(target, force=force)
     for written in write_scenario(_loaded(str(path), None), target):
         typer.echo(f"{written}: written")
+
+
+@app.command()
+def convert(
+    layout: Annotated[
+        str,
+        typer.Argument(
+            metavar="LAYOUT", help="Whose columns: instacart, online-retail, jd or olist."
+        ),
+    ],
+    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Its .csv files.")],
+    out: Annotated[Path, typer.Option(help="The .csv file of orders to write.")] = Path(
+        "orders.csv"
+    ),
+    begin: Annotated[
+        datetime | None,
+        typer.Option(
+            "--from", formats=MOMENTS, help="Take orders from this time on. [default: all]"
+        ),
+    ] = None,
+    end: Annotated[
+        datetime | None,
+        typer.Option("--to", formats=MOMENTS, help="Take orders before this time. [default: all]"),
+    ] = None,
+    share: Annotated[
+        float, typer.Option(min=1e-6, max=1.0, help="Share of the orders to take, drawn.")
+    ] = 1.0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of that draw.")] = 0,
+    force: Force = False,
+) -> None:
+    """Turn a public set of orders, which you have downloaded, into a file of orders of ours."""
+    from rmfs.scenario.datasets import convert as converted
+
+    _vacant(out, force=force)
+    done = converted(layout, files, out, begin=begin, end=end, share=share, seed=seed)
+    typer.echo(
+        f"{out}: {done.orders} orders, {done.lines} lines, {done.units} units, {done.skus} SKUs, "
+        f"from {done.first} to {done.last}"
+    )
+    for what, number in done.left_out.items():
+        typer.echo(f"left out: {number} {what}")
 
 
 @app.command()

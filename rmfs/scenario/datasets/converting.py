@@ -1,0 +1,138 @@
+"""From the files of a public set to a file of orders of ours."""
+
+from __future__ import annotations
+
+import csv
+from datetime import datetime
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.files import replacing
+from rmfs.scenario.datasets.layouts import LAYOUTS
+from rmfs.scenario.datasets.orders import Order, Orders
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+MOST_LINES = 4_999_999
+"""Lines of a file of orders that is read again."""
+
+
+class Converted(NamedTuple):
+    """What was converted.
+
+    Attributes
+    ----------
+    orders, lines, units, skus
+        How many.
+    first, last
+        When the first and the last order come.
+    left_out
+        What was left out, and how often.
+    """
+
+    orders: int
+    lines: int
+    units: int
+    skus: int
+    first: str
+    last: str
+    left_out: dict[str, int]
+
+
+def convert(
+    layout: str,
+    paths: Sequence[Path],
+    out: Path,
+    *,
+    begin: datetime | None = None,
+    end: datetime | None = None,
+    share: float = 1.0,
+    seed: int = 0,
+) -> Converted:
+    """Read the files of a public set and write the orders as a file of ours.
+
+    Parameters
+    ----------
+    layout
+        A name of `LAYOUTS`.
+    paths
+        Its files, in the order that the layout says; further ones are like the last.
+    out
+        The .csv file to write.
+    begin, end
+        Orders from the first and before the second are taken; default: all.
+    share
+        Of these so many are taken, drawn order by order.
+    seed
+        Of these draws.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, lacks a column or has a field that is wrong; no order is left; or
+        they are too many.
+    """
+    if layout not in LAYOUTS:
+        raise InputError(f"layout {layout!r:.40} is unknown; valid: {', '.join(LAYOUTS)}")
+    files = LAYOUTS[layout].files
+    if len(paths) < len(files):
+        raise InputError(f"layout {layout} needs {len(files)} files: {', '.join(files)}")
+    if out.suffix.lower() != ".csv":
+        raise InputError(f"{out}: must end in .csv")
+    if layout == "instacart" and (begin or end):
+        raise InputError("layout instacart has no dates: all orders come within one week")
+    rng = np.random.default_rng(seed)
+    orders = Orders(partial(_takes, begin, end, share, rng))
+    LAYOUTS[layout].read(paths, orders)
+    taken = orders.taken()
+    if not taken:
+        raise InputError(f"{paths[0]}: no order is left{_reasons(orders)}")
+    lines = sum(len(order.units) for _, order in taken)
+    if lines > MOST_LINES:
+        raise InputError(f"{paths[0]}: {lines} lines, but a file has {MOST_LINES} at most; "
+                         "take a share, or fewer days")  # fmt: skip
+    _write(taken, out)
+    units = sum(sum(order.units.values()) for _, order in taken)
+    skus = len({sku for _, order in taken for sku in order.units})
+    span = _time(taken[0][1].time), _time(taken[-1][1].time)
+    left_out = {what: number for what, number in orders.left_out.items() if number}
+    return Converted(len(taken), lines, units, skus, *span, left_out)
+
+
+def _takes(
+    begin: datetime | None,
+    end: datetime | None,
+    share: float,
+    rng: np.random.Generator,
+    time: datetime | float,
+) -> bool:
+    if isinstance(time, datetime):
+        if begin is not None and time < begin:
+            return False
+        if end is not None and time >= end:
+            return False
+    return share >= 1.0 or float(rng.random()) < share
+
+
+def _reasons(orders: Orders) -> str:
+    told = [f"{number} {what}" for what, number in orders.left_out.items() if number]
+    return f" (left out: {', '.join(told)})" if told else ""
+
+
+def _write(taken: Sequence[tuple[str, Order]], out: Path) -> None:
+    with replacing(out) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(("time", "order", "sku", "quantity", "due"))
+        for name, order in taken:
+            due = "" if order.due is None else _time(order.due)
+            time = _time(order.time)
+            writer.writerows((time, name, sku, n, due) for sku, n in order.units.items())
+
+
+def _time(time: datetime | float) -> str:
+    return time.isoformat() if isinstance(time, datetime) else f"{time:.3f}"
