@@ -14,6 +14,7 @@ from rich.table import Table
 from rmfs import foreign, instances
 from rmfs.config import parse_override
 from rmfs.errors import InputError
+from rmfs.files import write_text
 from rmfs.scenario.intake import Site, bundle_intake, export_stream, order_intake
 from rmfs.scenario.loading import load, load_with_notes
 from rmfs.scenario.parameters import Scenario, SkuFile, StreamDemand, StreamReplenishment
@@ -134,6 +135,42 @@ def convert(
     )
     for what, number in done.left_out.items():
         typer.echo(f"left out: {number} {what}")
+
+
+@app.command()
+def twin(
+    orders: Annotated[
+        Path, typer.Argument(metavar="ORDERS", help="A .csv or .parquet file of orders.")
+    ],
+    out: Annotated[Path, typer.Option(help="The .toml file to write.")] = Path("twin.toml"),
+    table: Annotated[
+        Path | None,
+        typer.Option(
+            help="The .csv file for parameters, intervals and fit to write. [default: none]",
+            show_default=False,
+        ),
+    ] = None,
+    weekly: Annotated[
+        bool, typer.Option("--weekly", help="Fit rates of a week's hours, not of a day's.")
+    ] = False,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the twin's SKUs.")] = 0,
+    force: Force = False,
+) -> None:
+    """Fit a generator to a file of orders: a scenario that can be published in its place."""
+    from rmfs.scenario.twin import fit_twin
+    from rmfs.scenario.twin.telling import told, write_table
+
+    for target in (out, table):
+        if target is not None:
+            _vacant(target, force=force)
+    if out.suffix.lower() != ".toml":
+        raise InputError(f"{out}: must end in .toml")
+    found = fit_twin(orders, out.stem, weekly=weekly, seed=seed)
+    write_text(out, to_toml(found.scenario))
+    if table is not None:
+        write_table(found, table)
+    Console().print(told(found))
+    typer.echo(f"{out}: written")
 
 
 @app.command()

@@ -86,6 +86,42 @@ class NormalCount(_Range):
         return np.where(low > 0, special.ndtr(-low) - special.ndtr(-high), lower)
 
 
+Weights = Annotated[
+    tuple[NotNegative, ...], pydantic.Strict(strict=False), pydantic.Field(max_length=1000)
+]
+
+
+class ListedCount(Block):
+    """1, 2, ... with a weight each, up to 1000."""
+
+    distribution: Literal["listed"] = "listed"
+    weights: Weights
+
+    @pydantic.field_validator("weights")
+    @classmethod
+    def _ends_with_one(cls, value: tuple[float, ...]) -> tuple[float, ...]:
+        if not value or not value[-1]:
+            raise ValueError("must end with one above 0")
+        return value
+
+    @property
+    def max(self) -> int:
+        """Largest count."""
+        return len(self.weights)
+
+    def probabilities(self) -> NDArray[np.float64]:
+        """Probability of 1, 2, ..., `max`."""
+        weights = np.array(self.weights)
+        made: NDArray[np.float64] = weights / weights.sum()
+        return made
+
+    def sampler(self) -> Callable[[float], int]:
+        """Return the function that turns a number in [0, 1) into a count."""
+        return partial(_count, 1, Categorical(self.probabilities()).pick)
+
+
+NormalOrListed = Annotated[NormalCount | ListedCount, pydantic.Field(discriminator="distribution")]
+
 Counts = Annotated[UniformCount | NormalCount, pydantic.Field(discriminator="distribution")]
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, NoReturn, cast
 
 from rmfs.errors import InputError
 from rmfs.scenario.clock import first_us
 from rmfs.scenario.intake.bundles import bundle_intake
 from rmfs.scenario.intake.orders import order_intake
+from rmfs.scenario.intake.state import Site
 from rmfs.scenario.sources import sku_set
 from rmfs.scenario.streams import StreamRecorder, write_stream
 
@@ -15,8 +17,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rmfs.scenario.intake.intake import Intake
-    from rmfs.scenario.intake.state import Site, State
+    from rmfs.scenario.intake.state import State
     from rmfs.scenario.parameters import Scenario
+    from rmfs.scenario.skus import SkuSet
+    from rmfs.scenario.streams import OrderStream
 
 
 class ExportedStream(NamedTuple):
@@ -89,6 +93,18 @@ def export_stream(
             "they can be recorded, not exported"
         ) from None
     return ExportedStream(path, write_stream(stream, skus, path), len(stream))
+
+
+def order_stream_of(scenario: Scenario, skus: SkuSet, seed: int) -> OrderStream:
+    """Return all orders that a scenario lets come; they must not depend on a run.
+
+    Rates are those of one pick station.
+    """
+    recorder = StreamRecorder()
+    end_us = first_us(scenario.warmup_s + scenario.duration_s)
+    anywhere = Site(1, 1, capacity=inf, largest_pod=inf)
+    _run(order_intake(scenario, skus, anywhere, seed, recorder), end_us)
+    return recorder.orders.build()
 
 
 def _run(intake: Intake[Any], end_us: int) -> None:

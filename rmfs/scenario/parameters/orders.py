@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
+import pydantic
 from pydantic import Field
 
-from rmfs.scenario.counts import NormalCount
+from rmfs.scenario.counts import NormalCount, NormalOrListed
 from rmfs.scenario.due import Due, PriorityDue
 from rmfs.scenario.quantities import Block
 
@@ -15,14 +16,20 @@ class Orders(Block):
     """Orders with a number of lines, each for a SKU drawn by popularity or affinity."""
 
     content: Literal["skus"] = Field("skus", description="each line is drawn from all SKUs")
-    lines: NormalCount = Field(
+    lines: NormalOrListed = Field(
         NormalCount(mean=1.0, sd=1.0, min=1, max=4),
         description="lines of an order, each with a SKU of its own",
     )
-    units_per_line: NormalCount = Field(
+    units_per_line: NormalOrListed = Field(
         NormalCount(mean=1.0, sd=0.3, min=1, max=3), description="units of an order line"
     )
     due: Due = Field(PriorityDue(), description="when an order is due")
+
+    @pydantic.field_validator("lines", "units_per_line", mode="before")
+    @classmethod
+    def _default_kind(cls, value: Any) -> Any:
+        """Let a table that does not name its distribution be normal."""
+        return {"distribution": "normal", **value} if isinstance(value, dict) else value
 
 
 class WordOrders(Block):

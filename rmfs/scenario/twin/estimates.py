@@ -1,0 +1,80 @@
+"""What is told of a parameter that was fitted, and of how well the fit holds."""
+
+from __future__ import annotations
+
+from math import nan
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy import stats
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+LEVEL = 0.95
+"""Of all intervals."""
+
+
+class Estimate(NamedTuple):
+    """A parameter.
+
+    Attributes
+    ----------
+    name
+        What it is.
+    value, low, high
+        Its value and interval (`LEVEL`).
+    """
+
+    name: str
+    value: float
+    low: float
+    high: float
+
+
+class Agreement(NamedTuple):
+    """How a figure of the orders and of those of the twin compare.
+
+    Attributes
+    ----------
+    name
+        What it is.
+    data, twin
+        The figure of both; empty (nan) for a test of the model alone.
+    p
+        Probability of so large a deviation if the model holds; nan without a test.
+    """
+
+    name: str
+    data: float
+    twin: float
+    p: float = nan
+
+
+def shares(name: str, counts: NDArray[np.int64]) -> list[Estimate]:
+    """Return the shares of 1, 2, ... with Wilson's intervals.
+
+    Parameters
+    ----------
+    counts
+        How often each occurs, shape (n,).
+    """
+    total = int(counts.sum())
+    z = stats.norm.ppf(0.5 + LEVEL / 2)
+    share = counts / total
+    middle = (share + z * z / (2 * total)) / (1 + z * z / total)
+    half = z * np.sqrt(share * (1 - share) / total + z * z / (4 * total**2)) / (1 + z * z / total)
+    return [
+        Estimate(f"{name} {number}", *map(float, row))
+        for number, row in enumerate(
+            zip(share, np.maximum(middle - half, 0), np.minimum(middle + half, 1), strict=True), 1
+        )
+    ]
+
+
+def rate(name: str, count: int, hours: float) -> Estimate:
+    """Return a Poisson rate per hour with its exact interval (Garwood)."""
+    tail = (1 - LEVEL) / 2
+    low = stats.chi2.ppf(tail, 2 * count) / 2 if count else 0.0
+    high = stats.chi2.ppf(1 - tail, 2 * count + 2) / 2
+    return Estimate(name, count / hours, float(low) / hours, float(high) / hours)

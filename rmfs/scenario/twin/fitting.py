@@ -1,0 +1,147 @@
+"""From a file of orders to a scenario that generates orders like them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.errors import InputError
+from rmfs.scenario.counts import ListedCount
+from rmfs.scenario.distributions import Gamma
+from rmfs.scenario.parameters import GeneratedSkus, Orders, PoissonDemand, Scenario, SkuFile
+from rmfs.scenario.parameters.rates import OrderSteps
+from rmfs.scenario.sources import sku_set
+from rmfs.scenario.streams import read_orders
+from rmfs.scenario.twin.affinity import fit_affinity, with_affinity
+from rmfs.scenario.twin.agreement import agreements
+from rmfs.scenario.twin.arrivals import HOUR_US, fit_arrivals
+from rmfs.scenario.twin.estimates import Agreement, Estimate, shares
+from rmfs.scenario.twin.popularity import MOST_SKUS, fit_popularity
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from rmfs.scenario.streams import OrderStream
+
+DAY_H = 24
+WEEK_H = 168
+MOST_LISTED = 200
+"""Lines of an order, or units of a line: larger ones count as this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Twin:
+    """A generator, and how well it fits.
+
+    Attributes
+    ----------
+    scenario
+        Generates orders like those of the file.
+    estimates
+        Its parameters, with their intervals.
+    agreements
+        Figures of the orders of the file and of orders of the twin.
+    orders
+        Orders that were fitted.
+    """
+
+    scenario: Scenario
+    estimates: list[Estimate]
+    agreements: list[Agreement]
+    orders: int
+
+
+def fit_twin(path: Path, name: str, *, weekly: bool = False, seed: int = 0) -> Twin:
+    """Fit a generator to a file of orders.
+
+    Parameters
+    ----------
+    path
+        Orders, as `demand.file` takes them; days count as whole.
+    name
+        Of the scenario.
+    weekly
+        Whether rates come again after a week, and not after a day.
+    seed
+        Of the twin's SKUs, and of the simulations that find the share of affinity.
+
+    Raises
+    ------
+    InputError
+        If the file is broken, or holds too few orders.
+    """
+    skus = sku_set(SkuFile(file=path))
+    stream = read_orders(path, skus)
+    try:
+        return _fitted(stream, name, weekly, seed)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def _fitted(stream: OrderStream, name: str, weekly: bool, seed: int) -> Twin:
+    day_us = DAY_H * HOUR_US
+    first = int(stream.time_us[0]) // day_us
+    days = int(stream.time_us[-1]) // day_us - first + 1
+    cycle_h = WEEK_H if weekly else DAY_H
+    if days * DAY_H < cycle_h:
+        raise InputError(f"rates of a week need orders of 7 days (given: {days})")
+    arrivals = fit_arrivals(stream.time_us - first * day_us, days, cycle_h)
+    popularity = fit_popularity(
+        np.unique(stream.sku[stream.first_line[:-1]], return_counts=True)[1]
+    )
+    count = round(popularity.skus.value)
+    if count > MOST_SKUS:
+        raise InputError(f"a fit finds {count} SKUs, above {MOST_SKUS}: hardly any came twice")
+    lines, units = _listed(np.diff(stream.first_line)), _listed(stream.units)
+    if count < lines.max:
+        raise InputError(f"an order has {lines.max} lines, but a fit finds {count} SKUs")
+    shape = round(popularity.shape.value, 9)
+    skus = GeneratedSkus(count=count, seed=seed, popularity=Gamma(shape=shape, scale=1 / shape))
+    share = fit_affinity(stream.sku, stream.first_line, skus, seed)
+    if share is not None and share.low > 0:  # or it cannot be told from none
+        skus = with_affinity(skus, share.value)
+    scenario = Scenario(
+        format="rmfs-scenario/1",
+        name=name,
+        description=f"twin of {len(stream)} orders of {days} days",
+        duration_s=cycle_h * 3600.0,
+        skus=skus,
+        orders=Orders(lines=lines, units_per_line=units),
+        demand=PoissonDemand(
+            orders_per_h=float(np.mean([one.value for one in arrivals.hours])),
+            per_station=False,
+            initial_orders=0,
+            profile=OrderSteps(
+                cycle_s=cycle_h * 3600.0,
+                weights=tuple(round(one.value, 9) for one in arrivals.hours),
+            ),
+        ),
+    )
+    estimates = [
+        popularity.skus,
+        popularity.shape,
+        *([] if share is None else [share]),
+        arrivals.mean,
+        *arrivals.hours,
+        *shares("share of orders with lines", np.array(lines.weights).astype(np.int64)),
+        *shares("share of lines with units", np.array(units.weights).astype(np.int64)),
+    ]
+    compared = agreements(
+        stream,
+        scenario,
+        days,
+        cycle_h,
+        seed,
+        p_popularity=popularity.p,
+        p_arrivals=arrivals.p,
+    )
+    return Twin(scenario, estimates, compared, len(stream))
+
+
+def _listed(values: NDArray[np.int64]) -> ListedCount:
+    counts = np.bincount(np.minimum(values, MOST_LISTED))[1:]
+    return ListedCount(weights=tuple(counts.astype(float).tolist()))

@@ -1,0 +1,162 @@
+"""How popular SKUs are: gamma weights, fitted to how often each SKU was ordered.
+
+Of each order one line counts: lines of an order are not independent, orders are. With gamma
+weights such counts are negative binomial, and SKUs that were never ordered are not in the file:
+the likelihood is that of counts above 0, and tells also how many SKUs there are.
+"""
+
+from __future__ import annotations
+
+from math import exp
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy import optimize, special, stats
+
+from rmfs.errors import InputError
+from rmfs.scenario.twin.estimates import LEVEL, Estimate
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+LEAST_SKUS = 10
+MOST_SKUS = 1_000_000
+LEAST_IN_BIN = 5.0
+
+
+class Popularity(NamedTuple):
+    """Gamma weights.
+
+    Attributes
+    ----------
+    shape
+        Of the gamma distribution, whose mean is 1.
+    skus
+        How many SKUs there are, those never ordered among them.
+    p
+        Of a chi-square test of the counts.
+    """
+
+    shape: Estimate
+    skus: Estimate
+    p: float
+
+
+def fit_popularity(counts: NDArray[np.int64]) -> Popularity:
+    """Fit gamma weights by maximum likelihood.
+
+    Parameters
+    ----------
+    counts
+        Of each SKU seen how often it was ordered, from 1, shape (K,).
+
+    Raises
+    ------
+    InputError
+        If there are too few SKUs, or none was ordered twice.
+    """
+    values, often = np.unique(counts, return_counts=True)
+    if len(counts) < LEAST_SKUS or values[-1] < 2:
+        raise InputError(
+            f"the orders are too few for a fit: {LEAST_SKUS} SKUs, and one ordered twice, are "
+            f"needed (given: {len(counts)} SKUs, most orders of one: {values[-1]})"
+        )
+
+    def loss(logs: NDArray[np.float64]) -> float:
+        return -float(often @ _log_likelihood(values, *np.exp(logs)))
+
+    # not below a thousandth: then there would be SKUs without end
+    limits = [(np.log(1e-3), np.log(1e4)), (np.log(1e-6), np.log(1e9))]
+    begin = np.log([1.0, counts.mean()])
+    found = optimize.minimize(
+        loss, begin, method="Nelder-Mead", bounds=limits, options={"xatol": 1e-7, "fatol": 1e-9}
+    )
+    covariance = np.linalg.pinv(_curvature(loss, found.x)).astype(np.float64)
+    shape, mean = map(float, np.exp(found.x))
+    z = float(stats.norm.ppf(0.5 + LEVEL / 2))
+    wide = z * float(np.sqrt(max(covariance[0, 0], 0.0)))
+    return Popularity(
+        Estimate("popularity shape", shape, shape * exp(-wide), shape * exp(wide)),
+        _skus(len(counts), found.x, covariance, z),
+        _chi_square(values, often, shape, mean),
+    )
+
+
+def _log_likelihood(n: NDArray[np.int64], shape: float, mean: float) -> NDArray[np.float64]:
+    """Log probability of a count, given that it is above 0."""
+    below = np.log(shape) - np.log(shape + mean)
+    log_p: NDArray[np.float64] = (
+        special.gammaln(n + shape)
+        - special.gammaln(shape)
+        - special.gammaln(n + 1)
+        + shape * below
+        + n * (np.log(mean) - np.log(shape + mean))
+    )
+    return log_p - float(np.log(-np.expm1(shape * below)))
+
+
+def _skus(
+    seen: int, logs: NDArray[np.float64], covariance: NDArray[np.float64], z: float
+) -> Estimate:
+    """Return how many SKUs there are: those seen over the probability to be seen.
+
+    The interval is that of the number of unseen ones on the log scale, so that it stays above what
+    was seen: by the delta method for the parameters, and the draw of who is seen beside it.
+    """
+
+    def log_unseen(at: NDArray[np.float64]) -> float:
+        shape, mean = np.exp(at)
+        never = (shape / (shape + mean)) ** shape
+        return float(np.log(seen * never / (1.0 - never)))
+
+    step = 1e-4
+    slope = np.array(
+        [(log_unseen(logs + one) - log_unseen(logs - one)) / (2 * step) for one in np.eye(2) * step]
+    )
+    unseen = exp(log_unseen(logs))
+    never = unseen / (seen + unseen)
+    drawn = seen * never / (1.0 - never) ** 2 / max(unseen, 1e-12) ** 2
+    wide = z * float(np.sqrt(max(slope @ covariance @ slope, 0.0) + drawn))
+    low, high = unseen * exp(-wide), unseen * exp(min(wide, 50.0))
+    return Estimate("SKUs", seen + unseen, seen + low, seen + high)
+
+
+def _curvature(loss: object, at: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the second derivatives, by differences."""
+    step = 1e-3
+    ways = np.eye(2) * step
+    made = np.empty((2, 2))
+    for i in range(2):
+        for j in range(2):
+            a, b = ways[i], ways[j]
+            corners = loss(at + a + b) - loss(at + a - b) - loss(at - a + b) + loss(at - a - b)  # type: ignore[operator]
+            made[i, j] = corners / (4 * step * step)
+    return made
+
+
+def _chi_square(
+    values: NDArray[np.int64], often: NDArray[np.int64], shape: float, mean: float
+) -> float:
+    """Test the counts, in bins that hold enough."""
+    most = int(min(values[-1], 100_000))
+    each = np.exp(_log_likelihood(np.arange(1, most + 1), shape, mean)) * often.sum()
+    seen = np.zeros(most)
+    np.add.at(seen, np.minimum(values, most) - 1, often)
+    expected, observed, bins = 0.0, 0.0, []
+    for one, found in zip(each, seen, strict=True):
+        expected, observed = expected + float(one), observed + float(found)
+        if expected >= LEAST_IN_BIN:
+            bins.append((observed, expected))
+            expected = observed = 0.0
+    rest = float(often.sum()) - sum(e for _, e in bins)
+    left = float(often.sum()) - sum(o for o, _ in bins)
+    if rest >= LEAST_IN_BIN or not bins:
+        bins.append((left, rest))
+    else:
+        last = bins.pop()
+        bins.append((last[0] + left, last[1] + rest))
+    if len(bins) < 4:
+        return float("nan")
+    table = np.array(bins)
+    statistic = ((table[:, 0] - table[:, 1]) ** 2 / table[:, 1]).sum()
+    return float(stats.chi2.sf(statistic, len(bins) - 3))

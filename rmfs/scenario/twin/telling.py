@@ -1,0 +1,62 @@
+"""What is told of a twin: on the terminal the main figures, in a file all."""
+
+from __future__ import annotations
+
+import csv
+import io
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from rich.table import Table
+
+from rmfs.errors import InputError
+from rmfs.files import write_text
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rmfs.scenario.twin.fitting import Twin
+
+COLUMNS = ("kind", "name", "value", "low", "high", "twin", "p")
+
+
+def write_table(twin: Twin, path: Path) -> None:
+    """Write every parameter with its interval, and every figure of the fit, as CSV.
+
+    Raises
+    ------
+    InputError
+        If the name ends otherwise, or the file cannot be written.
+    """
+    if path.suffix.lower() != ".csv":
+        raise InputError(f"{path}: must end in .csv")
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for one in twin.estimates:
+        numbers = map(_plain, (one.value, one.low, one.high))
+        writer.writerow(("parameter", one.name, *numbers, "", ""))
+    for other in twin.agreements:
+        data, made, p = map(_plain, (other.data, other.twin, other.p))
+        writer.writerow(("fit", other.name, data, "", "", made, p))
+    write_text(path, text.getvalue())
+
+
+def told(twin: Twin) -> Table:
+    """Return the main parameters and the fit as a table for a terminal."""
+    table = Table("", "orders", "95 % interval", "twin", "p", box=None)
+    for one in twin.estimates:
+        if one.name in ("SKUs", "popularity shape", "affinity share"):
+            table.add_row(one.name, f"{one.value:.4g}", f"{one.low:.4g} to {one.high:.4g}", "", "")
+    for other in twin.agreements:
+        p = f"{other.p:.3f}" if isfinite(other.p) else ""
+        table.add_row(other.name, _short(other.data), "", _short(other.twin), p)
+    return table
+
+
+def _plain(number: float) -> str:
+    return f"{number:.9g}" if isfinite(number) else ""
+
+
+def _short(number: float) -> str:
+    return f"{number:.4g}" if isfinite(number) else ""
