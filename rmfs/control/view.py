@@ -118,6 +118,16 @@ class View:
         """People at the pick stations; None if every unit takes the same time."""
         return self._world.staff
 
+    def unit_s(self, station: int) -> float:
+        """Return how long a unit takes at a pick station, in s: a mean, as its picker is now.
+
+        Without a picker it is what the layout says.
+        """
+        staff = self._world.staff
+        if staff is None or staff.at_station[station] is None:
+            return self.layout.pick_stations[station].unit_transfer_s
+        return staff.unit_s(station, self._world.now_s)
+
     @property
     def split_orders(self) -> Mapping[int, Order]:
         """Orders with parts of which units are still to be picked, by index."""

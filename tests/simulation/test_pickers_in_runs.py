@@ -103,6 +103,17 @@ def test_nobody_picks_in_a_break_or_in_another_shift(full):
     assert people["present_s"].to_numpy() == pytest.approx([800, 800, 400, 400], abs=90)
 
 
+def test_robots_wait_out_a_night():
+    """Nobody is there for hours, pods queue, and work goes on in the morning."""
+    roster = {"cycle_s": 12000, "shifts_s": [[600, 1200]]}
+    more = {"scenario.warmup_s": 0, "layout.robots": 2}
+    run = simulate({"roster": roster}, duration_s=13500, **more)
+    clock = run.table("picks")["time_s"] % 12000
+    assert ((clock >= 600) & (clock < 1200)).all()
+    assert (run.table("picks")["time_s"] > 12600).any()
+    verify(run.world)
+
+
 def test_fatigue_is_that_of_the_equations():
     """By the recursion over all units, from when they began and how long they took."""
     given = {"fatigue": {"per_h": 2.0, "recovery_per_h": 4.0, "slowdown": 0.8, "waiting_rests": 1}}
@@ -261,6 +272,29 @@ class TestRules:
             run = simulate({"speeds": [1.6, 0.8], "fatigue": tired}, duration_s=5400, **more)
             most[name] = run.footprint["picker_fatigue_max"]
         assert most["weighted"] < most["picker-load"] < 0.9 * most["workload"]
+
+
+class TestOptimisers:
+    NAMES = ("pile-on", "planning", "ta-balance", "ta-routes")
+
+    def run(self, name, pickers):
+        short = keys(pickers, 400)
+        return rmfs.simulate("small", "small", name, seed=1, set=short, pacing="work")
+
+    @pytest.mark.parametrize("name", NAMES)
+    def test_they_plan_with_the_times_of_pickers(self, name):
+        """As in the layout if these are; otherwise they still pick, and know what they wait for."""
+        alike = self.run(name, {}).footprint[COLUMNS]
+        assert alike.equals(self.run(name, None).footprint[COLUMNS])
+        run = self.run(name, FULL)
+        verify(run.world)
+        assert run.footprint["units_picked"] > 20
+
+    def test_a_rule_sees_the_mean_time(self):
+        run = rmfs.Simulation("small", "small", "default", set=keys({"speeds": [2.0, 0.5]}))
+        assert run.view.unit_s(0) == 10.0  # nobody is there yet
+        run.run_until(1.0)
+        assert (run.view.unit_s(0), run.view.unit_s(1)) == (5.0, 20.0)
 
 
 @pytest.mark.parametrize(

@@ -107,7 +107,7 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         for station in self.view.pick_stations:
             if not self._plan.pods[station.index]:
                 units = sum(len(task.picks) for task in station.tasks.values())
-                seconds = self.view.layout.pick_stations[station.index].unit_transfer_s
+                seconds = self.view.unit_s(station.index)
                 if units * seconds < given.horizon_s:
                     return True
         return False

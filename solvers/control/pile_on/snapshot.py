@@ -197,7 +197,7 @@ def _needs_pod(view: View, plan: Plan, given: JointParameters, station: PickStat
         return False
     bound = sum(len(task.picks) for task in station.tasks.values())
     planned = sum(line.units for one in plan.items[station.index] for line in one.item.lines)
-    seconds = view.layout.pick_stations[station.index].unit_transfer_s
+    seconds = view.unit_s(station.index)
     return (bound + planned) * seconds < given.horizon_s
 
 
@@ -207,7 +207,7 @@ def _runs_short(view: View, plan: Plan, given: JointParameters, station: PickSta
     units = sum(len(task.picks) for task in station.tasks.values())
     coming = inventory.inbound[index] + inventory.available[:, list(plan.pods[index])].sum(axis=1)
     units += int(np.minimum(view.need[index], coming).sum())
-    seconds = view.layout.pick_stations[index].unit_transfer_s
+    seconds = view.unit_s(index)
     return station.active and units * seconds < given.horizon_s
 
 

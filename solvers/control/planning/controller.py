@@ -183,7 +183,7 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
         for station in self.view.pick_stations:
             room = len(station.tasks) < given.robots_per_station
             if room and self._plan.next_pod(station.index) >= 0:
-                unit_s = self.view.layout.pick_stations[station.index].unit_transfer_s
+                unit_s = self.view.unit_s(station.index)
                 work_s = self._plan.units(station) * unit_s
                 if work_s < given.horizon_s:
                     found.append((work_s, station.index))

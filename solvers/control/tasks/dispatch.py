@@ -194,6 +194,14 @@ class DispatchControl(Asking[DispatchParameters]):
             return target.requests.units + target.queued_requests.units
         return len(target.waiting)
 
+    def _pace(self, station: int) -> float:
+        """Return what the time of a pod is multiplied by: a picker may be slow, or tired."""
+        stations = self.view.layout.pick_stations
+        if self.view.staff is None or station >= len(stations):
+            return 1.0
+        full_s = stations[station].unit_transfer_s
+        return self.view.unit_s(station) / full_s if full_s else 1.0
+
     def _balance(
         self,
         robots: int,
@@ -221,7 +229,7 @@ class DispatchControl(Asking[DispatchParameters]):
             ),
             station=np.array(station, np.int64),
             queue=np.array(queue),
-            service_s=np.full(len(queue), given.service_s),
+            service_s=np.array([given.service_s * self._pace(s) for s in range(len(queue))]),
             room=np.array([self.may_come(s) for s in range(len(queue))]) + here,
             late_weight=given.late_weight,
         )

@@ -96,7 +96,7 @@ def _picks(
     pods = pick_candidates(view, view.robots[0], station)
     if not len(pods):
         return
-    unit_s = view.layout.pick_stations[station.index].unit_transfer_s
+    unit_s = view.unit_s(station.index)
     busy_s = unit_s * sum(len(task.picks) for task in station.tasks.values())
     to_station_s = view.travel.to(station.waypoint, loaded=True)
     bring_s = to_station_s[view.storage.pod_waypoint[pods.pods]]

@@ -269,7 +269,7 @@ class RoutesControl(Asking[RoutesParameters]):
         if robot.station < 0 or task is None:
             return 0.0
         if isinstance(task, PickTask):
-            seconds = view.layout.pick_stations[robot.station].unit_transfer_s
+            seconds = view.unit_s(robot.station)
             return seconds * len(task.picks)
         if isinstance(task, ReplenishTask):
             number = view.stations[robot.station].number
