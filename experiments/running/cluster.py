@@ -8,8 +8,11 @@ file system); every worker compares the hashes of the inputs. Start workers with
 from __future__ import annotations
 
 import argparse
+import logging
 import queue
 import sys
+from concurrent.futures import CancelledError
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -21,7 +24,7 @@ from rmfs.experiments.extras import optional
 from rmfs.experiments.running.job import Job, Outcome
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
 EXTRA = "dask"
 CONNECT_S = 30.0
@@ -69,7 +72,11 @@ class DaskWorkers:
 
     def __init__(self, address: str, work: Callable[[Job], Outcome] | None = None) -> None:
         self._distributed = optional("distributed", EXTRA, "--dask")
+        # it writes tracebacks of its own threads; what matters is told here, in a line
+        for name in ("distributed", "distributed.client"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         self._work = work
+        self._address = address
         self._cluster: Any = None
         target: Any = address
         if Path(address).suffix == ".toml":
@@ -84,18 +91,26 @@ class DaskWorkers:
     @property
     def slots(self) -> int:
         """Two jobs per worker, so that none waits for the driver."""
-        workers = self.client.scheduler_info(n_workers=-1)["workers"].values()
+        with self._scheduler_there():
+            workers = self.client.scheduler_info(n_workers=-1)["workers"].values()
         threads = [int(worker["nthreads"]) for worker in workers]
         return 2 * max(1, sum(threads))
 
     def submit(self, job: Job) -> None:
         """Begin a job on some worker; if that one dies Dask begins it again on another."""
-        future = self.client.submit(_work_of(self._work), job, pure=False)
+        with self._scheduler_there():
+            future = self.client.submit(_work_of(self._work), job, pure=False)
         self._jobs[future] = job
         future.add_done_callback(self._done.put)
 
     def wait(self, timeout_s: float) -> list[tuple[Job, Outcome]]:
-        """Return the jobs that have ended within a time."""
+        """Return the jobs that have ended within a time.
+
+        Raises
+        ------
+        InputError
+            If the scheduler is gone.
+        """
         ended: list[tuple[Job, Outcome]] = []
         try:
             ended.append(self._result(self._done.get(timeout=timeout_s)))
@@ -106,19 +121,36 @@ class DaskWorkers:
 
     def close(self) -> None:
         """Cancel what still runs and leave the cluster; end it if it was started here."""
-        self.client.cancel(list(self._jobs), force=True)
+        # a scheduler that is gone has nothing to cancel
+        with suppress(OSError, RuntimeError, CancelledError):
+            self.client.cancel(list(self._jobs), force=True)
+            self.client.close()
         self._jobs.clear()
-        self.client.close()
         if self._cluster is not None:
             self._cluster.close()
 
     def _result(self, future: Any) -> tuple[Job, Outcome]:
         job = self._jobs.pop(future)
-        error = future.exception()
-        if error is None:
-            return job, future.result()
+        with self._scheduler_there():
+            error = future.exception()
+            if isinstance(error, CancelledError):
+                raise error
+            if error is None:
+                return job, future.result()
         # what goes wrong in a run is part of its outcome: this is the cluster's own trouble
         return job, Outcome(error=f"{type(error).__name__}: {error}".splitlines()[0], died=True)
+
+
+    @contextmanager
+    def _scheduler_there(self) -> Iterator[None]:
+        """Say in a line that the scheduler is gone, whatever Dask says then."""
+        try:
+            yield
+        except (OSError, RuntimeError, CancelledError) as error:
+            raise InputError(
+                f"--dask {self._address}: the scheduler is gone ({type(error).__name__}); "
+                "what has ended is stored: the same command goes on from there"
+            ) from None
 
 
 def read_profile(path: Path) -> Profile:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
+import subprocess
+import sys
 import threading
 import time
 
@@ -53,6 +56,58 @@ def test_a_cluster_of_four_workers_gives_the_same_table(design, tmp_path):
     assert killed
     assert (done.ran, done.finished, done.failed) == (24, 24, [])
     experiments.run(plan, tmp_path / "local", processes=2)
+    assert table(out) == table(tmp_path / "local")
+
+
+@pytest.fixture
+def own_cluster():
+    """Return a scheduler in a process of its own, its address, and a worker that it has."""
+    with socket.socket() as asked:
+        asked.bind(("127.0.0.1", 0))
+        port = str(asked.getsockname()[1])
+    address = f"tcp://127.0.0.1:{port}"
+    commands = (
+        ["dask_scheduler", "--host", "127.0.0.1", "--port", port, "--no-dashboard"],
+        ["dask_worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard"],
+    )
+    started = [
+        subprocess.Popen(
+            [sys.executable, "-m", f"distributed.cli.{name}", *options],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        for name, *options in commands
+    ]
+    yield started[0], address
+    for one in started:
+        one.kill()
+        one.wait()
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_is_killed_loses_nothing(own_cluster, tmp_path):
+    scheduler, address = own_cluster
+    design = tmp_path / "design.toml"
+    design.write_text(
+        'format = "rmfs-design/1"\nname = "tiny"\nseeds = [1, 2, 3, 4]\n[base]\n'
+        'layout = "basic"\nscenario = "basic"\ncontrollers = "default"\n'
+        '"scenario.duration_s" = 1800\n[factors]\n'
+        '"controllers.psa" = ["nearest", "random"]\n'
+    )
+    out = tmp_path / "out"
+    rmfs = [sys.executable, "-m", "rmfs", "experiment", "run", str(design), "--out"]
+    run = subprocess.Popen([*rmfs, out, "--dask", address], stderr=subprocess.PIPE, text=True)
+    while not list((out / "runs").glob("[!.]*.parquet")):
+        assert run.poll() is None
+        time.sleep(0.02)
+    scheduler.kill()
+    _, words = run.communicate(timeout=120)
+    assert run.returncode == 2, words
+    assert "the scheduler is gone" in words.splitlines()[-1]
+    assert "Traceback" not in words
+    assert 0 < len(list((out / "runs").glob("[!.]*.parquet"))) < 8
+    for folder in (out, tmp_path / "local"):
+        subprocess.run([*rmfs, folder, "--jobs", "1"], check=True, capture_output=True)
     assert table(out) == table(tmp_path / "local")
 
 

@@ -22,7 +22,15 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-KINDS = {"none": 0, "fails": 1, "disk full": 2, "killed": 3}
+KINDS = {
+    "none": (0, errno.ENOSPC),
+    "fails": (1, errno.EIO),
+    "disk full": (2, errno.ENOSPC),
+    "killed": (3, errno.ENOSPC),
+    "read-only": (2, errno.EROFS),
+}
+"""What the shim is told of each kind of fault: what to do from its call on, with which error."""
+
 KILLED = -9
 
 
@@ -100,7 +108,7 @@ def served(page: Path, what: Callable[[list[str]], int]) -> None:
         asked = json.loads(line)
         # what never comes true counts only
         number = asked["number"] or 2**62
-        kind = KINDS[asked["kind"]] or 1
+        kind, error = KINDS[asked["kind"]]
         child = os.fork()
         if child == 0:
             code = 70
@@ -110,7 +118,7 @@ def served(page: Path, what: Callable[[list[str]], int]) -> None:
                 os.dup2(stream, 1)
                 sys.stdout = sys.stderr = os.fdopen(2, "w", buffering=1, closefd=False)
                 os.chdir(asked["folder"])
-                state[:] = struct.pack("4q", 0, number, kind, errno.ENOSPC)
+                state[:] = struct.pack("4q", 0, number, kind or 1, error)
                 code = what(asked["arguments"])
             except BaseException:
                 traceback.print_exc()

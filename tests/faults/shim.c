@@ -38,11 +38,13 @@ static int is_below(int folder, const char *path) {
     if (path && path[0] == '/') return strncmp(path, below, strlen(below)) == 0;
     if (folder == AT_FDCWD) {
         if (!getcwd(whole, PATH_MAX)) return 0;
+        strcat(whole, "/");
     } else {
         snprintf(link, sizeof link, "/proc/self/fd/%d", folder);
         ssize_t n = readlink(link, whole, PATH_MAX);
         if (n < 0) return 0;
         whole[n] = 0;
+        if (path) strcat(whole, "/");
     }
     return strncmp(whole, below, strlen(below)) == 0;
 }

@@ -114,6 +114,17 @@ def test_some_changes(bench, kind: str) -> None:
     assert set(outcomes) & {"nothing is there", "the older run is there"}
 
 
+@pytest.mark.parametrize("bench", ["an empty folder", "an older run"], indirect=True)
+def test_a_read_only_folder(bench) -> None:
+    """Is noticed by the first write, before the run: it may take hours."""
+    made, _ = bench
+    ended = made.call("read-only", 1)
+    assert ended.code == 2
+    assert "Read-only file system" in ended.words.splitlines()[-1]
+    assert ended.calls <= 3
+    assert contents(made.place / "out") == made.before
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("bench", ["an empty folder", "an older run"], indirect=True)
 @pytest.mark.parametrize("kind", ["fails", "disk full", "killed"])

@@ -94,6 +94,14 @@ def test_some_changes(bench: Bench, kind: str) -> None:
     assert {"0 kept", "5 kept"} <= set(disturbed(bench, kind, every=1500))
 
 
+def test_a_read_only_folder(bench: Bench) -> None:
+    ended = bench.call("read-only", 1)
+    assert ended.code == 2
+    assert "Read-only file system" in ended.words.splitlines()[-1]
+    assert ended.calls <= 3
+    assert not list(bench.place.iterdir())
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["fails", "disk full", "killed"])
 def test_many_changes(bench: Bench, kind: str) -> None:
