@@ -81,7 +81,7 @@ class Bench:
 
 @pytest.fixture
 def bench(injector, tmp_path: Path, request) -> tuple[Bench, pd.Series]:
-    one, place = injector("rmfs.cli:main")
+    one, place = injector("quick_run:main")
     older = None
     if request.param == "an older run":
         assert one.call([*RUN, *SHORT, *OLD], place).code == 0
