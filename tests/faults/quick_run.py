@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import os
 import tempfile
 from typing import Any
 
@@ -16,8 +15,7 @@ from rmfs.simulation.result import Run
 INPUTS = ("small", "small", "default")
 SHORT = {"scenario.duration_s": 20, "scenario.warmup_s": 0}
 SIMULATED = {
-    seed: rmfs.simulation.run.simulate(*INPUTS, seed=seed, set=SHORT, trace=True)
-    for seed in (0, 1)
+    seed: rmfs.simulation.run.simulate(*INPUTS, seed=seed, set=SHORT, trace=True) for seed in (0, 1)
 }
 TABLES = {seed: run._tables() for seed, run in SIMULATED.items()}
 FILL = rmfs.measure.folder.fill
@@ -43,11 +41,9 @@ def main(arguments: list[str]) -> int:
 
 def warm() -> None:
     """Write once: what commands import then, no call pays for."""
-    here = os.getcwd()
-    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
-        os.chdir(folder)
+    quiet = contextlib.redirect_stdout(io.StringIO())
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), quiet:
         main(["run", "--layout", "small", "--scenario", "small", "--trace", "--out", "out"])
-        os.chdir(here)
 
 
 warm()

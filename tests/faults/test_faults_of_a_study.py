@@ -7,26 +7,14 @@ from pathlib import Path
 
 import pytest
 from injection import KILLED, Ended, Injector
+from tiny_design import DESIGN
 
 from rmfs import experiments
 from rmfs.experiments.results import to_csv
 
-DESIGN = """
-format = "rmfs-design/1"
-name = "tiny"
-seeds = [1, 2, 3]
-keep = ["series"]
-[base]
-layout = "basic"
-scenario = "basic"
-controllers = "default"
-[factors]
-"controllers.psa" = ["nearest", "random"]
-"""
-
 
 class Bench:
-    """A folder in which an experiment of six runs is disturbed, and resumed."""
+    """A folder in which an experiment is disturbed, and resumed."""
 
     def __init__(self, injector: Injector, place: Path, design: Path) -> None:
         self.injector, self.place = injector, place
@@ -48,11 +36,15 @@ class Bench:
         return target.read_text()
 
     def judged(self, kind: str, number: int) -> str:
-        """Return how many runs were kept; raise if one is lost, half-written or different."""
+        """Return what came of it; raise if a run is lost, half-written or different."""
         ended = self.call(kind, number)
         assert "Traceback" not in ended.words, ended.words
         if kind == "killed":
             assert ended.code == KILLED
+        elif ended.code == 0:
+            # a folder could not be made that was there already
+            assert self.table() == self.whole
+            return "done"
         else:
             assert ended.code == 2, ended
             assert ended.words.splitlines()[-1].startswith("rmfs: ")
@@ -71,9 +63,15 @@ class Bench:
 
 
 @pytest.fixture
-def bench(injector, tmp_path: Path) -> Bench:
+def seeds() -> list[int]:
+    """Return the seeds of the experiment: six runs with both rules."""
+    return [1, 2, 3]
+
+
+@pytest.fixture
+def bench(injector, tmp_path: Path, seeds: list[int]) -> Bench:
     design = tmp_path / "design.toml"
-    design.write_text(DESIGN)
+    design.write_text(DESIGN.replace("[1, 2, 3]", str(seeds)))
     one, place = injector("quick_study:main")
     return Bench(one, place, design)
 
@@ -103,7 +101,9 @@ def test_a_read_only_folder(bench: Bench) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("seeds", [[1]])
 @pytest.mark.parametrize("kind", ["fails", "disk full", "killed"])
 def test_many_changes(bench: Bench, kind: str) -> None:
+    """All of the changes of two runs fail once; one in nine does in the other ways."""
     outcomes = disturbed(bench, kind, every=1 if kind == "fails" else 9)
-    assert len(outcomes) >= 6
+    assert {"0 kept", "1 kept", "2 kept"} <= set(outcomes)
