@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import pytest
 
@@ -59,7 +58,31 @@ def test_no_advisory_applies() -> None:
     assert supply.affected(supply.ADVISORIES) == []
 
 
-def test_an_advisory_that_applies_is_told(tmp_path: Path) -> None:
-    old = {("pypi", "jinja2", "3.1.5"), ("cargo", "pyo3", "0.23.0"), ("pypi", "pyo3", "0.1")}
+def test_an_advisory_that_applies_is_told() -> None:
+    old = {("pypi", "pyyaml", "5.3"), ("cargo", "pyo3", "0.28.9"), ("pypi", "pyo3", "0.1")}
     found = supply.affected(supply.ADVISORIES, old)
-    assert [one.split(":")[0] for one in found] == ["jinja2 3.1.5", "pyo3 0.23.0"]
+    assert [one.split(":")[0] for one in found] == ["pyo3 0.28.9"] * 2 + ["pyyaml 5.3"]
+
+
+def test_pypi_was_asked_of_every_locked_version() -> None:
+    """Otherwise: `python -m tests.tools.supply --ask`."""
+    asked = {("pypi", row["name"], row["version"]) for row in supply.answers()}
+    assert asked == {one for one in supply.locked() if one[0] == "pypi"}
+    untold = [row for row in supply.answers() if row["advisories"] == supply.UNTOLD]
+    known = [row for row in supply.answers() if row["advisories"] == "none"]
+    assert len(known) + len(untold) == len(asked) and len(known) > 80
+
+
+def test_what_pypi_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An advisory counts unless it was withdrawn; the answer of another version does not."""
+    locked = {("pypi", name, "1.0") for name in ("bad", "good", "other", "unknown")}
+    bad = [{"id": "A-2"}, {"id": "A-1"}, {"id": "A-3", "withdrawn": "2026-01-01"}]
+    told = {
+        "bad": {"info": {"version": "1.0"}, "vulnerabilities": bad},
+        "good": {"info": {"version": "1.0"}, "vulnerabilities": []},
+        "other": {"info": {"version": "2.0"}, "vulnerabilities": []},
+    }
+    monkeypatch.setattr(supply, "locked", lambda: locked)
+    monkeypatch.setattr(supply, "_told", told.get)
+    found = {row["name"]: row["advisories"] for row in supply.ask()}
+    assert found == {"bad": "A-1 A-2", "good": "none", "other": "not told", "unknown": "not told"}

@@ -1,18 +1,24 @@
 """What rmfs is made with: bill of materials, licences, advisories: `python -m tests.tools.supply`.
 
-Names and versions are those of the lock files, licences those that packages state. Advisories are a
-stored list, so that the look at them needs no network; `--advisories FILE` takes a newer one.
+Names and versions are those of the lock files, licences those that packages state. Advisories are
+stored, so that the look at them needs no network: a list of what has been mended in which version
+(`--advisories FILE` takes a newer one), and what PyPI has answered of each locked version
+(`--ask` asks it again).
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import datetime
 import json
 import re
 import subprocess
 import sys
+import textwrap
 import tomllib
+import urllib.error
+import urllib.request
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -28,6 +34,8 @@ from tests.tools.checkout import ROOT
 BILL = ROOT / "docs" / "sbom.cdx.json"
 PAGE = ROOT / "docs" / "dependencies.md"
 ADVISORIES = Path(__file__).with_name("advisories.csv")
+ASKED = Path(__file__).with_name("asked.csv")
+UNTOLD = "not told"
 
 COMPATIBLE = {
     *("0BSD", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "CC0-1.0", "ISC", "LLVM-exception"),
@@ -171,6 +179,38 @@ def affected(advisories: Path, parts: set[tuple[str, str, str]] | None = None) -
     return found
 
 
+def ask() -> list[dict[str, str]]:
+    """Ask PyPI which advisories it knows of each locked version."""
+    today = datetime.datetime.now(datetime.UTC).date().isoformat()
+    rows = []
+    for ecosystem, name, version in sorted(locked()):
+        if ecosystem != "pypi":
+            continue
+        known = _told(f"{name}/{version}") or _told(name)
+        if known is None or known["info"]["version"] != version:
+            found = UNTOLD
+        else:
+            mine = [one for one in known["vulnerabilities"] if not one.get("withdrawn")]
+            found = " ".join(sorted(one["id"] for one in mine)) or "none"
+        rows.append({"name": name, "version": version, "asked": today, "advisories": found})
+    return rows
+
+
+def _told(what: str) -> dict[str, Any] | None:
+    try:
+        with urllib.request.urlopen(f"https://pypi.org/pypi/{what}/json", timeout=30) as answer:
+            told: dict[str, Any] = json.load(answer)
+    except (urllib.error.URLError, ValueError):
+        return None
+    return told
+
+
+def answers() -> list[dict[str, str]]:
+    """Return what PyPI has answered, one row per package: name, version, asked, advisories."""
+    with ASKED.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
 def bill(parts: list[Part]) -> dict[str, Any]:
     """Return the bill of materials, in the form of CycloneDX 1.5."""
     return {
@@ -194,6 +234,26 @@ def bill(parts: list[Part]) -> dict[str, Any]:
     }
 
 
+def known_weaknesses() -> str:
+    """Return what the page says of advisories: what was asked for, of whom, and when."""
+    rows = answers()
+    clear = [row for row in rows if row["advisories"] == "none"]
+    untold = [f"{row['name']} {row['version']}" for row in rows if row["advisories"] == UNTOLD]
+    days = " and ".join(sorted({row["asked"] for row in rows}))
+    with ADVISORIES.open(newline="", encoding="utf-8") as file:
+        mended = list(csv.DictReader(file))
+    crates, packages = (
+        sum(row["ecosystem"] == kind for row in mended) for kind in ("cargo", "pypi")
+    )
+    paragraph = f"""Known weaknesses: none applies. PyPI was asked on {days} and knew of none in
+the locked versions of {len(clear)} of the {len(rows)} Python packages; it tells that of the newest
+version only, so not of {", ".join(untold)}. Beside that there is a list of what has been mended
+since which version: {crates} advisories on the crates, from a copy of the RustSec database of June
+2026, and {packages} of the PyPA database, the newest of some packages, from 2021 to 2023.
+`python -m tests.tools.supply --ask` asks PyPI again."""
+    return textwrap.fill(paragraph, 100, break_long_words=False, break_on_hyphens=False)
+
+
 def page(parts: list[Part]) -> str:
     """Return the page that lists all parts."""
     rows = "\n".join(
@@ -204,8 +264,10 @@ def page(parts: list[Part]) -> str:
 What rmfs is made with, in the versions of the lock files, and the licence that each package
 states. All of them may be used with a program of the MIT licence; a test holds that. The same list
 as a bill of materials (CycloneDX 1.5) is the file `docs/sbom.cdx.json`. `python -m
-tests.tools.supply` writes both, and looks for known weaknesses in a stored list of advisories,
-which needs no network.
+tests.tools.supply` writes both, and looks for known weaknesses in stored lists: that needs no
+network.
+
+{known_weaknesses()}
 
 | package | version | licence | what for |
 |---|---|---|---|
@@ -217,12 +279,22 @@ def main(arguments: list[str] | None = None) -> int:
     """Return the exit code: 1 if a licence does not fit, or an advisory applies."""
     parser = argparse.ArgumentParser(prog="python -m tests.tools.supply", description=__doc__)
     parser.add_argument("--advisories", type=Path, default=ADVISORIES, help="list to look at")
+    parser.add_argument("--ask", action="store_true", help="ask PyPI again, over the network")
     given = parser.parse_args(arguments)
+    if given.ask:
+        rows = ask()
+        text = "\n".join([",".join(rows[0]), *(",".join(row.values()) for row in rows)])
+        write_text(ASKED, text + "\n")
     parts = collected()
     write_text(BILL, json.dumps(bill(parts), indent=1) + "\n")
     write_text(PAGE, page(parts))
     problems = [f"{p.name}: licence {p.licence}" for p in parts if unfit(p.licence)]
     problems += affected(given.advisories)
+    problems += [
+        f"{row['name']} {row['version']}: {row['advisories']}"
+        for row in answers()
+        if row["advisories"] not in ("none", UNTOLD)
+    ]
     print(*problems, f"{len(parts)} packages, {len(problems)} problems", sep="\n")
     return bool(problems)
 
