@@ -14,7 +14,7 @@ import numpy as np
 from rmfs import config
 from rmfs.errors import InputError
 from rmfs.experiments.design import file as design_file
-from rmfs.experiments.design.arms import Arm, arms, factor_names
+from rmfs.experiments.design.arms import PARTS, Arm, arms, factor_names
 from rmfs.experiments.design.file import DesignFile
 from rmfs.experiments.design.resolve import Resolver
 from rmfs.experiments.running.job import Job
@@ -257,15 +257,32 @@ def load(folder: Path) -> Plan:
         measures = told.get("measures", [])
         columns_of(measures)
         design = config.validate(DesignFile, told["design"], str(path))
-        made = [
-            Arm(**(arm | {"overrides": [(list(keys), value) for keys, value in arm["overrides"]]}))
-            for arm in told["arms"]
-        ]
+        made = [_arm(arm) for arm in told["arms"]]
         return Plan(
             design, told["design"], made, told["files"], source=told["source"], measures=measures
         )
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{path}: corrupted ({error!r})") from None
+
+
+def _arm(told: dict[str, Any]) -> Arm:
+    """Return an arm as it was written.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        If it is none.
+    """
+    overrides = [(list(keys), value) for keys, value in told["overrides"]]
+    arm = Arm(**(told | {"overrides": overrides}))
+    words = [arm.name, arm.pacing, arm.digest, *(arm.inputs[part] for part in PARTS)]
+    words += [key for keys, _ in overrides for key in keys]
+    if wrong := [word for word in words if not isinstance(word, str)]:
+        raise TypeError(f"expected a text, not {wrong[0]!r}")
+    for level in told["levels"].values() if isinstance(told["levels"], dict) else [[]]:
+        if not isinstance(level, str | int | float | None):
+            raise TypeError(f"expected a level, not {level!r}")
+    return arm
 
 
 def _absolute_folder(given: str) -> str:

@@ -140,7 +140,6 @@ class DaskWorkers:
         # what goes wrong in a run is part of its outcome: this is the cluster's own trouble
         return job, Outcome(error=f"{type(error).__name__}: {error}".splitlines()[0], died=True)
 
-
     @contextmanager
     def _scheduler_there(self) -> Iterator[None]:
         """Say in a line that the scheduler is gone, whatever Dask says then."""

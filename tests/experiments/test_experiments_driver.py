@@ -352,3 +352,25 @@ def test_a_corrupted_plan_is_one_clear_line(design, store):
         (store.folder / "plan.json").write_text(json.dumps(less))
         with pytest.raises(InputError, match=r"plan\.json: corrupted"):
             experiments.load(store.folder)
+
+
+@pytest.mark.parametrize(
+    "spoilt",
+    [
+        {"inputs": {"layout": {"layout": "small"}, "scenario": "basic", "controllers": "default"}},
+        {"inputs": {"scenario": "basic", "controllers": "default"}},
+        {"inputs": "basic"},
+        {"name": 3},
+        {"digest": None},
+        {"overrides": [[[{}], 1]]},
+        {"levels": {"controllers.psa": ["nearest"]}},
+        {"levels": []},
+    ],
+)
+def test_an_arm_that_is_none_is_one_clear_line(design, store, spoilt):
+    drive(experiments.plan(design()), store, Inline())
+    told = json.loads((store.folder / "plan.json").read_text())
+    told["arms"][0] |= spoilt
+    (store.folder / "plan.json").write_text(json.dumps(told))
+    with pytest.raises(InputError, match=r"plan\.json: corrupted"):
+        experiments.load(store.folder)
