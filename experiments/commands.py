@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rmfs.errors import InputError
+from rmfs.experiments.calibration.command import calibrate
 from rmfs.experiments.console import open_console
 from rmfs.experiments.opening import RESULTS, made_below, opened, shipped
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from rmfs.experiments.tables import Table
 
 app = typer.Typer(help="Experiments: many arms, many seeds, one table.", no_args_is_help=True)
+app.command()(calibrate)
 
 FAILED = 1
 """Exit code where runs failed."""

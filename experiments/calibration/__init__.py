@@ -1,0 +1,6 @@
+"""Calibration: the load at which a measure has a given mean, with a stated confidence."""
+
+from rmfs.experiments.calibration.procedure import Calibration as Calibration
+from rmfs.experiments.calibration.procedure import Goal as Goal
+from rmfs.experiments.calibration.procedure import Step as Step
+from rmfs.experiments.calibration.procedure import calibrate as calibrate

@@ -1,0 +1,183 @@
+"""`rmfs experiment calibrate`."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rmfs.cli.options import ControllersOption, LayoutOption, ScenarioOption
+from rmfs.errors import InputError
+from rmfs.experiments.opening import RESULTS
+
+if TYPE_CHECKING:
+    from rmfs.experiments.calibration.procedure import Calibration, Step
+    from rmfs.experiments.tables import Table
+
+NOT_FOUND = 1
+"""Exit code where the runs did not suffice."""
+
+Range = tuple[float, float]
+
+
+def calibrate(
+    target: Annotated[float, typer.Option(help="The mean that is asked for.")],
+    between: Annotated[
+        Range, typer.Option(metavar="LOW HIGH", help="Range in which the level is sought.")
+    ],
+    layout: LayoutOption = "default",
+    scenario: ScenarioOption = "default",
+    controllers: ControllersOption = "default",
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Override a parameter, for example layout.robots=16; may be repeated.",
+        ),
+    ] = None,
+    pacing: Annotated[str, typer.Option(metavar="MODE", help="As in rmfs run.")] = "instant",
+    key: Annotated[
+        str, typer.Option(help="The parameter whose level is sought.")
+    ] = "scenario.demand.orders_per_h",
+    column: Annotated[
+        str, typer.Option("--column", "-c", help="Column of the footprint whose mean is asked for.")
+    ] = "on_time_share",
+    tolerance: Annotated[float, typer.Option(help="How far the mean may be off.")] = 0.02,
+    confidence: Annotated[
+        float, typer.Option(help="Probability with which it is not farther off.")
+    ] = 0.95,
+    search_seeds: Annotated[int, typer.Option(help="Seeds at each level of the search.")] = 4,
+    test_seeds: Annotated[
+        int, typer.Option(help="Seeds with which a test begins; fresh ones for each test.")
+    ] = 10,
+    first_seed: Annotated[int, typer.Option(help="The first of all seeds.")] = 0,
+    most_runs: Annotated[int, typer.Option(help="Runs after which it gives up.")] = 2000,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder of the runs. [default: results/calibrate-COLUMN]", show_default=False
+        ),
+    ] = None,
+    jobs: Annotated[
+        int | None,
+        typer.Option(
+            "--jobs",
+            "-j",
+            min=1,
+            help="Runs at a time. [default: one per core]",
+            show_default=False,
+        ),
+    ] = None,
+    file: Annotated[
+        Path | None,
+        typer.Option(
+            "--file", "-f", help="Write what was done to a .tex, .md, .csv or .html file."
+        ),
+    ] = None,
+) -> None:
+    """Find the arrival rate at which a share of orders is on time, with a stated confidence.
+
+    Any number of a file and any column of the footprint will do that rise or fall together. May be
+    interrupted and called again. Exit code 1 if the runs did not suffice.
+    """
+    from rmfs.config import parse_override
+    from rmfs.experiments.calibration.procedure import Goal
+    from rmfs.experiments.calibration.procedure import calibrate as found_by
+    from rmfs.experiments.calibration.runs import Runs
+    from rmfs.experiments.console import open_console
+
+    low, high = between
+    goal = Goal(
+        target,
+        tolerance,
+        low,
+        high,
+        confidence,
+        search_seeds=search_seeds,
+        test_seeds=test_seeds,
+        most_runs=most_runs,
+        first_seed=first_seed,
+    )
+    changes = {".".join(path): value for path, value in map(parse_override, set_ or [])}
+    if key in changes:
+        raise InputError(f"--set {key}: is what is sought")
+    inputs = {"layout": layout, "scenario": scenario, "controllers": controllers}
+    base: dict[str, Any] = {**inputs, "pacing": pacing, **changes}
+    folder = out if out is not None else RESULTS / f"calibrate-{column}"
+    respond = Runs(base, key, column, folder, jobs)
+    for level in between:
+        respond.plan(level, [first_seed])
+    found = found_by(goal, respond, _tell)
+    table = steps_table(found, key, column)
+    open_console().print(table.rich())
+    if file is not None:
+        table.write(file)
+    _write(found, base, key, column, folder / "calibration.json")
+    typer.echo(verdict(found, key, column))
+    if not found.found:
+        raise typer.Exit(NOT_FOUND)
+
+
+def verdict(found: Calibration, key: str, column: str) -> str:
+    """Say in words what was found."""
+    goal = found.goal
+    if not found.found:
+        return (
+            f"not found: {goal.most_runs} runs do not suffice for {column} = {goal.target:g} "
+            f"within {goal.tolerance:g}; raise --most-runs or --tolerance"
+        )
+    tested = found.steps[-1]
+    return (
+        f"{key} = {found.level:g}: {column} is {goal.target:g} within {goal.tolerance:g} with "
+        f"confidence {goal.confidence:.0%} ({found.mean:.4g} +- {found.half_width:.2g} in the "
+        f"test, {tested.seeds} seeds; {found.runs} runs in all)"
+    )
+
+
+def steps_table(found: Calibration, key: str, column: str) -> Table:
+    """Return what was done, a row per level looked at."""
+    import pandas as pd
+
+    from rmfs.experiments.tables import HALF, Table
+
+    rows = [
+        {
+            ("phase", ""): step.phase,
+            (key, ""): step.level,
+            ("seeds", ""): f"{step.first_seed} to {step.first_seed + step.seeds - 1}",
+            (column, "mean"): step.mean,
+            (column, HALF): step.half_width,
+            ("verdict", ""): step.verdict,
+        }
+        for step in found.steps
+    ]
+    frame = pd.DataFrame(rows, index=pd.RangeIndex(1, len(rows) + 1, name="step"))
+    frame.columns = pd.MultiIndex.from_tuples([*rows[0]])
+    goal = found.goal
+    caption = (
+        f"Sought: {column} = {goal.target:g} within {goal.tolerance:g}, confidence "
+        f"{goal.confidence:.0%}. The search compares means over the same few seeds; a test has "
+        "fresh seeds, and its interval counts all tests before it."
+    )
+    decimals = {(key, ""): 3, (column, "mean"): 4, (column, HALF): 4}
+    return Table(frame, decimals, caption)
+
+
+def _tell(step: Step) -> None:
+    half = f" +- {step.half_width:.2g}" if step.phase == "test" else ""
+    typer.echo(
+        f"rmfs: {step.phase} {step.level:g}: {step.mean:.4g}{half} ({step.seeds} seeds): "
+        f"{step.verdict}",
+        err=True,
+    )
+
+
+def _write(found: Calibration, base: dict[str, Any], key: str, column: str, path: Path) -> None:
+    from rmfs.files import write_text
+
+    told = {"key": key, "column": column, "base": base, **asdict(found)}
+    write_text(path, json.dumps(told, indent=1, default=str) + "\n")

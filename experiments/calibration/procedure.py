@@ -1,0 +1,380 @@
+r"""Where a noisy, monotone response has a given mean: a root, found and then tested.
+
+1. *Search*: retrospective approximation (H. Chen and B. W. Schmeiser 2001, Stochastic root finding
+   via retrospective approximation, IIE Transactions 33(3), 259-275). The mean over a few seeds, the
+   same at every level, is a function of the level, and its root is found as that of any function:
+   by the Illinois variant of regula falsi. That root is a guess.
+2. *Test*: fresh seeds at the guess, as many as a confidence interval of half the tolerance takes by
+   the two-stage rule of Stein (1945, A two-sample test for a linear hypothesis whose power is
+   independent of the variance, Annals of Mathematical Statistics 16(3), 243-258), which is exact if
+   runs are normally distributed. The guess stands if the whole interval lies within the tolerance.
+   Otherwise the next guess is where a monotone function through the means so far meets the target
+   (isotonic regression), and is tested with seeds of its own.
+
+The k-th test may err with probability :math:`\alpha / 2^k`, so that all of them together err with
+:math:`\alpha = 1 - confidence` at most: what is found has a mean off the target by more than the
+tolerance with no greater probability, however many guesses were tested.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import ceil, floor, inf, log10, nan, sqrt
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from scipy import stats
+from scipy.optimize import isotonic_regression
+
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    Respond = Callable[[float, Sequence[int]], NDArray[np.float64]]
+
+DIGITS = 4
+"""Significant digits of a level."""
+
+MOST_LOOKS = 12
+"""Levels at which the search looks at most, besides both ends."""
+
+DOUBLINGS = 3
+"""How often the seeds are doubled before the target is taken not to lie between the ends."""
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What is sought, and how sure it has to be.
+
+    Parameters
+    ----------
+    target
+        The mean that is asked for.
+    tolerance
+        How far the mean may be off.
+    low, high
+        Levels between which the one sought lies.
+    confidence
+        Probability with which the mean is within the tolerance. Default 0.95.
+    search_seeds
+        Seeds at each level while searching; more if the ends cannot be told apart. Default 4.
+    test_seeds
+        Seeds in the first stage of a test. Default 10.
+    most_runs
+        Runs after which the procedure gives up. Default 2000.
+    first_seed
+        The first of the seeds, which are counted up. Default 0.
+
+    Raises
+    ------
+    InputError
+        If a number is out of its range.
+    """
+
+    target: float
+    tolerance: float
+    low: float
+    high: float
+    confidence: float = 0.95
+    search_seeds: int = 4
+    test_seeds: int = 10
+    most_runs: int = 2000
+    first_seed: int = 0
+
+    def __post_init__(self) -> None:
+        _require(np.isfinite(self.target), "target", self.target, "a number")
+        _require(0 < self.tolerance < inf, "tolerance", self.tolerance, "above 0")
+        _require(-inf < self.low < self.high < inf, "low", self.low, f"below high = {self.high:g}")
+        _require(0.5 <= self.confidence <= 0.9999, "confidence", self.confidence, "0.5 to 0.9999")
+        _require(self.search_seeds >= 1, "search_seeds", self.search_seeds, "1 or more")
+        _require(self.test_seeds >= 3, "test_seeds", self.test_seeds, "3 or more")
+        least = 2 * self.search_seeds + self.test_seeds
+        _require(self.most_runs >= least, "most_runs", self.most_runs, f"{least} or more")
+        _require(self.first_seed >= 0, "first_seed", self.first_seed, "0 or more")
+
+
+@dataclass(frozen=True)
+class Step:
+    """A level that was looked at.
+
+    Attributes
+    ----------
+    phase
+        `end` of the range, `search`, or `test`.
+    first_seed, seeds
+        The seeds are so many from the first on.
+    mean, half_width
+        Of the response; the half width is that of the interval of a test, nan otherwise.
+    verdict
+        What followed, in words.
+    """
+
+    phase: Literal["end", "search", "test"]
+    level: float
+    first_seed: int
+    seeds: int
+    mean: float
+    half_width: float
+    verdict: str
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """What was found.
+
+    Attributes
+    ----------
+    goal
+        What was sought.
+    level
+        Where the mean is within the tolerance of the target, with the confidence asked for; nan if
+        the runs did not suffice.
+    mean, half_width
+        Of the test that it passed.
+    slope
+        By how much the mean changes per unit of the level there: an estimate.
+    steps
+        All that was looked at.
+    runs
+        How many runs it took.
+    """
+
+    goal: Goal
+    level: float
+    mean: float
+    half_width: float
+    slope: float
+    steps: Sequence[Step]
+    runs: int
+
+    @property
+    def found(self) -> bool:
+        """Whether there is a level that passed its test."""
+        return bool(np.isfinite(self.level))
+
+
+class _ExhaustedError(Exception):
+    """The runs do not suffice."""
+
+
+@dataclass
+class _Procedure:
+    goal: Goal
+    respond: Respond
+    watch: Callable[[Step], None]
+    steps: list[Step] = field(default_factory=list)
+    asked: set[tuple[float, int]] = field(default_factory=set)
+    search_seeds: int = 0
+    next_seed: int = 0
+
+    @property
+    def runs(self) -> int:
+        """How many runs it has taken so far."""
+        return len(self.asked)
+
+    def run(self) -> Calibration:
+        goal, error = self.goal, 1.0 - self.goal.confidence
+        slope = nan
+        try:
+            low, high = self._ends()
+            self._search(low, high)
+            self.next_seed = goal.first_seed + self.search_seeds
+            while True:
+                error /= 2
+                guess, slope = _root(self.steps, goal, rising=high > low)
+                mean, half = self._test(guess, error)
+                if abs(mean - goal.target) <= goal.tolerance - half:
+                    return Calibration(goal, guess, mean, half, slope, self.steps, self.runs)
+        except _ExhaustedError:
+            return Calibration(goal, nan, nan, nan, slope, self.steps, self.runs)
+
+    # --- search ---------------------------------------------------------------------------------
+
+    def _ends(self) -> tuple[float, float]:
+        """Return how far the means at both ends are off; more seeds tell if they are on one side.
+
+        Raises
+        ------
+        InputError
+            If the target does not lie between them with the most seeds either.
+        """
+        goal = self.goal
+        for doubled in range(DOUBLINGS + 1):
+            self.search_seeds = goal.search_seeds << doubled
+            low, high = (self._look(end, "end") for end in (goal.low, goal.high))
+            if (low > 0) != (high > 0):
+                return low, high
+        raise InputError(
+            f"between {goal.low:g} and {goal.high:g}: the mean goes from {low + goal.target:.4g} "
+            f"to {high + goal.target:.4g} ({self.search_seeds} seeds); the target must lie "
+            f"between, and not be {goal.target:g}"
+        )
+
+    def _search(self, low: float, high: float) -> None:
+        """Look for the root of the mean over the seeds of the search.
+
+        Parameters
+        ----------
+        low, high
+            How far the means at both ends are off, with different signs.
+        """
+        begin, end = self.goal.low, self.goal.high
+        at_begin, at_end = low, high
+        for _ in range(MOST_LOOKS):
+            width = end - begin
+            guess = (begin * at_end - end * at_begin) / (at_end - at_begin)
+            guess = _rounded(min(max(guess, begin + 0.05 * width), end - 0.05 * width))
+            if not begin < guess < end:
+                return
+            off = self._look(guess, "search")
+            if abs(off) <= self.goal.tolerance / 2:
+                return
+            # an end that stays counts half, so that it moves, too, before long
+            if (off > 0) == (low > 0):
+                begin, at_begin, at_end = guess, off, at_end / 2
+            else:
+                end, at_end, at_begin = guess, off, at_begin / 2
+
+    def _look(self, level: float, phase: Literal["end", "search"]) -> float:
+        """Return how far the mean over the seeds of the search is off the target."""
+        goal = self.goal
+        values = self._values(level, goal.first_seed, self.search_seeds)
+        mean = float(values.mean())
+        off = mean - goal.target
+        told = "above" if off > 0 else "below"
+        self._add(Step(phase, level, goal.first_seed, len(values), mean, nan, told))
+        return off
+
+    # --- test -----------------------------------------------------------------------------------
+
+    def _test(self, level: float, error: float) -> tuple[float, float]:
+        """Return the mean at a level and the half width of its interval, with seeds of its own.
+
+        Each of the two ends of the interval is missed with the probability given at most, and a
+        guess that stands can be wrong in one direction only.
+        """
+        goal = self.goal
+        first = self.next_seed
+        values = self._values(level, first, goal.test_seeds)
+        quantile = float(stats.t.ppf(1.0 - error, len(values) - 1))
+        spread = float(values.std(ddof=1))
+        wanted = max(len(values), ceil((2.0 * quantile * spread / goal.tolerance) ** 2))
+        more = wanted - len(values)
+        if more:
+            values = np.concatenate([values, self._values(level, first + len(values), more)])
+        self.next_seed += wanted
+        mean, half = float(values.mean()), quantile * spread / sqrt(wanted)
+        stands = abs(mean - goal.target) <= goal.tolerance - half
+        told = "stands" if stands else "above" if mean > goal.target else "below"
+        self._add(Step("test", level, first, wanted, mean, half, told))
+        return mean, half
+
+    def _values(self, level: float, first: int, count: int) -> NDArray[np.float64]:
+        seeds = range(first, first + count)
+        asked = self.asked | {(level, seed) for seed in seeds}
+        if len(asked) > self.goal.most_runs:
+            raise _ExhaustedError
+        self.asked = asked
+        values = self.respond(level, seeds)
+        if not np.isfinite(values).all():
+            raise InputError(f"at {level:g}: a run has no value")
+        return values
+
+    def _add(self, step: Step) -> None:
+        self.steps.append(step)
+        self.watch(step)
+
+
+def calibrate(goal: Goal, respond: Respond, watch: Callable[[Step], None] = print) -> Calibration:
+    """Find the level at which a response has a given mean.
+
+    Parameters
+    ----------
+    goal
+        What is sought.
+    respond
+        Called with a level and seeds; returns the response of each seed, shape (N,). Its mean rises
+        or falls with the level.
+    watch
+        Told of every step.
+
+    Raises
+    ------
+    InputError
+        If the target does not lie between the means at both ends, or a response is nan.
+    """
+    return _Procedure(goal, respond, watch).run()
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """A strictly monotone function of lines between levels, shape (N,): how far means are off."""
+
+    level: NDArray[np.float64]
+    off: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, steps: Sequence[Step], goal: Goal, *, rising: bool) -> _Curve:
+        """Go through the isotonic regression of the means, weighted by their seeds."""
+        level, which = np.unique([step.level for step in steps], return_inverse=True)
+        seeds = np.array([step.seeds for step in steps])
+        weight = np.bincount(which, seeds)
+        off = np.bincount(which, seeds * [step.mean - goal.target for step in steps]) / weight
+        found = isotonic_regression(off, weights=weight, increasing=rising)
+        first = found.blocks[:-1]
+        pooled = np.add.reduceat(level * weight, first) / np.add.reduceat(weight, first)
+        return cls(pooled, found.x[first])
+
+    def root(self) -> tuple[float, float] | None:
+        """Return where it is 0, and its slope there; None if it has one sign."""
+        after = int(np.argmax(np.sign(self.off) != np.sign(self.off[0])))
+        if after == 0:
+            return None
+        (begin, end), (low, high) = (
+            self.level[after - 1 : after + 1],
+            self.off[after - 1 : after + 1],
+        )
+        slope = float((high - low) / (end - begin))
+        return float(begin - low / slope), slope
+
+    def through(self, other: _Curve) -> _Curve:
+        """Return it shifted so that it meets another one where that is nearest to 0."""
+        nearest = int(np.abs(other.off).argmin())
+        now = np.interp(other.level[nearest], self.level, self.off)
+        return _Curve(self.level, self.off + other.off[nearest] - now)
+
+
+def _root(steps: Sequence[Step], goal: Goal, *, rising: bool) -> tuple[float, float]:
+    """Return the next guess, and the slope there.
+
+    Tests on both sides of the target tell it. Before there are such, the curve of the search does,
+    shifted to the best test: seeds that all levels share move it up or down as a whole.
+    """
+    looks = [step for step in steps if step.phase != "test"]
+    tests = [step for step in steps if step.phase == "test"]
+    curve = _Curve.of(looks, goal, rising=rising)
+    if tests:
+        tested = _Curve.of(tests, goal, rising=rising)
+        found = tested.root()
+        if found is not None:
+            return _rounded(found[0]), found[1]
+        curve = curve.through(tested)
+    found = curve.root()
+    if found is None:
+        return (goal.low if (curve.off[0] > 0) == rising else goal.high), nan
+    return _rounded(found[0]), found[1]
+
+
+def _rounded(level: float) -> float:
+    """Round to a few digits, so that a level can be told and typed."""
+    if level == 0:
+        return 0.0
+    return round(level, DIGITS - 1 - floor(log10(abs(level))))
+
+
+def _require(holds: bool, key: str, value: float, valid: str) -> None:
+    if not holds:
+        raise InputError(f"{key} = {value:g}: must be {valid}")
