@@ -11,6 +11,7 @@ import argparse
 import sys
 import time
 import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -43,7 +44,7 @@ GIVEN: dict[str, Any] = {
     "scenario.stock.initial_share": 0.8,
     "scenario.replenishment": {"mode": "needed", "reorder_below_units": 15},
 }
-GOAL = {"target": 0.8, "tolerance": 0.08, "low": 120.0, "high": 400.0}
+GOAL = Goal(target=0.8, tolerance=0.08, low=120.0, high=400.0)
 LAYOUT = layout.load("small", [(["robots"], 6)])
 SPACED = 10_000
 """Seeds from one calibration to the next."""
@@ -81,7 +82,7 @@ def main(arguments: list[str] | None = None) -> int:
     begun = time.process_time()
     found = []
     for repetition in range(1, given.repetitions + 1):
-        made = calibrate(Goal(**GOAL, first_seed=SPACED * repetition), on_time, quiet)
+        made = calibrate(replace(GOAL, first_seed=SPACED * repetition), on_time, quiet)
         found.append(made)
         print(f"{repetition}: {made.level:g} after {made.runs} runs", flush=True)
     levels = np.array([made.level for made in found])
@@ -89,13 +90,13 @@ def main(arguments: list[str] | None = None) -> int:
     rates = np.linspace(levels.min(), levels.max(), given.rates)
     values = [on_time(rate, range(given.seeds)) for rate in rates]
     truth = np.interp(levels, rates, [one.mean() for one in values])
-    off = np.abs(truth - GOAL["target"])
-    right = int((off <= GOAL["tolerance"]).sum())
+    off = np.abs(truth - GOAL.target)
+    right = int((off <= GOAL.tolerance).sum())
     errors = [one.std(ddof=1) / np.sqrt(len(one)) for one in values]
     for rate, one, error in zip(rates, values, errors, strict=True):
         print(f"truth at {rate:.1f}: {one.mean():.4f} +- {1.96 * error:.4f} ({len(one)} seeds)")
     print(
-        f"{right} of {len(found)} within {GOAL['tolerance']:g} of {GOAL['target']:g} "
+        f"{right} of {len(found)} within {GOAL.tolerance:g} of {GOAL.target:g} "
         f"(promised: 95 %); {off.mean():.3f} off in the mean, {off.max():.3f} at most; "
         f"{np.mean([made.runs for made in found]):.0f} runs each; {spent_s:.0f} s of processor "
         f"time for all, {time.process_time() - begun - spent_s:.0f} s for the truth"
