@@ -57,7 +57,7 @@ class _Rows:
     """Orders and lines as they are collected."""
 
     items: list[Item | None] = field(default_factory=list)
-    created_s: list[float] = field(default_factory=list)
+    orders: list[Order] = field(default_factory=list)
     station: list[int] = field(default_factory=list)
     until: list[int] = field(default_factory=list)
     lines: list[OrderLine] = field(default_factory=list)
@@ -65,20 +65,20 @@ class _Rows:
 
     def open(self, order: Order, station: int, until: int) -> None:
         """Add an order that a station has."""
-        self._add(order.lines, order.created_s, station, until)
+        self._add(order, order.lines, station, until)
         self.items.append(None)
 
     def waiting(self, item: Item) -> None:
         """Add what waits."""
-        self._add(item.lines, item.order.created_s, NONE, NONE)
+        self._add(item.order, item.lines, NONE, NONE)
         self.items.append(item)
 
-    def _add(self, lines: Sequence[OrderLine], created_s: float, station: int, until: int) -> None:
+    def _add(self, order: Order, lines: Sequence[OrderLine], station: int, until: int) -> None:
         for line in lines:
             if line.open_units:
                 self.lines.append(line)
                 self.order_of.append(len(self.station))
-        self.created_s.append(created_s)
+        self.orders.append(order)
         self.station.append(station)
         self.until.append(until)
 
@@ -130,7 +130,11 @@ def ask(
         _add_open(rows, station, number, coming[number])
     taken = plan.keys_of(others)
     splitting = plan.splitting(others)
-    for item in servable(view, given.split, splitting):
+    items = servable(view, given.split, splitting)
+    if given.late_s:
+        # of orders that visits serve alike the first takes them
+        items.sort(key=lambda item: item.order.due_s)
+    for item in items:
         if item.key not in taken and (item.order.index, -1) not in taken:
             rows.waiting(item)
     if not rows.lines:
@@ -176,7 +180,6 @@ def _planning(
     order_of = np.array(rows.order_of, np.int64)
     units = np.array([line.open_units for line in rows.lines], np.int64)
     wanted, sku = np.unique([line.sku for line in rows.lines], return_inverse=True)
-    waited_s = view.now_s - np.array(rows.created_s)
     is_open = station >= 0
     return Planning(
         slots=np.array([one.slots for one in stations], np.int64),
@@ -184,7 +187,7 @@ def _planning(
         coming_to=np.repeat(np.arange(len(coming)), [len(pods) for pods in coming]),
         order_station=station,
         order_until=np.array(rows.until, np.int64),
-        order_worth=given.order_s + given.age_reward * np.maximum(waited_s, 0.0) * ~is_open,
+        order_worth=_order_worth(view, given, rows.orders, is_open),
         line_order=order_of,
         line_sku=sku,
         line_units=units,
@@ -194,6 +197,23 @@ def _planning(
         visits=given.visits,
         decay=given.decay,
     )
+
+
+def _order_worth(
+    view: View,
+    given: PlanningParameters,
+    orders: Sequence[Order],
+    is_open: NDArray[np.bool_],
+) -> NDArray[np.float64]:
+    """Worth of closing orders, shape (O,), s: by the time they have waited, and by due times."""
+    waited_s = view.now_s - np.array([order.created_s for order in orders])
+    worth: NDArray[np.float64] = (
+        given.order_s + given.age_reward * np.maximum(waited_s, 0.0) * ~is_open
+    )
+    if given.late_s:
+        left_s = np.array([order.due_s for order in orders]) - view.now_s
+        worth = worth + given.late_s * np.exp(-np.maximum(left_s, 0.0) / given.late_within_s)
+    return worth
 
 
 def _cost(

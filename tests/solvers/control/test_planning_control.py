@@ -211,3 +211,26 @@ def test_what_does_not_hold_any_more_is_dropped_and_counted() -> None:
     situation.world.storage.claim(0, 0)
     assert pods([told_by(said, call)[0] for said in control.answered(call)]) == []
     assert call.stale == 1
+
+
+def test_what_is_due_goes_before_what_is_nearer_and_worth_more() -> None:
+    """One robot, two pods: tardiness in the objective sends it for the order that is due."""
+    for late_s, first in ((0.0, "large"), (500.0, "due")):
+        situation = Situation(small_layout(robots=1))
+        situation.stock(0, s1=5)
+        situation.stock(1, s2=5)
+        large, due = situation.order(3600.0, s1=3), situation.order(10.0, s2=1)
+        control = situation.make(PlanningControl, late_s=late_s)
+        found = said(situation, control)
+        assert orders(found) == [{"large": large, "due": due}[first]]
+        assert pods(found) == [{"large": 0, "due": 1}[first]]
+
+
+def test_of_orders_that_a_visit_serves_alike_the_first_due_takes_it() -> None:
+    """The pod has units for one of two equal orders: the later one, which is due before."""
+    for late_s, first in ((0.0, 0), (50.0, 1)):
+        situation = Situation()
+        situation.stock(0, s1=1)
+        waiting = [situation.order(900.0, s1=1), situation.order(100.0, s1=1)]
+        found = said(situation, situation.make(PlanningControl, late_s=late_s))
+        assert orders(found) == [waiting[first]]
