@@ -24,6 +24,7 @@ GROUP = "rmfs.controllers"
 _BUILT_IN: dict[Problem, dict[str, str]] = {
     Problem.POA: {
         "pod-match": "rmfs.control.poa.pod_match:PodMatch",
+        "wave": "rmfs.control.poa.wave:Wave",
         "lines-in-common": "rmfs.control.poa.lines_in_common:LinesInCommon",
         "foresight": "rmfs.control.poa.foresight:Foresight",
         "queue": "rmfs.control.poa.queue:Queue",

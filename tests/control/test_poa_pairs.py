@@ -9,6 +9,7 @@ from doubles import Situation
 
 from rmfs.control.poa.foresight import Foresight
 from rmfs.control.poa.lines_in_common import LinesInCommon
+from rmfs.control.poa.wave import Wave
 
 
 @pytest.fixture
@@ -131,3 +132,43 @@ class TestForesight:
         situation.order(due_s=20.0, s1=1)
         controller = situation.make(Foresight, score="due-time", tie_breaker="matches")
         assert decide(situation, controller) == [(2, 1), (1, 0)]
+
+
+class TestWave:
+    def coming(self, situation: Situation) -> Situation:
+        """Pod 0 is on its way to station 0 for an order that wants one unit of its ten."""
+        situation.assigned(station=0, s0=1)
+        situation.world.start_pick(situation.world.robots[0], 0, 0)
+        situation.world.now_s = 100.0
+        return situation
+
+    def test_wave_by_wave_and_within_it_by_pod_match(self, situation) -> None:
+        """Due at 900: orders 1 (SKU 1) and 2 (SKU 0, on the pod that comes); at 500: order 3."""
+        self.coming(situation)
+        for due_s, units in ((900.0, {"s1": 1}), (900.0, {"s0": 1}), (500.0, {"s2": 1})):
+            situation.order(due_s, **units)
+        made = decide(situation, situation.make(Wave, fast_lane=False))
+        assert [order for order, _ in made] == [3, 2, 1]
+
+    def test_orders_due_about_then_are_of_the_same_wave(self, situation) -> None:
+        """Order 2, due 60 s after order 1, has a pod that comes: it is of the wave or not."""
+        self.coming(situation)
+        for due_s, units in ((500.0, {"s1": 1}), (560.0, {"s0": 1})):
+            situation.order(due_s, **units)
+        for wave_s, first in ((59.0, 1), (60.0, 2)):
+            controller = situation.make(Wave, fast_lane=False, wave_s=wave_s)
+            assert next(iter(controller.decide())).order.index == first
+
+    def test_who_missed_the_truck_comes_first_or_last(self, situation) -> None:
+        """Order 1 is late, order 2 is not, order 3 later still."""
+        self.coming(situation)
+        for due_s in (50.0, 500.0, 900.0):
+            situation.order(due_s, s1=1)
+        assert next(iter(situation.make(Wave).decide())).order.index == 1
+        controller = situation.make(Wave, fast_lane=False, missed_last=True)
+        assert [order for order, _ in decide(situation, controller)] == [2, 3, 1]
+
+    def test_a_wave_that_stock_cannot_serve_does_not_hold_up_the_next(self, situation) -> None:
+        situation.order(300.0, s0=11)
+        situation.order(900.0, s1=1)
+        assert [order for order, _ in decide(situation, situation.make(Wave))] == [1]

@@ -21,6 +21,7 @@ NOT_BY_DEFAULT: list[tuple[str, dict[str, Any]]] = [
     ("poa", {"name": "due-time", "station": "most-busy", "stick_to_station": True}),
     ("poa", {"name": "foresight", "score": "surplus", "tie_breaker": "depletion"}),
     ("poa", {"name": "lines-in-common", "fast_lane": True, "tie_breaker": "random"}),
+    ("poa", {"name": "wave", "wave_s": 600.0, "missed_last": True}),
     ("poa", {"name": "queue", "queue_criteria": ["related", "random"], "fast_lane": False}),
     ("roa", {"name": "same-pod", "break_batches": True, "station": "random"}),
     ("roa", {"name": "same-pod", "station": "emptiest", "first_come_first_served": False}),
