@@ -21,14 +21,22 @@ impl Passages {
     }
 }
 
+/// What robots of one purpose did at a waypoint.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Stay {
+    purpose: u32,
+    visits: u32,
+    waiting: Us,
+}
+
 /// Counts since the last reset. What robots drive for is one of several *purposes*: the station
 /// they are bound for, storing a pod, or neither.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Heat {
     purposes: usize,
-    /// By waypoint and purpose.
-    pub visits: Vec<u32>,
-    pub waiting: Vec<Us>,
+    /// By waypoint, those purposes that were there, ascending: of hundreds of stations robots pass
+    /// a waypoint on their way to few.
+    stays: Vec<Vec<Stay>>,
     /// By waypoint.
     pub loaded_visits: Vec<u32>,
     pub loaded_waiting: Vec<Us>,
@@ -43,8 +51,7 @@ impl Heat {
         let purposes = network.stations.len() + 2;
         Self {
             purposes,
-            visits: vec![0; network.nodes * purposes],
-            waiting: vec![0; network.nodes * purposes],
+            stays: vec![Vec::new(); network.nodes],
             loaded_visits: vec![0; network.nodes],
             loaded_waiting: vec![0; network.nodes],
             edges: vec![Passages::default(); network.nodes * network.heading_count()],
@@ -54,23 +61,51 @@ impl Heat {
 
     /// Forgets everything.
     pub fn reset(&mut self) {
-        self.visits.fill(0);
-        self.waiting.fill(0);
+        self.stays.iter_mut().for_each(Vec::clear);
         self.loaded_visits.fill(0);
         self.loaded_waiting.fill(0);
         self.edges.fill(Passages::default());
         self.rides.clear();
     }
 
+    fn stay(&mut self, node: u32, purpose: usize) -> &mut Stay {
+        let (stays, purpose) = (&mut self.stays[node as usize], purpose as u32);
+        let at = stays.partition_point(|stay| stay.purpose < purpose);
+        if stays.get(at).is_none_or(|stay| stay.purpose != purpose) {
+            stays.insert(at, Stay { purpose, visits: 0, waiting: 0 });
+        }
+        &mut stays[at]
+    }
+
+    /// Visits by waypoint and purpose, row by row.
+    pub fn visits(&self) -> Vec<u32> {
+        self.table(|stay| stay.visits)
+    }
+
+    /// Time robots stood by waypoint and purpose, row by row.
+    pub fn waiting(&self) -> Vec<Us> {
+        self.table(|stay| stay.waiting)
+    }
+
+    fn table<T: Clone + Default>(&self, of: impl Fn(&Stay) -> T) -> Vec<T> {
+        let mut table = vec![T::default(); self.stays.len() * self.purposes];
+        for (row, stays) in table.chunks_mut(self.purposes).zip(&self.stays) {
+            for stay in stays {
+                row[stay.purpose as usize] = of(stay);
+            }
+        }
+        table
+    }
+
     /// A robot passed a waypoint or stopped there.
     pub fn visit(&mut self, node: u32, purpose: usize, loaded: bool) {
-        self.visits[node as usize * self.purposes + purpose] += 1;
+        self.stay(node, purpose).visits += 1;
         self.loaded_visits[node as usize] += u32::from(loaded);
     }
 
     /// A robot stood at a waypoint.
     pub fn wait(&mut self, node: u32, purpose: usize, loaded: bool, time: Us) {
-        self.waiting[node as usize * self.purposes + purpose] += time;
+        self.stay(node, purpose).waiting += time;
         if loaded {
             self.loaded_waiting[node as usize] += time;
         }
@@ -101,5 +136,32 @@ impl Heat {
         }
         used.sort_by_key(|&(from, to, _)| (from, to));
         used
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_have_what_was_counted_and_zeros() {
+        let mut heat = Heat {
+            purposes: 3,
+            stays: vec![Vec::new(); 2],
+            loaded_visits: vec![0; 2],
+            loaded_waiting: vec![0; 2],
+            edges: Vec::new(),
+            rides: BTreeMap::new(),
+        };
+        heat.visit(1, 2, true);
+        heat.visit(1, 0, false);
+        heat.visit(1, 2, false);
+        heat.wait(0, 1, true, 7);
+        heat.wait(1, 2, false, 5);
+        assert_eq!(heat.visits(), [0, 0, 0, 1, 0, 2]);
+        assert_eq!(heat.waiting(), [0, 7, 0, 0, 0, 5]);
+        assert_eq!((heat.loaded_visits.clone(), heat.loaded_waiting.clone()), (vec![0, 1], vec![7, 0]));
+        heat.reset();
+        assert_eq!((heat.visits(), heat.waiting()), (vec![0; 6], vec![0; 6]));
     }
 }
