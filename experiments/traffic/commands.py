@@ -144,6 +144,43 @@ def scale_command(
         typer.echo(path)
 
 
+@app.command("warehouses")
+def warehouses_command(
+    least: Annotated[int, typer.Option(min=125, help="The smallest fleet.")] = 250,
+    most: Annotated[int, typer.Option(min=125, help="The biggest fleet.")] = 2000,
+    rules: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Controllers; may be repeated. [default: default, random]", show_default=False
+        ),
+    ] = None,
+    later: Annotated[
+        float, typer.Option(min=1.0, help="When the second window of 600 s begins (s).")
+    ] = 1200.0,
+    seed: Seed = 1,
+    check: Check = False,
+    out: Annotated[Path, typer.Option(help="Folder of the table.")] = Path("results/scale"),
+) -> None:
+    """Measure how the work of whole warehouses grows from 250 to 2000 robots, density kept."""
+    from rmfs.experiments.traffic import warehouses
+
+    if not any(least <= site.robots <= most for site in warehouses.SITES):
+        valid = ", ".join(str(site.robots) for site in warehouses.SITES)
+        raise InputError(f"--least {least} --most {most}: no site between; there are {valid}")
+    chosen = rules or ["default", "random"]
+    frame = warehouses.table(chosen, (least, most), later, seed, check=check, tell=_tell)
+    typer.echo(duels.markdown(frame, warehouses.DECIMALS))
+    for name, times in warehouses.growth(frame).items():
+        typer.echo(f"{name}: CPU time per robot-hour grows {times:.1f}-fold")
+    settings = {"rules": chosen, "later_s": later, "seed": seed, "check": check}
+    for path in warehouses.save(frame, out, **settings):
+        typer.echo(path)
+    unsafe = int(frame["collisions"].fillna(0).sum())
+    if unsafe:
+        print(f"rmfs: {unsafe} collisions", file=sys.stderr)
+        raise typer.Exit(UNSAFE)
+
+
 def _given(
     layout: str,
     robots: int | None,

@@ -160,7 +160,10 @@ mod tests {
         heat.wait(1, 2, false, 5);
         assert_eq!(heat.visits(), [0, 0, 0, 1, 0, 2]);
         assert_eq!(heat.waiting(), [0, 7, 0, 0, 0, 5]);
-        assert_eq!((heat.loaded_visits.clone(), heat.loaded_waiting.clone()), (vec![0, 1], vec![7, 0]));
+        assert_eq!(
+            (heat.loaded_visits.clone(), heat.loaded_waiting.clone()),
+            (vec![0, 1], vec![7, 0])
+        );
         heat.reset();
         assert_eq!((heat.visits(), heat.waiting()), (vec![0; 6], vec![0; 6]));
     }

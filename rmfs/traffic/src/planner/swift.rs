@@ -17,6 +17,8 @@ type Effort = (Us, u64);
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Swift {
     pub first: Effort,
+    /// Labels the first search may look at besides, for each second of the way unhindered.
+    pub per_second: u64,
     /// Each search from a later departure.
     pub later: Effort,
     /// By how much the first of them is later; each further one by twice as much as the one before.
@@ -34,6 +36,7 @@ impl Swift {
     /// What has been found to pay for hundreds of robots (`docs/traffic.md`, Scale).
     pub const FOR_BIG_FLEETS: Self = Self {
         first: (5, 400),
+        per_second: 4,
         later: (6, 200),
         wait: 5_000_000,
         last: [(6, 2_000), (16, 10_000)],
@@ -56,6 +59,7 @@ impl Swift {
         let mut query = Query { guide: self.guide, ..query.clone() };
         let Some(unhindered) = pathfinder.aim(network, &query) else { return Outcome::NoWay };
         let (weight, labels) = self.first;
+        let labels = labels + self.per_second * (unhindered / 1_000_000) as u64;
         if urgency == Urgency::Try {
             query.detour = self.detour_to_try;
             let labels = self.labels_to_try.min(query.budget);
@@ -138,8 +142,8 @@ struct Wait {
     pause: Us,
 }
 
-/// How long a robot asks again and again.
-const PATIENCE: Us = 60_000_000;
+/// How long a robot asks again and again: longer than a rush takes to get under way.
+const PATIENCE: Us = 300_000_000;
 
 /// The first pause between two questions; each is twice as long as the one before.
 const PAUSE: Us = 1_000_000;
@@ -190,20 +194,20 @@ mod tests {
         const SECOND: Us = 1_000_000;
         let mut waiting = Waiting::default();
         let mut asked = Vec::new();
-        for second in 0..70 {
+        for second in 0..310 {
             match waiting.urgency(3, 8, second * SECOND) {
                 Some(Urgency::Soon) => {
                     asked.push(second);
                     waiting.wait(3, 8, second * SECOND);
                 }
-                Some(urgency) => assert_eq!((second >= 60, urgency), (true, Urgency::Whatever)),
-                None => assert!(second < 60),
+                Some(urgency) => assert_eq!((second >= 300, urgency), (true, Urgency::Whatever)),
+                None => assert!(second < 300),
             }
         }
-        assert_eq!(asked, [0, 1, 3, 7, 15, 31]);
+        assert_eq!(asked, [0, 1, 3, 7, 15, 31, 63, 127, 255]);
         // another goal is another matter, and so is another wait
-        assert_eq!(waiting.urgency(3, 9, 70 * SECOND), Some(Urgency::Soon));
+        assert_eq!(waiting.urgency(3, 9, 310 * SECOND), Some(Urgency::Soon));
         waiting.end(3);
-        assert_eq!(waiting.urgency(3, 8, 71 * SECOND), Some(Urgency::Soon));
+        assert_eq!(waiting.urgency(3, 8, 311 * SECOND), Some(Urgency::Soon));
     }
 }

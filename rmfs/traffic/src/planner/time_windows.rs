@@ -192,7 +192,7 @@ mod tests {
 
     #[test]
     fn where_the_first_search_ends_without_a_way_the_next_departs_later() {
-        let swift = Swift { first: (4, 1), ..Swift::FOR_BIG_FLEETS };
+        let swift = Swift { first: (4, 1), per_second: 0, ..Swift::FOR_BIG_FLEETS };
         // somebody is planned to be far from the way until 100 s
         let moves = plan(Some(swift), &[(3, 90, 100)]).expect("a way");
         assert_eq!((moves[0].start, end(&moves)), (5_000_000, 11_333_334));

@@ -1,0 +1,214 @@
+"""How the work of whole warehouses grows with the fleet: `rmfs traffic warehouses`.
+
+Layouts of the default kind with ten pods and 1/12 of a pick station for each robot, orders that
+always wait, and rules. Each run is in a process of its own, so that its memory is its own. The time
+that counts is processor time: on a core that is free it is wall time. What is measured is the rush
+of the start, and a later window in which all is under way.
+"""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import time
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from rmfs.experiments.provenance import FORMAT, SUFFIX, command
+from rmfs.experiments.running.code import code
+from rmfs.experiments.traffic.duel import save as save_table
+from rmfs.files import write_text
+from rmfs.layout import load
+from rmfs.measure.memory import peak_rss_mb
+from rmfs.measure.provenance import commit
+from rmfs.simulation.run import Simulation
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+
+SIDES = ("east", "west", "north", "south")
+
+
+@dataclass(frozen=True)
+class Site:
+    """A warehouse for so many robots.
+
+    Attributes
+    ----------
+    horizontal, vertical
+        Aisles.
+    picks, replenishments
+        Stations in the east, west, north and south.
+    """
+
+    robots: int
+    horizontal: int
+    vertical: int
+    picks: tuple[int, int, int, int]
+    replenishments: tuple[int, int, int, int]
+
+    def layout(self) -> Layout:
+        """Generate it: blocks of 2 x 2 places, so that aisles are as many as stations need."""
+        values: dict[str, Any] = {
+            "robots": self.robots,
+            "horizontal_aisles": self.horizontal,
+            "vertical_aisles": self.vertical,
+            "block_length": 2,
+            "pick_stations": dict(zip(SIDES, self.picks, strict=True)),
+            "replenishment_stations": dict(zip(SIDES, self.replenishments, strict=True)),
+        }
+        return load("default", [([key], value) for key, value in values.items()])
+
+
+SITES = [
+    Site(125, 24, 14, (6, 5, 0, 0), (0, 0, 1, 1)),
+    Site(250, 32, 22, (11, 10, 0, 0), (0, 0, 2, 2)),
+    Site(500, 48, 30, (21, 21, 0, 0), (0, 0, 4, 4)),
+    Site(1000, 60, 48, (30, 30, 12, 12), (0, 0, 8, 8)),
+    Site(2000, 158, 38, (79, 79, 5, 5), (0, 0, 14, 14)),
+]
+
+DECIMALS = {
+    **dict.fromkeys(("waypoints", "pods", "pick stations", "replenishment stations"), 0),
+    **dict.fromkeys(("faster with the start", "faster", "orders/h", "standing", "peak MB"), 0),
+    **dict.fromkeys(("CPU s, start", "CPU s", "CPU s per robot-hour", "decisions %"), 1),
+    **dict.fromkeys(("stations busy %", "delay s"), 1),
+    "collisions": 0,
+}
+
+WINDOW_S = 600.0
+"""Simulated seconds of the start, and of the window measured later."""
+
+
+def table(
+    rules: Sequence[str],
+    robots: tuple[int, int],
+    later_s: float,
+    seed: int = 1,
+    *,
+    check: bool = False,
+    tell: Callable[[str], None] = print,
+) -> pd.DataFrame:
+    """Measure all sites from the least to the most robots under all rules, a row each.
+
+    Parameters
+    ----------
+    rules
+        Controllers files, or names of shipped ones.
+    robots
+        The smallest and the biggest fleet.
+    later_s
+        When the second window begins.
+    check
+        Whether the motion is recorded and proven safe: times and memory are those of that then.
+    tell
+        Told of each row as soon as it is there.
+    """
+    rows = []
+    for site in SITES:
+        for rule in rules if robots[0] <= site.robots <= robots[1] else ():
+            with multiprocessing.get_context("spawn").Pool(1) as pool:
+                rows.append(pool.apply(measure, (asdict(site), rule, later_s, seed, check)))
+            tell(", ".join(f"{name} {value}" for name, value in rows[-1].items()))
+    return pd.DataFrame(rows).set_index("robots")
+
+
+def measure(
+    site: dict[str, Any], rules: str, later_s: float, seed: int, check: bool
+) -> dict[str, Any]:
+    """Measure one site under one set of rules; this process must have done nothing else."""
+    made = Site(**site)
+    layout = made.layout()
+    simulation = Simulation(
+        layout,
+        "default",
+        rules,
+        seed=seed,
+        set={"scenario.warmup_s": later_s, "scenario.duration_s": WINDOW_S},
+        trace=check,
+    )
+    begin_s = time.process_time()
+    simulation.run_until(min(WINDOW_S, later_s))
+    start_s = time.process_time() - begin_s
+    simulation.run_until(later_s)
+    decided_s = _deciding_s(simulation)
+    wall_s, begin_s = simulation.wall_s, time.process_time()
+    simulation.run()
+    cpu_s, wall_s = time.process_time() - begin_s, simulation.wall_s - wall_s
+    peak_mb = peak_rss_mb()
+    standing = standing_with_work(simulation)
+    run = simulation.result()
+    footprint = run.footprint
+    return {
+        "robots": made.robots,
+        "rules": rules,
+        "waypoints": layout.waypoints,
+        "pods": layout.pods,
+        "pick stations": sum(made.picks),
+        "replenishment stations": sum(made.replenishments),
+        "CPU s, start": start_s,
+        "faster with the start": min(WINDOW_S, later_s) / start_s,
+        "CPU s": cpu_s,
+        "faster": WINDOW_S / cpu_s,
+        "CPU s per robot-hour": cpu_s / (made.robots * WINDOW_S / 3600.0),
+        "decisions %": 100.0 * (_deciding_s(simulation) - decided_s) / wall_s,
+        "orders/h": float(footprint["orders_per_h"]),
+        "stations busy %": 100.0 * (1.0 - float(footprint["pick_station_idle_share"])),
+        "delay s": float(footprint["trip_delay_mean_s"]),
+        "standing": standing,
+        "peak MB": peak_mb,
+        "collisions": run.check().collisions if check else np.nan,
+    }
+
+
+def standing_with_work(simulation: Simulation) -> int:
+    """Return how many robots have a way to go and have not moved in the whole window."""
+    motion: dict[str, NDArray[Any]] = simulation.traffic.motion()
+    moved = motion["moving_s"] + motion["turning_s"] + motion["transfer_s"] + motion["served_s"]
+    return int(np.sum((moved == 0.0) & (motion["waiting_s"] >= WINDOW_S)))
+
+
+def _deciding_s(simulation: Simulation) -> float:
+    """Return the wall time of all decisions since the end of the warm-up, or since the start."""
+    return sum(sum(one.wall_ns) for one in simulation.deciding.statistics.values()) / 1e9
+
+
+def growth(frame: pd.DataFrame) -> dict[str, float]:
+    """Return how many times more work a robot-hour is in the biggest fleet than in the smallest."""
+    grown = {}
+    for rules, rows in frame.groupby("rules", sort=False):
+        work = rows["CPU s per robot-hour"]
+        grown[str(rules)] = float(work.iloc[-1] / work.iloc[0])
+    return grown
+
+
+def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
+    """Write the table to a folder, each file with one that says where it comes from.
+
+    Parameters
+    ----------
+    settings
+        What else decides about the figures.
+    """
+    paths = [out / f"scale-warehouses.{ending}" for ending in ("csv", "md")]
+    for path in paths:
+        save_table(frame, path, DECIMALS)
+        told = {
+            "format": FORMAT,
+            "file": path.name,
+            "sites": [asdict(site) for site in SITES if site.robots in frame.index],
+            "window_s": WINDOW_S,
+            **settings,
+            "written_by": {**code(), **commit()},
+            "command": command(),
+        }
+        write_text(path.with_name(path.name + SUFFIX), json.dumps(told, indent=1) + "\n")
+    return paths
