@@ -103,6 +103,12 @@ class Observer:
     def order_created(self, order: Order) -> None:
         """A pick order joined the backlog (`order.created_s`)."""
 
+    def order_cut(self, order: Order) -> None:
+        """Stock could not serve an order of the backlog: it lost units (`order.units_cut`)."""
+
+    def order_cancelled(self, order: Order) -> None:
+        """Stock could not serve an order, which was given up (`order.cancelled_s`)."""
+
     def order_assigned(self, order: Order) -> None:
         """POA put the order on a pick station (`order.station`, `order.assigned_s`)."""
 

@@ -115,6 +115,7 @@ class Recorder(Observer):
         self.orders = Log(
             **{"order": "i4", "station": "i2", "lines": "i4", "units": "i4", "in_file": "i4"},
             **{"created_s": "f8", "due_s": "f8", "assigned_s": "f8", "completed_s": "f8"},
+            **{"cancelled_s": "f8", "units_cut": "i4"},
         )
         self.open_orders: dict[int, Order] = {}
         self.bundles = Log(
@@ -214,6 +215,10 @@ class Recorder(Observer):
     def order_created(self, order: Order) -> None:
         """Follow the order."""
         self.open_orders[order.index] = order
+
+    def order_cancelled(self, order: Order) -> None:
+        """Write the order down and let it go."""
+        self.order_completed(order)
 
     def order_completed(self, order: Order) -> None:
         """Write the order down and let it go."""
@@ -327,12 +332,14 @@ def order_row(order: Order) -> tuple[Any, ...]:
         order.index,
         order.station,
         len(order.all_lines),
-        sum(line.units for line in order.all_lines),
+        sum(line.units for line in order.all_lines) + order.units_cut,
         order.in_file,
         order.created_s,
         order.due_s,
         order.assigned_s,
         order.completed_s,
+        order.cancelled_s,
+        order.units_cut,
     )
 
 

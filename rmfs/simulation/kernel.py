@@ -36,6 +36,7 @@ from rmfs.simulation.past import PastOrders
 from rmfs.simulation.phase import DecisionPhase
 from rmfs.simulation.pickers.setup import staffed
 from rmfs.simulation.service import services_of
+from rmfs.simulation.shortage import short_orders
 from rmfs.simulation.steps import Due
 from rmfs.simulation.triggers import Triggers
 from rmfs.simulation.visits import Visits
@@ -226,6 +227,13 @@ class Kernel:
         )
         self._spectators = tuple(observers)
         inside = [*masses, *packing, *people, late_binding, *visits.controllers]
+        inside += short_orders(
+            scenario.orders.shortage,
+            agenda=agenda,
+            world=world,
+            events=events,
+            changed=due.want_arrivals,
+        )
         events.tell([*inside, *observers, Triggers(due)])
         self._due = due
         self._end_us = us_at(self.end_s)

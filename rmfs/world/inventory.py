@@ -163,6 +163,11 @@ class Inventory:
         self._wanted[sku] += units
         self._ordered[sku] += units
 
+    def undemand(self, sku: int, units: int) -> None:
+        """Take back the demand of an order in the backlog, which wanted them all the same."""
+        self._uncommitted[sku] += units
+        self._wanted[sku] -= units
+
     def commit(self, sku: int, units: int) -> None:
         """Commit stock to an order that now is on a station, or to which a pod was bound.
 

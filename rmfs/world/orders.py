@@ -7,6 +7,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import nan
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 
 @dataclass(slots=True, eq=False)
@@ -62,6 +66,10 @@ class Order:
         Slots that the order and its parts have at present.
     in_file
         Its place among the orders of a file, or -1.
+    cancelled_s
+        When it was given up because stock could not serve it.
+    units_cut
+        Units ordered that are not delivered.
     """
 
     index: int
@@ -79,6 +87,8 @@ class Order:
     parts: list[Order] = field(default_factory=list)
     slots_taken: int = 0
     in_file: int = -1
+    cancelled_s: float = nan
+    units_cut: int = 0
 
     @property
     def all_lines(self) -> tuple[OrderLine, ...]:
@@ -95,6 +105,21 @@ class Order:
         for order, sign in ((giver, -1), (self, 1)):
             order.open_units += sign * sum(line.open_units for line in lines)
             order.unpicked_units += sign * sum(line.open_units for line in lines)
+
+    def cut(self, keep: Mapping[int, int]) -> None:
+        """Let units of lines go, none of which is bound to a pod; lines without units go, too.
+
+        Parameters
+        ----------
+        keep
+            Units left of each SKU.
+        """
+        for line in self.lines:
+            left = keep.get(line.sku, 0)
+            self.units_cut += line.units - left
+            line.units = line.open_units = left
+        self.lines = tuple(line for line in self.lines if line.units)
+        self.open_units = self.unpicked_units = sum(line.units for line in self.lines)
 
     @classmethod
     def of(

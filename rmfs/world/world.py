@@ -10,7 +10,7 @@ from rmfs.world.state import WorldState
 from rmfs.world.tasks import ParkTask, Pick, PickTask, ReplenishTask, RepositionTask, RestTask
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Mapping
 
     from rmfs.world.charging import ChargeTask
     from rmfs.world.orders import Bundle, OrderLine
@@ -40,6 +40,31 @@ class World(WorldState):
             self.inventory.demand(line.sku, line.units)
         self.orders.add(order)
         self.orders_created += 1
+
+    def cut_order(self, order: Order, keep: Mapping[int, int]) -> None:
+        """Let units of an order of the backlog go; without any left, the order is given up.
+
+        Parameters
+        ----------
+        keep
+            Units left of each SKU.
+
+        Raises
+        ------
+        ValueError
+            If it is not in the backlog, is in a pool, or has been split.
+        """
+        if order not in self.orders or order.queued_at >= 0 or order.parts:
+            raise ValueError(f"order {order.index} cannot lose units")
+        for line in order.lines:
+            self.inventory.undemand(line.sku, line.units - keep.get(line.sku, 0))
+        if any(keep.values()):
+            order.cut(keep)
+            self.orders.lines_changed(order)
+        else:
+            self.orders.remove(order)
+            order.cut(keep)
+            order.cancelled_s = self.now_s
 
     def add_bundle(self, bundle: Bundle) -> None:
         """Let a bundle join the backlog."""

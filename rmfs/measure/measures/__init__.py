@@ -16,6 +16,7 @@ from rmfs.measure.measures.pickers import Pickers
 from rmfs.measure.measures.planning import Planning, Safety
 from rmfs.measure.measures.replenishment import Inventory, Replenishment
 from rmfs.measure.measures.service import Service
+from rmfs.measure.measures.shortage import ShortOrders
 from rmfs.measure.measures.speed import Speed
 from rmfs.measure.measures.stations import Stations
 from rmfs.measure.measures.throughput import Potential, Throughput
@@ -45,6 +46,7 @@ SHIPPED: tuple[type[Measure], ...] = (
     Packing,
     Pickers,
     Service,
+    ShortOrders,
     Decisions,
     Optimisers,
     Speed,

@@ -105,7 +105,9 @@ class Backlog(Measure):
         """Follow the number of orders that wait, and that are open, over time."""
         orders, counters = run.logs.orders, run.recorder.counters
         measured = (run.start_s, run.end_s)
-        waiting = Steps.between(orders["created_s"], orders["assigned_s"])
+        waiting = Steps.between(
+            orders["created_s"], orders["assigned_s"].fillna(orders["cancelled_s"])
+        )
         open_ones = Steps.between(orders["assigned_s"], orders["completed_s"])
         return {
             "backlog_orders_mean": waiting.mean(*measured),

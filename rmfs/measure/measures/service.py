@@ -25,8 +25,9 @@ class Service(Measure):
             "on_time_share",
             REAL,
             "share",
-            "Orders done by their due time, of those that were done in the measured time or are "
-            "overdue at its end; done: packed, where the scenario has packing, else picked",
+            "Orders done by their due time, of those that were done or cancelled in the measured "
+            "time or are overdue at its end; done: packed, where the scenario has packing, else "
+            "picked",
             better=MORE,
         ),
         Column(
@@ -73,7 +74,7 @@ class Service(Measure):
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
         """Look at orders, and at parcels if there are any."""
-        orders = run.tables["orders"][["order", "created_s", "due_s", "completed_s"]]
+        orders = run.tables["orders"][["order", "created_s", "due_s", "completed_s", "cancelled_s"]]
         done_s = orders["completed_s"]
         if run.recorder.packing.given is not None:
             parcels = run.tables["parcels"]
@@ -86,12 +87,13 @@ class Service(Measure):
             done_s = orders["packed_s"]
         due_s, end_s = orders["due_s"], run.end_s
         done = done_s >= run.start_s
-        overdue = done_s.isna() & (due_s < end_s)
-        counted, in_time = done | overdue, done & (done_s <= due_s)
+        cancelled = orders["cancelled_s"] >= run.start_s
+        overdue = done_s.isna() & ~cancelled & (due_s < end_s)
+        counted, in_time = done | overdue | cancelled, done & (done_s <= due_s)
         urgent = due_s - orders["created_s"] <= self._urgent_s + 1e-6
         two = self._urgent_s == self._urgent_s
         lateness = (done_s - due_s)[done]
-        waiting = orders["created_s"][done_s.isna()]
+        waiting = orders["created_s"][done_s.isna() & ~cancelled]
         return {
             "on_time_share": _share(in_time, counted),
             "on_time_urgent_share": _share(in_time & urgent, counted & urgent) if two else nan,

@@ -21,12 +21,14 @@ ORDERS = (
     Column("order", INTEGER, "", "Ordinal of arrival, from the start of the run"),
     Column("name", TEXT, "", "Its name in the file of orders; empty if it was drawn"),
     Column("station", INTEGER, "", "Pick station, -1 while waiting for one"),
-    Column("lines", INTEGER, "lines", "Order lines"),
+    Column("lines", INTEGER, "lines", "Order lines, without those cut to nothing"),
     Column("units", INTEGER, "units", "Units ordered"),
     Column("created_s", REAL, "s", "Arrival"),
     Column("due_s", REAL, "s", "Due time"),
     Column("assigned_s", REAL, "s", "Assignment to the station; empty if not yet"),
     Column("completed_s", REAL, "s", "Completion; empty if not yet"),
+    Column("cancelled_s", REAL, "s", "When it was given up for lack of stock; empty otherwise"),
+    Column("units_cut", INTEGER, "units", "Units not delivered for lack of stock"),
     Column("turnover_s", REAL, "s", "completed_s - created_s"),
     Column("throughput_time_s", REAL, "s", "completed_s - assigned_s"),
     Column("lateness_s", REAL, "s", "completed_s - due_s; negative if early"),
@@ -41,7 +43,7 @@ ORDERS = (
 
 
 def orders(logs: Logs) -> pd.DataFrame:
-    """Every order that was waiting, open or completed during the measured time."""
+    """Every order that was waiting, open, completed or cancelled during the measured time."""
     frame = seen(logs)
     frame["name"] = _names(logs, frame.pop("in_file"))
     frame["turnover_s"] = frame["completed_s"] - frame["created_s"]
@@ -56,9 +58,10 @@ def orders(logs: Logs) -> pd.DataFrame:
 
 
 def seen(logs: Logs) -> pd.DataFrame:
-    """Orders that were waiting, open or completed during the measured time."""
+    """Orders that were waiting, open, completed or cancelled during the measured time."""
     frame = logs.orders
-    return frame[~(frame["completed_s"] < logs.start_s)].reset_index(drop=True)
+    gone = (frame["completed_s"] < logs.start_s) | (frame["cancelled_s"] < logs.start_s)
+    return frame[~gone].reset_index(drop=True)
 
 
 def _names(logs: Logs, in_file: pd.Series[int]) -> NDArray[Any]:

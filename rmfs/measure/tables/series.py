@@ -99,7 +99,9 @@ def series(logs: Logs) -> pd.DataFrame:
         "bundles_created": counts(bundles["created_s"], edges),
         "bundles_stored": counts(bundles["time_s"], edges),
         "distance_m": driven["distance_m"],
-        "backlog_orders": Steps.between(orders["created_s"], orders["assigned_s"]).at(ends),
+        "backlog_orders": Steps.between(
+            orders["created_s"], orders["assigned_s"].fillna(orders["cancelled_s"])
+        ).at(ends),
         "open_orders": Steps.between(orders["assigned_s"], orders["completed_s"]).at(ends),
         "backlog_bundles": Steps.between(bundles["created_s"], bundles["assigned_s"]).at(ends),
         "inventory_share": inventory_share(logs).at(ends),

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from rmfs.scenario.counts import NormalCount, NormalOrListed
 from rmfs.scenario.due import Due, PriorityDue
+from rmfs.scenario.parameters.shortage import Shortage
 from rmfs.scenario.quantities import Block
 
 
@@ -24,6 +25,9 @@ class Orders(Block):
         NormalCount(mean=1.0, sd=0.3, min=1, max=3), description="units of an order line"
     )
     due: Due = Field(PriorityDue(), description="when an order is due")
+    shortage: Shortage = Field(
+        Shortage(), description="what becomes of orders that stock cannot serve"
+    )
 
     @pydantic.field_validator("lines", "units_per_line", mode="before")
     @classmethod
@@ -41,6 +45,9 @@ class WordOrders(Block):
         description="units of a letter; equal letters of one colour are added up",
     )
     due: Due = Field(PriorityDue(), description="when an order is due")
+    shortage: Shortage = Field(
+        Shortage(), description="what becomes of orders that stock cannot serve"
+    )
 
 
 AnyOrders = Annotated[Orders | WordOrders, Field(discriminator="content")]

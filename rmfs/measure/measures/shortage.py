@@ -1,0 +1,73 @@
+"""Orders that stock could not serve."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import INTEGER, LESS, REAL, Column
+
+if TYPE_CHECKING:
+    from rmfs.measure.ended import EndedRun
+
+
+class ShortOrders(Measure):
+    """Orders cancelled and delivered in part, and those that are stuck at the end."""
+
+    columns = (
+        Column(
+            "orders_cancelled",
+            INTEGER,
+            "orders",
+            "Orders given up because stock could not serve them (orders.shortage)",
+            better=LESS,
+        ),
+        Column(
+            "orders_partial",
+            INTEGER,
+            "orders",
+            "Orders completed without some units for the same reason",
+            better=LESS,
+        ),
+        Column(
+            "units_not_delivered",
+            INTEGER,
+            "units",
+            "Units of cancelled orders, and those that completed orders lack",
+            better=LESS,
+        ),
+        Column(
+            "orders_stuck_end",
+            INTEGER,
+            "orders",
+            "Orders that wait for a station at the end and that stock cannot serve",
+            better=LESS,
+        ),
+        Column(
+            "oldest_stuck_end_s",
+            REAL,
+            "s",
+            "Time since the arrival of the oldest of these; empty without any",
+            better=LESS,
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Look at orders that left in the measured time, and at the backlog at its end."""
+        orders = run.tables["orders"]
+        cancelled, done = orders["cancelled_s"].notna(), orders["completed_s"].notna()
+        cut = orders["units_cut"]
+        backlog = run.world.orders
+        served = backlog.servable(run.world.inventory.free_stock).tolist()
+        waited = [
+            run.end_s - order.created_s
+            for order, can in zip(backlog.at_row, served, strict=True)
+            if not can
+        ]
+        return {
+            "orders_cancelled": int(cancelled.sum()),
+            "orders_partial": int((done & (cut > 0)).sum()),
+            "units_not_delivered": int(cut[cancelled | done].sum()),
+            "orders_stuck_end": len(waited),
+            "oldest_stuck_end_s": max(waited, default=float("nan")),
+        }

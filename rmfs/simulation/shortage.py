@@ -1,0 +1,88 @@
+"""Orders that stock cannot serve: looked at when they have waited, and cut or given up."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from rmfs.observer import Observer
+from rmfs.simulation.agenda import us_at
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rmfs.scenario.parameters.shortage import Shortage
+    from rmfs.simulation.agenda import Agenda
+    from rmfs.simulation.events import Events
+    from rmfs.world import World
+    from rmfs.world.orders import Order
+
+
+class ShortOrders(Observer):
+    """Looks at each order in the backlog when it has waited for so long, and again after as long.
+
+    What an order cannot have is what is not in stock, or what orders at stations wait for. An order
+    that is in the pool of a station, or has been split, is being served and stays as it is.
+
+    Parameters
+    ----------
+    given
+        Whose policy is not to wait.
+    changed
+        Called when an order has left the backlog.
+    """
+
+    def __init__(
+        self,
+        given: Shortage,
+        *,
+        agenda: Agenda,
+        world: World,
+        events: Events,
+        changed: Callable[[], None],
+    ) -> None:
+        self._given = given
+        self._agenda, self._world, self._events = agenda, world, events
+        self._changed = changed
+
+    def order_created(self, order: Order) -> None:
+        """Look at it later."""
+        self._later(order)
+
+    def _later(self, order: Order) -> None:
+        at_us = self._agenda.now_us + us_at(self._given.after_s)
+        self._agenda.at(at_us, partial(self._look, order))
+
+    def _look(self, order: Order) -> None:
+        world = self._world
+        if order not in world.orders or order.parts:
+            return
+        free = world.inventory.free_stock.item
+        short = order.queued_at < 0 and any(free(line.sku) < line.units for line in order.lines)
+        if not short:
+            self._later(order)
+            return
+        keep: dict[int, int] = {}
+        if self._given.policy == "partial":
+            keep = {line.sku: max(0, min(line.units, free(line.sku))) for line in order.lines}
+        world.cut_order(order, keep)
+        if order.lines:
+            self._events.order_cut(order)
+            self._later(order)
+        else:
+            self._events.order_cancelled(order)
+            self._changed()
+
+
+def short_orders(
+    given: Shortage,
+    *,
+    agenda: Agenda,
+    world: World,
+    events: Events,
+    changed: Callable[[], None],
+) -> list[Observer]:
+    """Return what looks at orders; nothing if they just wait."""
+    if given.policy == "wait":
+        return []
+    return [ShortOrders(given, agenda=agenda, world=world, events=events, changed=changed)]
