@@ -16,7 +16,7 @@ NOISE = 0.08
 QUICK = [
     *("--layout", "small", "--scenario", "small-arrivals", "--key", "scenario.demand.orders_per_h"),
     *("--column", "pick_station_idle_share", "--between", "20", "300", "--target", "0.6"),
-    *("--tolerance", "0.1", "--test-seeds", "3", "--search-seeds", "2", "--jobs", "1"),
+    *("--tolerance", "0.3", "--test-seeds", "3", "--search-seeds", "2", "--jobs", "1"),
     *("--set", "scenario.duration_s=300", "--set", "scenario.demand.initial_orders=2"),
 ]
 
@@ -143,7 +143,7 @@ class TestCommand:
         given = ["experiment", "calibrate", *QUICK, "--out", "found", "--file", "steps.md"]
         assert main(given) == 0
         first = capsys.readouterr().out
-        assert "pick_station_idle_share is 0.6 within 0.1 with confidence 95%" in first
+        assert "pick_station_idle_share is 0.6 within 0.3 with confidence 95%" in first
         told = json.loads((tmp_path / "found" / "calibration.json").read_text())
         assert told["key"] == "scenario.demand.orders_per_h"
         assert 20 < told["level"] < 300

@@ -44,6 +44,9 @@ def spread(name: str, values: pd.Series) -> dict[str, float]:
 
 
 NOT_IN_TABLES = {
+    **dict.fromkeys(
+        ("orders_stuck_end", "oldest_stuck_end_s"), "tests/simulation/test_short_orders.py"
+    ),
     "units_per_h_bound": "not of the run but of its warehouse: tests/solvers/test_run_bounds.py",
     "collisions": "found by the checker: tests/measure/test_checker_*.py",
     **dict.fromkeys(("plans", "plan_failures", "replans", "expansions"), "counted by traffic"),
@@ -231,6 +234,9 @@ def recomputed(run) -> dict[str, float]:
         "backlog_orders_end": orders["assigned_s"].isna().sum(),
         "backlog_bundles_mean": level(bundles["created_s"], bundles["assigned_s"]),
         "backlog_bundles_end": bundles["assigned_s"].isna().sum(),
+        "orders_cancelled": orders["cancelled_s"].notna().sum(),
+        "orders_partial": (orders["units_cut"] > 0).sum(),
+        "units_not_delivered": orders["units_cut"].sum(),
         "open_orders_mean": level(
             orders["assigned_s"].fillna(END), orders["completed_s"].fillna(END)
         ),
