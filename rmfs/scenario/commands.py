@@ -14,7 +14,6 @@ from rich.table import Table
 from rmfs import foreign, instances
 from rmfs.config import parse_override
 from rmfs.errors import InputError
-from rmfs.files import write_text
 from rmfs.scenario.intake import Site, bundle_intake, export_stream, order_intake
 from rmfs.scenario.loading import load, load_with_notes
 from rmfs.scenario.parameters import Scenario, SkuFile, StreamDemand, StreamReplenishment
@@ -153,20 +152,24 @@ def twin(
     weekly: Annotated[
         bool, typer.Option("--weekly", help="Fit rates of a week's hours, not of a day's.")
     ] = False,
+    listed: Annotated[
+        bool, typer.Option("--listed", help="Keep the popularity of each SKU, without its name.")
+    ] = False,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the twin's SKUs.")] = 0,
     force: Force = False,
 ) -> None:
     """Fit a generator to a file of orders: a scenario that can be published in its place."""
     from rmfs.scenario.twin import fit_twin
-    from rmfs.scenario.twin.telling import told, write_table
+    from rmfs.scenario.twin.telling import told, write_table, write_twin
 
-    for target in (out, table):
+    beside = out.with_name(f"{out.stem}-skus.json") if listed else None
+    for target in (out, table, beside):
         if target is not None:
             _vacant(target, force=force)
     if out.suffix.lower() != ".toml":
         raise InputError(f"{out}: must end in .toml")
-    found = fit_twin(orders, out.stem, weekly=weekly, seed=seed)
-    write_text(out, to_toml(found.scenario))
+    found = fit_twin(orders, out.stem, weekly=weekly, listed=listed, seed=seed)
+    write_twin(found, out)
     if table is not None:
         write_table(found, table)
     Console().print(told(found))

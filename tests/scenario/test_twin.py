@@ -10,7 +10,7 @@ from scipy import stats
 
 from rmfs.cli import main
 from rmfs.errors import InputError
-from rmfs.scenario import load
+from rmfs.scenario import load, sku_set
 from rmfs.scenario.counts import ListedCount
 from rmfs.scenario.distributions import Gamma
 from rmfs.scenario.intake import Site
@@ -201,6 +201,50 @@ def test_the_command(tmp_path, capsys, monkeypatch):
     assert "few.csv: the orders are too few" in told
     assert told.count("\n") == 1
     assert not (tmp_path / "few.toml").exists()
+
+
+def uneven(path):
+    """Orders of SKUs whose popularity falls as 1 / rank^1.3, which no gamma weights are like."""
+    rng = np.random.default_rng(6)
+    weights = np.arange(1, 2001) ** -1.3
+    skus = rng.choice(2000, 6000, p=weights / weights.sum())
+    times = np.sort(rng.random(6000) * 3 * 86400)
+    rows = [f"{t:.3f},{n},S{k},1" for n, (t, k) in enumerate(zip(times, skus, strict=True))]
+    path.write_text("\n".join(["time,order,sku,quantity", *rows]) + "\n")
+    return path
+
+
+def test_popularity_that_is_too_uneven_is_kept_as_it_is(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    uneven(tmp_path / "o.csv")
+    assert main(["scenario", "twin", "o.csv"]) == 2
+    assert "--listed keeps the popularity of each" in capsys.readouterr().err
+    assert main(["scenario", "twin", "o.csv", "--listed"]) == 0
+    text = (tmp_path / "twin-skus.json").read_text()
+    assert "S1" not in text  # no name of the file
+    scenario = load(tmp_path / "twin.toml")
+    skus = sku_set(scenario.skus)
+    made = exported(scenario.model_copy(update={"duration_s": 3 * 86400.0}), tmp_path / "t.csv")
+    data, twin = (
+        np.sort(np.unique(np.loadtxt(path, str, delimiter=",", skiprows=1)[:, 2],
+                          return_counts=True)[1])[::-1]
+        for path in (tmp_path / "o.csv", made)
+    )  # fmt: skip
+    assert len(skus) == len(data)
+    assert twin[:50].sum() / twin.sum() == pytest.approx(data[:50].sum() / data.sum(), abs=0.03)
+    (tmp_path / "twin.toml").unlink()
+    assert main(["scenario", "twin", "o.csv", "--listed"]) == 2
+    assert "twin-skus.json: exists already" in capsys.readouterr().err
+
+
+def test_a_fit_does_not_hang_on_where_it_begins():
+    """Counts with a mean of 1 and more, and of a few hundred."""
+    for mean in (0.7, 2.8, 400.0):
+        rng = np.random.default_rng(3)
+        counts = rng.poisson(mean * rng.gamma(0.3, 1 / 0.3, 3000))
+        found = fit_popularity(counts[counts > 0]).shape
+        assert found.low < 0.3 < found.high
+        assert found.high < 0.7
 
 
 def test_listed_counts():

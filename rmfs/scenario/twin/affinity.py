@@ -7,18 +7,27 @@ pairs of neighbouring lines come again as often as in the file.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf, isfinite, log
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import stats
 
+from rmfs.scenario import exact
 from rmfs.scenario.parameters import GeneratedAffinity, GeneratedSkus
 from rmfs.scenario.skus import draw_sku_set
 from rmfs.scenario.twin.estimates import LEVEL, Estimate
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
+
+    from rmfs.scenario.skus import SkuSet
+
+    Drawn = Callable[[float, int], SkuSet]
+    """Makes SKUs of a share of affinity and a seed."""
 
 LEAST_PAIRS = 200
 GROUPS = 20
@@ -66,7 +75,7 @@ def neighbours(
 
 
 def fit_affinity(
-    sku: NDArray[np.int64], first_line: NDArray[np.int64], skus: GeneratedSkus, seed: int
+    sku: NDArray[np.int64], first_line: NDArray[np.int64], skus: Drawn, seed: int
 ) -> Estimate | None:
     """Find the share of further lines that follow affinity; none if there are too few pairs.
 
@@ -75,7 +84,7 @@ def fit_affinity(
     sku, first_line
         Of an order stream.
     skus
-        The SKUs of the twin, without affinity.
+        Makes the SKUs of the twin, of a share of affinity and a seed.
     seed
         Of the simulations.
     """
@@ -96,19 +105,35 @@ def fit_affinity(
     return Estimate("affinity share", value, low, high)
 
 
-def _curve(
-    lines: NDArray[np.int64], skus: GeneratedSkus, seed: int
-) -> tuple[NDArray[np.float64], float]:
+def _curve(lines: NDArray[np.int64], skus: Drawn, seed: int) -> tuple[NDArray[np.float64], float]:
     """Return the log lift of each share, and how much sets of SKUs differ in it."""
     logs = np.empty((len(SHARES), DRAWS))
     for draw in range(DRAWS):
         for place, share in enumerate(SHARES):
             rng = np.random.default_rng((seed, draw))
-            told = simulated_lift(lines, with_affinity(skus, share), seed + draw, rng)
+            told = simulated_lift(lines, skus(share, seed + draw), rng)
             logs[place, draw] = log(told) if isfinite(told) else -inf
     known = np.where(np.isfinite(logs), logs, 0.0)
     spread = float(np.sqrt(known.var(axis=1, ddof=1).mean()))
     return np.maximum.accumulate(known.mean(axis=1)), spread
+
+
+def drawn_skus(skus: GeneratedSkus, weights: NDArray[np.float64] | None) -> Drawn:
+    """Return what makes SKUs of a share of affinity and a seed.
+
+    Parameters
+    ----------
+    weights
+        Popularity of each SKU; None: drawn.
+    """
+
+    def draw(share: float, seed: int) -> SkuSet:
+        made = draw_sku_set(with_affinity(skus, share), seed)
+        if weights is None:
+            return made
+        return replace(made, popularity=exact.significant(weights))
+
+    return draw
 
 
 def with_affinity(skus: GeneratedSkus, share: float) -> GeneratedSkus:
@@ -118,21 +143,19 @@ def with_affinity(skus: GeneratedSkus, share: float) -> GeneratedSkus:
     return skus.model_copy(update={"affinity": given})
 
 
-def simulated_lift(
-    lines: NDArray[np.int64], skus: GeneratedSkus, seed: int, rng: np.random.Generator
-) -> float:
+def simulated_lift(lines: NDArray[np.int64], skus: SkuSet, rng: np.random.Generator) -> float:
     """Return the lift of orders with so many lines, as the generator draws them.
 
     Parameters
     ----------
     lines
         Lines of each order, shape (n,).
-    seed
-        Of the SKUs.
+    skus
+        The SKUs, with affinity.
     rng
         Draws the orders.
     """
-    draw = _Lines(skus, seed, rng)
+    draw = _Lines(skus, rng)
     lines = lines[lines > 1]
     if not len(lines):
         return float("nan")
@@ -146,14 +169,13 @@ def simulated_lift(
         pairs.append(orders[there, line - 1 : line + 1])
     first, second = np.concatenate(pairs).T
     known = (first >= 0) & (second >= 0)
-    return lift(first[known], second[known], skus.count)
+    return lift(first[known], second[known], len(skus))
 
 
 class _Lines:
     """Draws lines of many orders at once."""
 
-    def __init__(self, skus: GeneratedSkus, seed: int, rng: np.random.Generator) -> None:
-        drawn = draw_sku_set(skus, seed)
+    def __init__(self, drawn: SkuSet, rng: np.random.Generator) -> None:
         assert drawn.affinity is not None
         order = np.argsort(drawn.affinity.first, kind="stable")
         self._rng, self._share = rng, drawn.affinity.share

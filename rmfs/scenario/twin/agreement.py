@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.scenario.intake.export import order_stream_of
-from rmfs.scenario.sources import sku_set
 from rmfs.scenario.twin.affinity import lift, neighbours
 from rmfs.scenario.twin.arrivals import HOUR_US, fit_arrivals
 from rmfs.scenario.twin.estimates import Agreement
 
 if TYPE_CHECKING:
     from rmfs.scenario.parameters import Scenario
+    from rmfs.scenario.skus import SkuSet
     from rmfs.scenario.streams import OrderStream
 
+MOST_WORK = 1e9
 MOST_ORDERS = 50_000
 """Of the twin, so that no table takes minutes."""
 
@@ -23,6 +24,7 @@ MOST_ORDERS = 50_000
 def agreements(
     stream: OrderStream,
     scenario: Scenario,
+    skus: SkuSet,
     days: int,
     cycle_h: int,
     seed: int,
@@ -34,6 +36,8 @@ def agreements(
 
     Parameters
     ----------
+    skus
+        Those of the scenario.
     days
         Over which the orders come.
     cycle_h
@@ -44,12 +48,15 @@ def agreements(
         Of the tests of the fits.
     """
     rate_per_day = len(stream) / days
-    most = max(int(MOST_ORDERS / rate_per_day), 1)
+    # a line that follows affinity costs time in proportion to the SKUs
+    lines = int(stream.first_line[-1]) / len(stream)
+    affordable = MOST_WORK / (len(skus) * lines) if skus.affinity is not None else MOST_ORDERS
+    most = max(int(min(MOST_ORDERS, affordable) / rate_per_day), 1)
     cycle_days = cycle_h // 24
     watched = max(min(days, most) // cycle_days, 1) * cycle_days
     # the last order comes before the end, not at it
     lasting = scenario.model_copy(update={"duration_s": watched * 86400.0 - 1e-3, "warmup_s": 0.0})
-    made = order_stream_of(lasting, sku_set(scenario.skus), seed)
+    made = order_stream_of(lasting, skus, seed)
     data, twin = _figures(stream, days, cycle_h), _figures(made, watched, cycle_h)
     tests = {
         "share of the orders for the most popular tenth": p_popularity,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,21 +15,24 @@ from rmfs.scenario.parameters import GeneratedSkus, Orders, PoissonDemand, Scena
 from rmfs.scenario.parameters.rates import OrderSteps
 from rmfs.scenario.sources import sku_set
 from rmfs.scenario.streams import read_orders
-from rmfs.scenario.twin.affinity import fit_affinity, with_affinity
+from rmfs.scenario.twin.affinity import drawn_skus, fit_affinity, with_affinity
 from rmfs.scenario.twin.agreement import agreements
 from rmfs.scenario.twin.arrivals import HOUR_US, fit_arrivals
 from rmfs.scenario.twin.estimates import Agreement, Estimate, shares
-from rmfs.scenario.twin.popularity import MOST_SKUS, fit_popularity
+from rmfs.scenario.twin.popularity import fit_popularity
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from rmfs.scenario.skus import SkuSet
     from rmfs.scenario.streams import OrderStream
 
 DAY_H = 24
 WEEK_H = 168
+MOST_UNSEEN = 20
+"""So many times the SKUs seen there may be: with more, gamma weights say nothing."""
 MOST_LISTED = 200
 """Lines of an order, or units of a line: larger ones count as this."""
 
@@ -47,15 +51,20 @@ class Twin:
         Figures of the orders of the file and of orders of the twin.
     orders
         Orders that were fitted.
+    skus
+        Those of the twin, if they cannot be drawn from the scenario: they belong into a file.
     """
 
     scenario: Scenario
     estimates: list[Estimate]
     agreements: list[Agreement]
     orders: int
+    skus: SkuSet | None = None
 
 
-def fit_twin(path: Path, name: str, *, weekly: bool = False, seed: int = 0) -> Twin:
+def fit_twin(
+    path: Path, name: str, *, weekly: bool = False, listed: bool = False, seed: int = 0
+) -> Twin:
     """Fit a generator to a file of orders.
 
     Parameters
@@ -66,6 +75,8 @@ def fit_twin(path: Path, name: str, *, weekly: bool = False, seed: int = 0) -> T
         Of the scenario.
     weekly
         Whether rates come again after a week, and not after a day.
+    listed
+        Whether the twin's SKUs are as popular as those of the file, each of them, and not gamma.
     seed
         Of the twin's SKUs, and of the simulations that find the share of affinity.
 
@@ -77,12 +88,12 @@ def fit_twin(path: Path, name: str, *, weekly: bool = False, seed: int = 0) -> T
     skus = sku_set(SkuFile(file=path))
     stream = read_orders(path, skus)
     try:
-        return _fitted(stream, name, weekly, seed)
+        return _fitted(stream, name, seed, weekly=weekly, listed=listed)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
 
-def _fitted(stream: OrderStream, name: str, weekly: bool, seed: int) -> Twin:
+def _fitted(stream: OrderStream, name: str, seed: int, *, weekly: bool, listed: bool) -> Twin:
     day_us = DAY_H * HOUR_US
     first = int(stream.time_us[0]) // day_us
     days = int(stream.time_us[-1]) // day_us - first + 1
@@ -90,20 +101,31 @@ def _fitted(stream: OrderStream, name: str, weekly: bool, seed: int) -> Twin:
     if days * DAY_H < cycle_h:
         raise InputError(f"rates of a week need orders of 7 days (given: {days})")
     arrivals = fit_arrivals(stream.time_us - first * day_us, days, cycle_h)
-    popularity = fit_popularity(
-        np.unique(stream.sku[stream.first_line[:-1]], return_counts=True)[1]
-    )
-    count = round(popularity.skus.value)
-    if count > MOST_SKUS:
-        raise InputError(f"a fit finds {count} SKUs, above {MOST_SKUS}: hardly any came twice")
+    often = np.unique(stream.sku[stream.first_line[:-1]], return_counts=True)[1]
+    popularity = None if listed else fit_popularity(often)
+    if popularity is not None and popularity.skus.value > MOST_UNSEEN * len(often):
+        raise InputError(
+            f"popularity is too uneven for gamma weights: a fit finds {popularity.skus.value:.0f} "
+            f"SKUs where {len(often)} were ordered; --listed keeps the popularity of each"
+        )
+    count = len(often) if popularity is None else round(popularity.skus.value)
     lines, units = _listed(np.diff(stream.first_line)), _listed(stream.units)
     if count < lines.max:
         raise InputError(f"an order has {lines.max} lines, but a fit finds {count} SKUs")
-    shape = round(popularity.shape.value, 9)
-    skus = GeneratedSkus(count=count, seed=seed, popularity=Gamma(shape=shape, scale=1 / shape))
-    share = fit_affinity(stream.sku, stream.first_line, skus, seed)
+    skus = GeneratedSkus(count=count, seed=seed)
+    weights = None
+    if popularity is None:
+        weights = np.sort(often)[::-1].astype(np.float64)
+    else:
+        shape = round(popularity.shape.value, 9)
+        gamma = Gamma(shape=shape, scale=1 / shape)
+        skus = GeneratedSkus(count=count, seed=seed, popularity=gamma)
+    draw = drawn_skus(skus, weights)
+    share = fit_affinity(stream.sku, stream.first_line, draw, seed)
     if share is not None and share.low > 0:  # or it cannot be told from none
-        skus = with_affinity(skus, share.value)
+        skus, made = with_affinity(skus, share.value), draw(share.value, seed)
+    else:
+        made = replace(draw(0.0, seed), affinity=None)
     scenario = Scenario(
         format="rmfs-scenario/1",
         name=name,
@@ -122,8 +144,7 @@ def _fitted(stream: OrderStream, name: str, weekly: bool, seed: int) -> Twin:
         ),
     )
     estimates = [
-        popularity.skus,
-        popularity.shape,
+        *([] if popularity is None else [popularity.skus, popularity.shape]),
         *([] if share is None else [share]),
         arrivals.mean,
         *arrivals.hours,
@@ -133,13 +154,14 @@ def _fitted(stream: OrderStream, name: str, weekly: bool, seed: int) -> Twin:
     compared = agreements(
         stream,
         scenario,
+        made,
         days,
         cycle_h,
         seed,
-        p_popularity=popularity.p,
+        p_popularity=nan if popularity is None else popularity.p,
         p_arrivals=arrivals.p,
     )
-    return Twin(scenario, estimates, compared, len(stream))
+    return Twin(scenario, estimates, compared, len(stream), made if listed else None)
 
 
 def _listed(values: NDArray[np.int64]) -> ListedCount:

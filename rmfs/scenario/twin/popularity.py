@@ -20,8 +20,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 LEAST_SKUS = 10
-MOST_SKUS = 1_000_000
 LEAST_IN_BIN = 5.0
+FACTORS = (0.03, 0.1, 0.3, 1.0)
+"""Of the mean of the counts above 0: where the mean of all is looked for at first."""
 
 
 class Popularity(NamedTuple):
@@ -67,9 +68,20 @@ def fit_popularity(counts: NDArray[np.int64]) -> Popularity:
 
     # not below a thousandth: then there would be SKUs without end
     limits = [(np.log(1e-3), np.log(1e4)), (np.log(1e-6), np.log(1e9))]
-    begin = np.log([1.0, counts.mean()])
+    grid = [(s, m) for s in (0.01, 0.05, 0.2, 1.0, 5.0) for m in counts.mean() * np.array(FACTORS)]
+    begin = min((np.log(pair) for pair in grid), key=loss)
     found = optimize.minimize(
-        loss, begin, method="Nelder-Mead", bounds=limits, options={"xatol": 1e-7, "fatol": 1e-9}
+        loss,
+        begin,
+        method="Nelder-Mead",
+        bounds=limits,
+        # steps of their own: by default they are shares of the logarithms, which may be 0
+        options={
+            "xatol": 1e-7,
+            "fatol": 1e-9,
+            "maxiter": 2000,
+            "initial_simplex": begin + np.array([[0.0, 0.0], [0.5, 0.0], [0.0, 0.5]]),
+        },
     )
     covariance = np.linalg.pinv(_curvature(loss, found.x)).astype(np.float64)
     shape, mean = map(float, np.exp(found.x))

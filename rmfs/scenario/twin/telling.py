@@ -5,19 +5,38 @@ from __future__ import annotations
 import csv
 import io
 from math import isfinite
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.table import Table
 
 from rmfs.errors import InputError
 from rmfs.files import write_text
+from rmfs.scenario.parameters import SkuFile
+from rmfs.scenario.skus import write_sku_set
+from rmfs.scenario.toml import to_toml
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from rmfs.scenario.twin.fitting import Twin
 
 COLUMNS = ("kind", "name", "value", "low", "high", "twin", "p")
+
+
+def write_twin(twin: Twin, path: Path) -> None:
+    """Write the scenario, and NAME-skus.json beside it if its SKUs cannot be drawn.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be written.
+    """
+    scenario = twin.scenario
+    if twin.skus is not None:
+        beside = path.with_name(f"{path.stem}-skus.json")
+        write_sku_set(twin.skus, beside, scenario.description)
+        own = SkuFile(file=beside).model_copy(update={"file": Path(beside.name)})
+        scenario = scenario.model_copy(update={"skus": own})
+    write_text(path, to_toml(scenario))
 
 
 def write_table(twin: Twin, path: Path) -> None:
