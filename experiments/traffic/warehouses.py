@@ -79,8 +79,9 @@ SITES = [
 DECIMALS = {
     **dict.fromkeys(("waypoints", "pods", "pick stations", "replenishment stations"), 0),
     **dict.fromkeys(("faster with the start", "faster", "orders/h", "standing", "peak MB"), 0),
-    **dict.fromkeys(("CPU s, start", "CPU s", "CPU s per robot-hour", "decisions %"), 1),
+    **dict.fromkeys(("CPU s, start", "CPU s", "decisions %"), 1),
     **dict.fromkeys(("stations busy %", "delay s"), 1),
+    "CPU s per robot-hour": 4,
     "collisions": 0,
 }
 

@@ -82,9 +82,9 @@ impl Heat {
         self.table(|stay| stay.visits)
     }
 
-    /// Time robots stood by waypoint and purpose, row by row.
-    pub fn waiting(&self) -> Vec<Us> {
-        self.table(|stay| stay.waiting)
+    /// Time robots stood by waypoint and purpose, row by row, in a unit of your own.
+    pub fn waiting<T: Clone + Default>(&self, unit: impl Fn(Us) -> T) -> Vec<T> {
+        self.table(|stay| unit(stay.waiting))
     }
 
     fn table<T: Clone + Default>(&self, of: impl Fn(&Stay) -> T) -> Vec<T> {
@@ -159,12 +159,12 @@ mod tests {
         heat.wait(0, 1, true, 7);
         heat.wait(1, 2, false, 5);
         assert_eq!(heat.visits(), [0, 0, 0, 1, 0, 2]);
-        assert_eq!(heat.waiting(), [0, 7, 0, 0, 0, 5]);
+        assert_eq!(heat.waiting(|time| 2 * time), [0, 14, 0, 0, 0, 10]);
         assert_eq!(
             (heat.loaded_visits.clone(), heat.loaded_waiting.clone()),
             (vec![0, 1], vec![7, 0])
         );
         heat.reset();
-        assert_eq!((heat.visits(), heat.waiting()), (vec![0; 6], vec![0; 6]));
+        assert_eq!((heat.visits(), heat.waiting(|time| time)), (vec![0; 6], vec![0; 6]));
     }
 }

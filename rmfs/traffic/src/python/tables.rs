@@ -81,7 +81,7 @@ pub(super) fn heat<'py>(py: Python<'py>, heat: &Heat) -> Table<'py> {
     let in_seconds = |times: &[Us]| times.iter().map(|&t| seconds(t)).collect::<Vec<f64>>();
     dict.set_item("visits", heat.visits().into_pyarray(py))?;
     dict.set_item("loaded_visits", heat.loaded_visits.clone().into_pyarray(py))?;
-    dict.set_item("waiting_s", in_seconds(&heat.waiting()).into_pyarray(py))?;
+    dict.set_item("waiting_s", heat.waiting(seconds).into_pyarray(py))?;
     dict.set_item("loaded_waiting_s", in_seconds(&heat.loaded_waiting).into_pyarray(py))?;
     Ok(dict)
 }
