@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import io
 import tempfile
 from typing import Any
+
+import typer.main
 
 import rmfs.measure.folder
 import rmfs.simulation.run
@@ -31,6 +34,10 @@ def filled(folder: Any, run: Run, **options: Any) -> Any:
     """Write a run with the tables that it has."""
     (tables,) = (TABLES[seed] for seed, one in SIMULATED.items() if one is run)
     return FILL(folder, run, **options, tables=tables)
+
+
+# the commands of the command line are made once, not in each call
+typer.main.get_command = functools.cache(typer.main.get_command)
 
 
 def main(arguments: list[str]) -> int:

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import io
 import os
 import tempfile
 from pathlib import Path
 
+import typer.main
 from stand_in import Inline
 from tiny_design import DESIGN
 
 from rmfs.cli import main as command_line
 from rmfs.experiments.running import local
+
+# the commands of the command line are made once, not in each call
+typer.main.get_command = functools.cache(typer.main.get_command)
 
 
 def main(arguments: list[str]) -> int:
