@@ -52,6 +52,8 @@ COLUMNS = [*ORIGIN, *names("footprint"), *PROVENANCE]
 
 _ATTEMPTS = 5
 
+_NEVER_EMPTY = ("run", "arm_digest", "replication", "seed")
+
 
 class Store:
     """Reads and writes the folder of an experiment's results.
@@ -164,7 +166,7 @@ class Store:
         wanted = None if columns is None else list(dict.fromkeys(["run", *columns]))
         for _ in range(_ATTEMPTS):
             try:
-                tables = [_read(path, wanted) for path in sorted(self._files())]
+                tables = [_rows(path, wanted) for path in sorted(self._files())]
                 break
             except FileNotFoundError:
                 continue  # merged in between
@@ -237,6 +239,15 @@ def _read(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
         raise _corrupted(path, str(error)) from None
     if "run" not in table.column_names:
         raise _corrupted(path, "no column run")
+    return table
+
+
+def _rows(path: Path, columns: Sequence[str] | None) -> pa.Table:
+    """Read rows of runs, which say whose they are; raises what `_read` does."""
+    table = _read(path, columns)
+    for name in _NEVER_EMPTY if columns is None else set(columns) & set(_NEVER_EMPTY):
+        if name not in table.column_names or table[name].to_pandas().isna().any():
+            raise _corrupted(path, f"{name} is empty in a row")
     return table
 
 

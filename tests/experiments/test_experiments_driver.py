@@ -329,6 +329,21 @@ def test_a_corrupted_file_of_results_is_one_clear_line(design, store, capsys, br
     assert "11 of 12 runs finished" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("column", ["run", "arm_digest", "replication", "seed"])
+def test_a_row_that_does_not_say_whose_it_is_is_one_clear_line(design, store, column):
+    drive(experiments.plan(design()), store, Inline())
+    (file, *_) = sorted((store.folder / "runs").glob("*.parquet"))
+    frame = pd.read_parquet(file)
+    for nothing in (None, float("nan")):
+        frame.assign(**{column: [nothing] * len(frame)}).to_parquet(file)
+        with pytest.raises(InputError, match=f"{file}: corrupted .{column} is empty"):
+            experiments.load(store.folder)
+    if column != "run":
+        frame.drop(columns=column).to_parquet(file)
+        with pytest.raises(InputError, match=f"{file}: corrupted .{column} is empty"):
+            experiments.load(store.folder)
+
+
 @pytest.mark.parametrize("broken", ["", "{", "[]", '{"arm": "a"}'])
 def test_a_corrupted_failure_is_one_clear_line(design, store, capsys, broken):
     path = design()
