@@ -1,4 +1,4 @@
-"""What goes wrong while a warehouse runs, and when: breakdowns, slow robots, closed ways."""
+"""What goes wrong while a warehouse runs, and when: breakdowns, slow robots, late motions."""
 
 from __future__ import annotations
 
@@ -35,6 +35,7 @@ TRIES = 20
 FOR_EVER_US = 2**62
 
 _BREAKDOWNS, _SLOW, _CLOSURES, _CHARGERS = range(4)
+_LATE_MOTIONS = 4
 
 
 class Disturbance(NamedTuple):
@@ -98,7 +99,7 @@ class DisturbanceSource:
             raise InputError(
                 "scenario.disturbances.chargers: the layout has no station of the kind charger"
             )
-        self._draw = [generator(seed, Stream.DISTURBANCES, kind) for kind in range(4)]
+        self._draw = [generator(seed, Stream.DISTURBANCES, kind) for kind in range(5)]
         self._slow_since: dict[int, int] = {}
         self.begun: list[Disturbance] = []
         self._next: dict[int, int] = {}
@@ -125,6 +126,12 @@ class DisturbanceSource:
         for kind, given in enumerate(self._given_by_kind()):
             if given is not None:
                 self._repeat(kind)
+        late = self._given.late_motions
+        if late is not None:
+            least_us, most_us = round(late.least_s * 1e6), round(late.most_s * 1e6)
+            self._fleet.set_lateness(
+                late.probability, least_us, most_us, repair=late.repair, seed=self._lateness_seed()
+            )
         for elevator, begin_s, end_s in self._given.elevators_out:
             lasting_us = round(end_s * 1e6) - round(begin_s * 1e6)
             stop = partial(self._elevator_out, elevator, lasting_us)
@@ -135,6 +142,11 @@ class DisturbanceSource:
         for kind, serial in list(self._next.items()):
             self._agenda.cancel(serial)
             self._repeat(kind)
+        if self._given.late_motions is not None:
+            self._fleet.reseed_lateness(self._lateness_seed())
+
+    def _lateness_seed(self) -> int:
+        return int(self._draw[_LATE_MOTIONS].integers(2**63))
 
     def _given_by_kind(
         self,

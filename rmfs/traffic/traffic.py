@@ -226,6 +226,38 @@ class Traffic:
         """
         return self._core.hold(robot, by_us)
 
+    def set_lateness(
+        self, probability: float, least_us: int, most_us: int, *, repair: bool, seed: int
+    ) -> None:
+        """Let motions begin late from now on, each with the same probability.
+
+        It is drawn just before a robot turns for a run, so that no plan knows of it. Others who are
+        to use a waypoint after the robot wait; all keep their order, unless that is repaired. A
+        delay for which somebody would have to stop who is driving comes at the robot's next stop.
+
+        Parameters
+        ----------
+        probability
+            Of a motion to be late.
+        least_us, most_us
+            Shortest and longest delay; all between are equally likely.
+        repair
+            Whether those who are made to wait are planned again, alone or in front of the robot
+            that is late, if that is better for both.
+        seed
+            What is drawn with: below 2^64.
+
+        Raises
+        ------
+        ValueError
+            If the probability or the delays cannot be; nothing has changed then.
+        """
+        self._core.set_lateness(probability, least_us, most_us, repair, seed)
+
+    def reseed_lateness(self, seed: int) -> None:
+        """Draw with another seed from now on; nothing happens if motions are never late."""
+        self._core.reseed_lateness(seed)
+
     def slow_down(self, robot: int, level: int) -> bool:
         """Let a robot that stands still drive slower from now on, or as fast as it should again.
 
@@ -433,9 +465,11 @@ class Traffic:
 
         `plans` (legs), `plan_failures`, `replans`, `refusals` (runs a rolling planner wanted that
         were not free), `improvements`, `expansions`, `cost_tables`, and wall time, `planning_s`.
+        Where motions can be late: `motions`, `late_motions`, `lateness_s` in all, and `repairs`.
         """
         counts: dict[str, float] = dict(self._core.counters())
         counts["planning_s"] = counts.pop("planning_ns") / 1e9
+        counts["lateness_s"] = counts.pop("lateness_us") / 1e6
         return counts
 
     def call_times_s(self) -> NDArray[np.float64]:

@@ -16,7 +16,10 @@ from rmfs.control.problems import Problem
 from rmfs.errors import InputError
 
 GOAL = Goal(orders=1.0, overdue_s=0.01, distance_m=0.001)
-DISTURBED = {"scenario.disturbances.breakdowns": {"every_s": 60, "lasting_s": 20}}
+DISTURBED = {
+    "scenario.disturbances.breakdowns": {"every_s": 60, "lasting_s": 20},
+    "scenario.disturbances.late_motions": {"probability": 0.05},
+}
 
 
 def made(scenario: str = "small-arrivals", pacing: str = "instant", **given: Any) -> Any:

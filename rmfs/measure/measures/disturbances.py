@@ -28,6 +28,19 @@ class Disturbances(Measure):
             "s",
             "How long these lasted, added up, within the measured time",
         ),
+        Column(
+            "late_motions",
+            INTEGER,
+            "motions",
+            "Motions that began late, where the scenario says that motions do",
+        ),
+        Column("lateness_s", REAL, "s", "By how much these began late, added up"),
+        Column(
+            "plans_repaired",
+            INTEGER,
+            "plans",
+            "Plans made anew because a robot in front began a motion late",
+        ),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
@@ -36,4 +49,7 @@ class Disturbances(Measure):
         return {
             "disturbances": int(counters["disturbances"]),
             "disturbed_s": counters["disturbed_s"],
+            "late_motions": int(counters["late_motions"]),
+            "lateness_s": counters["lateness_s"],
+            "plans_repaired": int(counters["repairs"]),
         }

@@ -7,7 +7,7 @@ from typing import Annotated
 import pydantic
 from pydantic import Field
 
-from rmfs.scenario.quantities import Block, Natural, NotNegative, Positive
+from rmfs.scenario.quantities import Block, Natural, NotNegative, Positive, not_below
 
 
 class _Repeated(Block):
@@ -35,6 +35,24 @@ class ChargerFailures(_Repeated):
     """A plug-in place gives nothing for a while; the robot there waits, or is called away."""
 
 
+class LateMotions(Block):
+    """A motion begins later than planned; it is drawn just before, and no plan knows of it."""
+
+    probability: float = Field(gt=0, le=1, description="of each straight run of a robot")
+    least_s: float = Field(1.0, ge=0, le=3600, description="shortest delay; at most an hour")
+    most_s: float = Field(
+        10.0, gt=0, le=3600, description="longest delay; all between are equally likely"
+    )
+    repair: bool = Field(
+        True, description="plan those who wait behind again, alone or in front, if that is better"
+    )
+
+    @pydantic.field_validator("most_s")
+    @classmethod
+    def _in_order(cls, value: float, info: pydantic.ValidationInfo) -> float:
+        return not_below(value, info, "least_s")
+
+
 Outage = Annotated[tuple[Natural, NotNegative, Positive], pydantic.Strict(strict=False)]
 Outages = Annotated[tuple[Outage, ...], pydantic.Strict(strict=False)]
 
@@ -47,6 +65,9 @@ class Disturbances(Block):
     closures: Closures | None = Field(None, description="closed waypoints; default: none")
     chargers: ChargerFailures | None = Field(
         None, description="plug-in places that fail; default: none"
+    )
+    late_motions: LateMotions | None = Field(
+        None, description="motions that begin late; default: none"
     )
     elevators_out: Outages = Field(
         (), description="triples of an elevator's index and the first and last s it is out of use"

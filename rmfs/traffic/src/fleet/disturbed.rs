@@ -86,7 +86,7 @@ pub(super) fn stretched<'a>(
 }
 
 /// How long the robot turns before a move.
-fn turn(network: &Network, kind: &Kind, step: &Move) -> Us {
+pub(super) fn turn(network: &Network, kind: &Kind, step: &Move) -> Us {
     let heading = |index: u8| network.headings[index as usize];
     kind.turn(heading(step.heading_before), heading(step.heading))
 }

@@ -35,7 +35,10 @@ impl Fleet {
             let others = if self.is_late(robot) { self.in_front_of(robot) } else { Vec::new() };
             if !others.is_empty() {
                 let members: Vec<u32> = std::iter::once(robot).chain(others).collect();
-                self.replan_together(&members);
+                let effort = self.per_leg.improvement();
+                if self.replan_together(&members, effort) {
+                    self.counters.improvements += 1;
+                }
             }
         }
     }
@@ -69,7 +72,7 @@ impl Fleet {
     }
 
     /// Whether a part of a robot's plan has not begun.
-    fn can_change(&mut self, robot: u32) -> bool {
+    pub(super) fn can_change(&mut self, robot: u32) -> bool {
         self.settle(robot);
         let state = &self.robots[robot as usize];
         let kind = &self.kinds[state.kind as usize];
@@ -77,14 +80,15 @@ impl Fleet {
             && state.committed(&self.network, kind, self.now) < state.moves.len()
     }
 
-    /// Plans robots anew in this order; keeps the new plans if they are better.
-    fn replan_together(&mut self, members: &[u32]) {
+    /// Plans robots anew in this order, each with so many labels at most; keeps the new plans if
+    /// they are better. Returns whether they are.
+    pub(super) fn replan_together(&mut self, members: &[u32], effort: u64) -> bool {
         let arrivals = |fleet: &Self| -> Us {
             members.iter().map(|&robot| fleet.robots[robot as usize].destination().2).sum()
         };
         let before = arrivals(self);
         let starts: Vec<(usize, Agent)> =
-            members.iter().map(|&robot| self.where_it_can_choose(robot)).collect();
+            members.iter().map(|&robot| self.where_it_can_choose(robot, effort)).collect();
         for &robot in members {
             self.forget(robot);
         }
@@ -119,14 +123,15 @@ impl Fleet {
         for &robot in members {
             self.reserve(robot);
         }
-        if plans.len() == members.len() && after < before {
-            self.counters.improvements += 1;
+        let better = plans.len() == members.len() && after < before;
+        if better {
             self.follow(plans);
         }
+        better
     }
 
     /// How many moves of a robot stay, and where, when and where to it can choose the others.
-    fn where_it_can_choose(&mut self, robot: u32) -> (usize, Agent) {
+    fn where_it_can_choose(&mut self, robot: u32, effort: u64) -> (usize, Agent) {
         self.settle(robot);
         let state = &self.robots[robot as usize];
         let kind = &self.kinds[state.kind as usize];
@@ -143,7 +148,7 @@ impl Fleet {
             ready: rested.max(self.now).max(state.busy_until),
             goal: state.destination().0,
             loaded: state.pod.is_some(),
-            effort: self.per_leg.improvement(),
+            effort,
             needs_plan: true,
         };
         (kept, agent)

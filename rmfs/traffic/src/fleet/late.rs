@@ -80,6 +80,7 @@ impl Fleet {
         }
         for robot in robots {
             self.occupy(robot);
+            self.expect_motion(robot);
         }
     }
 

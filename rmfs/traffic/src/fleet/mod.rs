@@ -10,6 +10,7 @@ mod disturbed;
 mod energy;
 mod improve;
 mod late;
+mod lateness;
 mod planning;
 mod programs;
 mod progress;
@@ -20,6 +21,7 @@ mod saved;
 
 pub use closing::CutOff;
 pub use late::Shift;
+pub use lateness::Lateness;
 pub use regroup::Rest;
 
 use std::cmp::Reverse;
@@ -75,6 +77,10 @@ enum Due {
     Depart,
     /// The rolling planner is asked.
     Call,
+    /// A robot is about to begin a motion; see `lateness.rs`.
+    Motion,
+    /// A motion has begun.
+    NextMotion,
 }
 
 /// What planning has cost so far.
@@ -87,6 +93,12 @@ pub struct Counters {
     pub refusals: u64,
     /// How often plans have been replaced by better ones.
     pub improvements: u64,
+    /// Motions decided on, those of them that were late, and by how much in all.
+    pub motions: u64,
+    pub late_motions: u64,
+    pub lateness: u64,
+    /// Plans made anew because somebody was late.
+    pub repairs: u64,
     /// Wall time spent planning.
     pub planning: Duration,
     /// Wall time of each call of the planner, in nanoseconds.
@@ -131,6 +143,8 @@ pub struct Fleet {
     /// Plans whole legs; beside a rolling planner only the moves up in queues.
     per_leg: Box<dyn Planner>,
     rolling: Option<Rolling>,
+    /// Of motions, if they can be late.
+    lateness: Option<Lateness>,
     /// Robots with a place in each station's queue, in the order of their places.
     queues: Vec<Vec<u32>>,
     legs: Vec<Option<Leg>>,
@@ -175,6 +189,7 @@ impl Fleet {
             pathfinder: Pathfinder::new(&network),
             per_leg,
             rolling,
+            lateness: None,
             costs: Cache::new(&network, &kinds, cost_bytes),
             table: Table::new(network.resources),
             stored: vec![false; network.nodes],
@@ -281,6 +296,8 @@ impl Fleet {
                 Due::LegEnd => {}
                 Due::Depart => self.departure_due(robot, version),
                 Due::Call => self.call_planner(),
+                Due::Motion => self.motion_due(robot, version),
+                Due::NextMotion => self.next_motion_due(robot, version),
                 Due::Retry => {
                     self.retry_due = false;
                     for station in std::mem::take(&mut self.stalled) {

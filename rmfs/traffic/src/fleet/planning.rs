@@ -119,6 +119,7 @@ impl Fleet {
         let due = end.max(self.now).max(state.busy_until);
         self.agenda.push(Reverse((due, robot, Due::LegEnd, state.version)));
         self.occupy(robot);
+        self.expect_motion(robot);
     }
 
     /// Computes what the robot's plan occupies and reserves it.

@@ -17,7 +17,7 @@ use crate::robot::Robot;
 use crate::units::Us;
 
 use super::rolling::Wishes;
-use super::{Counters, Due, Event, Fleet, Leg};
+use super::{Counters, Due, Event, Fleet, Lateness, Leg};
 
 /// How the bytes begin.
 const MAGIC: &[u8] = b"rmfs-traffic";
@@ -47,6 +47,7 @@ struct Saved<'a> {
     outbox: Cow<'a, [Event]>,
     per_leg: Vec<u8>,
     rolling: Option<(Cow<'a, Wishes>, Vec<u8>)>,
+    lateness: Cow<'a, Option<Lateness>>,
     costs: Known,
     expansions: u64,
     counters: Cow<'a, Counters>,
@@ -81,6 +82,7 @@ impl Fleet {
             rolling: rolling
                 .map(|own| remembered(own).map(|bytes| (Cow::Borrowed(&own.wishes), bytes)))
                 .transpose()?,
+            lateness: Cow::Borrowed(&self.lateness),
             costs: self.costs.known(),
             expansions: self.pathfinder.expansions,
             counters: Cow::Borrowed(&self.counters),
@@ -136,6 +138,7 @@ impl Fleet {
         self.retry_due = saved.retry_due;
         self.agenda = saved.agenda.into_owned();
         self.outbox = saved.outbox.into_owned();
+        self.lateness = saved.lateness.into_owned();
         self.costs.remember(saved.costs);
         self.pathfinder.expansions = saved.expansions;
         self.counters = saved.counters.into_owned();

@@ -15,7 +15,7 @@ use pyo3::types::{PyBytes, PyDict};
 
 use crate::costs;
 use crate::energy::{Battery, Energy, Model, Spent};
-use crate::fleet::{CutOff, Event, Fleet, Rest, Shift};
+use crate::fleet::{CutOff, Event, Fleet, Lateness, Rest, Shift};
 use crate::kinematics::Kind;
 use crate::network::{Network, Plan, Ride};
 use crate::planner::{Planner, Rhythm, Settings, build};
@@ -387,6 +387,10 @@ impl Core {
             ("replans", fleet.counters.replans),
             ("refusals", fleet.counters.refusals),
             ("improvements", fleet.counters.improvements),
+            ("motions", fleet.counters.motions),
+            ("late_motions", fleet.counters.late_motions),
+            ("lateness_us", fleet.counters.lateness),
+            ("repairs", fleet.counters.repairs),
             ("expansions", fleet.pathfinder.expansions),
             ("cost_tables", fleet.costs.computed),
             ("planning_ns", fleet.counters.planning.as_nanos() as u64),
@@ -439,6 +443,29 @@ impl Core {
             return Err(PyValueError::new_err(format!("a stop of {by} us")));
         }
         self.with_robot(robot, |fleet| fleet.hold(robot, by))
+    }
+
+    /// Lets motions begin late: probability, shortest and longest delay (us), whether plans of those
+    /// who wait are repaired, seed.
+    fn set_lateness(
+        &mut self,
+        probability: f64,
+        least: Us,
+        most: Us,
+        repairs: bool,
+        seed: u64,
+    ) -> PyResult<()> {
+        if !(0.0..=1.0).contains(&probability) || least < 0 || most < least {
+            return Err(PyValueError::new_err("no such delays"));
+        }
+        let robots = self.fleet.robots.len();
+        let lateness = Lateness::new(probability, (least, most), repairs, seed, robots);
+        self.with(|fleet| fleet.set_lateness(lateness))
+    }
+
+    /// Draws the lateness of motions from another seed from now on.
+    fn reseed_lateness(&mut self, seed: u64) -> PyResult<()> {
+        self.with(|fleet| fleet.reseed_lateness(seed))
     }
 
     fn change_kind(&mut self, robot: u32, kind: u8) -> PyResult<bool> {

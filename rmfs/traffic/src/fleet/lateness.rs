@@ -1,0 +1,169 @@
+//! Uncertain execution: with some probability a motion begins later than planned.
+//!
+//! Just before a robot turns for a run it is decided whether it is late, and by how much. The order
+//! in which waypoints are used stays (`late.rs`), so that whoever is behind waits and nobody meets
+//! anybody. A delay for which somebody would have to stop who is already driving comes at the
+//! robot's next stop instead: none is lost. With repair, whoever is made to wait is planned again,
+//! in front of the late robot if that is better for both.
+
+use std::cmp::Reverse;
+
+use serde::{Deserialize, Serialize};
+
+use crate::random::Random;
+use crate::units::Us;
+
+use super::disturbed::turn;
+use super::{Counters, Due, Fleet};
+
+/// Probabilities are counted in parts of this.
+const PARTS: u64 = 1 << 32;
+
+/// How long somebody must be made to wait before a new plan is worth a try.
+const WORTH: Us = 1_000_000;
+
+/// Labels a plan in repair may cost.
+const EFFORT: u64 = 300;
+
+/// How late motions are.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Lateness {
+    /// Probability of a motion to begin late, in 2^-32.
+    probability: u64,
+    /// Shortest and longest delay; all between are equally likely.
+    length: (Us, Us),
+    repairs: bool,
+    random: Random,
+    /// Delays that could not begin yet, per robot.
+    owed: Vec<Us>,
+    /// Whether the next motion of a robot has been decided on: it has been delayed already.
+    decided: Vec<bool>,
+}
+
+impl Lateness {
+    /// Delays of `length`, with a probability per motion, for so many robots.
+    pub fn new(
+        probability: f64,
+        length: (Us, Us),
+        repairs: bool,
+        seed: u64,
+        robots: usize,
+    ) -> Self {
+        Self {
+            probability: (probability * PARTS as f64) as u64,
+            length,
+            repairs,
+            random: Random::new(seed),
+            owed: vec![0; robots],
+            decided: vec![false; robots],
+        }
+    }
+
+    /// Draws from another seed from now on.
+    pub fn reseed(&mut self, seed: u64) {
+        self.random = Random::new(seed);
+    }
+
+    /// By how much the robot's motion that is about to begin is late; counts it.
+    fn draw(&mut self, robot: u32, counters: &mut Counters) -> Us {
+        let owed = std::mem::take(&mut self.owed[robot as usize]);
+        if std::mem::take(&mut self.decided[robot as usize]) {
+            return owed;
+        }
+        counters.motions += 1;
+        if self.random.below(PARTS) >= self.probability {
+            return owed;
+        }
+        let (least, most) = self.length;
+        let by = least + self.random.below((most - least + 1) as u64) as Us;
+        counters.late_motions += 1;
+        counters.lateness += by as u64;
+        owed + by
+    }
+}
+
+impl Fleet {
+    /// Lets motions be late from now on.
+    pub fn set_lateness(&mut self, lateness: Lateness) {
+        self.lateness = Some(lateness);
+        for robot in 0..self.robots.len() as u32 {
+            self.expect_motion(robot);
+        }
+    }
+
+    /// Draws the lateness of motions from another seed from now on.
+    pub fn reseed_lateness(&mut self, seed: u64) {
+        if let Some(lateness) = &mut self.lateness {
+            lateness.reseed(seed);
+        }
+    }
+
+    /// Enters when the robot's next motion is decided on, if motions can be late.
+    pub(super) fn expect_motion(&mut self, robot: u32) {
+        if self.lateness.is_none() {
+            return;
+        }
+        let state = &self.robots[robot as usize];
+        let kind = &self.kinds[state.kind as usize];
+        let begun = state.committed(&self.network, kind, self.now);
+        if let Some(next) = state.moves.get(begun) {
+            let due = next.start - turn(&self.network, kind, next);
+            self.agenda.push(Reverse((due, robot, Due::Motion, state.version)));
+        }
+    }
+
+    /// The robot is about to begin a motion, unless its plan is another by now.
+    pub(super) fn motion_due(&mut self, robot: u32, version: u32) {
+        let Some(lateness) = &mut self.lateness else { return };
+        if self.robots[robot as usize].version != version {
+            return;
+        }
+        let by = lateness.draw(robot, &mut self.counters);
+        if by > 0 && self.begins_late(robot, by) {
+            return;
+        }
+        self.agenda.push(Reverse((self.now + 1, robot, Due::NextMotion, version)));
+    }
+
+    /// The motion has begun: it is the next one's turn.
+    pub(super) fn next_motion_due(&mut self, robot: u32, version: u32) {
+        if self.robots[robot as usize].version == version {
+            self.expect_motion(robot);
+        }
+    }
+
+    /// Lets a robot stand still for longer. Returns whether it does; otherwise it will later.
+    fn begins_late(&mut self, robot: u32, by: Us) -> bool {
+        let ends = |fleet: &Self| -> Vec<Us> {
+            fleet.robots.iter().map(|state| state.destination().2).collect()
+        };
+        let before = ends(self);
+        let begins = self.hold(robot, by).is_some();
+        let Some(lateness) = &mut self.lateness else { return begins };
+        lateness.decided[robot as usize] = begins;
+        if !begins {
+            lateness.owed[robot as usize] += by;
+        } else if lateness.repairs && self.rolling.is_none() {
+            let after = ends(self);
+            let waits = |&other: &u32| {
+                other != robot && after[other as usize] - before[other as usize] > WORTH
+            };
+            let waiting: Vec<u32> = (0..self.robots.len() as u32).filter(waits).collect();
+            self.repair(robot, &waiting);
+        }
+        begins
+    }
+
+    /// Plans those who wait for a late robot again, alone or in front of it.
+    fn repair(&mut self, late: u32, waiting: &[u32]) {
+        let mut repaired = 0;
+        for &robot in waiting {
+            repaired += u64::from(
+                self.can_change(robot)
+                    && (self.replan_together(&[robot], EFFORT)
+                        || self.replan_together(&[robot, late], EFFORT)),
+            );
+        }
+        self.counters.repairs += repaired;
+    }
+}
