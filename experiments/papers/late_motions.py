@@ -111,7 +111,7 @@ def picture(study: Study) -> None:
             lateness_s = wide(frame, robots, "lateness").mean()
             for repair, style in ((True, "-"), (False, ":")):
                 ends = ", repair" if repair else ", no repair"
-                arms = [late for late in units if late == NEVER or late.endswith(ends)]
+                arms = [late for late in map(str, units) if late == NEVER or late.endswith(ends)]
                 points = sorted((lateness_s[late], 100 * share[late]) for late in arms)
                 label = f"{robots} robots, {ends.removeprefix(', ')}"
                 ax.plot(*zip(*points, strict=True), style, marker=".", label=label)
