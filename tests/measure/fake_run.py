@@ -96,6 +96,9 @@ class FakeTraffic:
             "expansions": 99,
             "cost_tables": 3,
             "planning_s": 0.25,
+            "late_motions": 3,
+            "lateness_s": 7.5,
+            "repairs": 1,
         }
 
     def trace(self) -> dict[str, np.ndarray]:
@@ -143,6 +146,8 @@ def order(index, created, lines, *, due=nan, station=-1, assigned=nan, completed
         station=station,
         assigned_s=assigned,
         completed_s=completed,
+        cancelled_s=nan,
+        units_cut=0,
         in_file=-1,
     )
 
@@ -170,9 +175,14 @@ def world():
         contained=np.array([[10, 0, 10], [10, 10, 0]]),
         total_capacity=300.0,
         stored_space=60.0,
+        free_stock=np.array([20, 0]),
     )
+    # two orders wait for a station; what the second asks for is not in stock
+    waiting = [order(7, 100.0, [(0, 1)]), order(8, 200.0, [(1, 1)])]
+    backlog = SimpleNamespace(servable=lambda _: np.array([True, False]), at_row=waiting)
     return SimpleNamespace(
         inventory=inventory,
+        orders=backlog,
         skus=Skus(),
         staff=None,
         storage=SimpleNamespace(place_of=np.array([1, -1, 3])),

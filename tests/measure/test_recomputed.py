@@ -53,6 +53,9 @@ NOT_IN_TABLES = {
     **dict.fromkeys(("order_redraws", "orders_short"), "counted when an order is drawn, or comes"),
     **dict.fromkeys(("disturbances", "disturbed_s"), "tests/simulation/test_disturbances.py"),
     **dict.fromkeys(
+        ("late_motions", "lateness_s", "plans_repaired"), "tests/simulation/test_late_motions.py"
+    ),
+    **dict.fromkeys(
         (column.name for column in (*Energy.columns, *Batteries.columns)),
         "empty here; tests/simulation/test_energy_use.py",
     ),

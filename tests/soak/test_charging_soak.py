@@ -70,6 +70,7 @@ def test_a_week_of_96_robots(capsys):
             "scenario.warmup_s": 0,
             "scenario.duration_s": days * DAY_S,
             "scenario.demand.orders_per_h": 1400,
+            "scenario.replenishment": {"mode": "needed"},
             "scenario.energy.battery": {"capacity_wh": CAPACITY_WH, "initial_least_share": 0.3},
             "scenario.disturbances": {
                 "breakdowns": {"every_s": 1800, "lasting_s": 120},
