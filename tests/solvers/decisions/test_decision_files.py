@@ -149,7 +149,8 @@ def test_what_the_model_refuses_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    "content", [b"", b"[", b"[]", b"\x1f\x8b garbage", gzip.compress(b"{}", mtime=0)[:-3], b"\xff\xfe"]
+    "content",
+    [b"", b"[", b"[]", b"\x1f\x8b garbage", gzip.compress(b"{}", mtime=0)[:-3], b"\xff\xfe"],
 )
 def test_what_is_no_json_is_refused(content: bytes, tmp_path: Path) -> None:
     (tmp_path / "q.json.gz").write_bytes(content)
