@@ -352,8 +352,10 @@ impl Core {
 
     /// Visits and standing time since the last reset.
     fn heat<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.with(|fleet| fleet.settle_all())?;
-        tables::heat(py, &self.fleet.record.heat)
+        self.with(|fleet| {
+            fleet.settle_all();
+            tables::heat(py, &fleet.record.heat)
+        })?
     }
 
     /// Edges and elevator rides used since the last reset.
