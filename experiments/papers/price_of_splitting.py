@@ -2,11 +2,12 @@
 
 Split orders against whole ones (each by the best controllers we have), with put walls of so many
 slots, one minute and ten minutes away from the pick stations; the controllers split no more orders
-than the wall can hold. Published are means, differences seed by seed, and where splitting breaks
-even: slots of the wall, from which on it picks more units per hour; seconds that a packer may take
-for each further tote until the work of pickers and packers per unit is that of whole orders; and
-the way to the wall at which an order is packed as early, in the mean, as a whole one.
-`--large`: the large site.
+than the wall can hold, or (`always`) as many as they like. Published are means, differences seed by
+seed, what splitting as far as the wall goes does against the better of whole and always, and where
+splitting breaks even: slots of the wall, from which on it picks more units per hour; seconds that a
+packer may take for each further tote until the work of pickers and packers per unit is that of
+whole orders; and the way to the wall at which an order is packed as early, in the mean, as a whole
+one. `--default`, `--large`: these sites.
 """
 
 from __future__ import annotations
@@ -38,10 +39,13 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 DEMAND, ORDERS, WHOLE = "demand", "orders", "whole"
+ALWAYS = ", always"
+"""Ends the level of `orders` that splits whether the wall has room or not."""
+
 COLUMNS = (
     *("units_per_h", "distance_per_unit_m", "order_cycle_mean_s", "order_cycle_p95_s"),
     *("totes_per_order", "orders_packed_split_share", "consolidation_time_mean_s"),
-    *("wall_slots_mean", "wall_slots_max", "totes_held_mean"),
+    *("wall_slots_mean", "wall_slots_max", "totes_held_mean", "totes_by_hand"),
 )
 GAINED = ("units_per_h", "distance_per_unit_m", "order_cycle_mean_s", "order_cycle_p95_s")
 RESAMPLES = 2000
@@ -59,6 +63,14 @@ def wall_of(label: str) -> tuple[float, float]:
     if found is None:
         raise ValueError(f"{label!r} is no wall such as '16 slots, 60 s'")
     return inf if found[1] == "any" else float(found[1]), float(found[2])
+
+
+def walls_of(runs: pd.DataFrame) -> dict[str, tuple[float, float]]:
+    """Return the walls (`wall_of`) by the levels of `orders` that split as far as a wall goes."""
+    labels = [str(label) for label in runs[ORDERS].unique()]
+    return {
+        label: wall_of(label) for label in labels if label != WHOLE and not label.endswith(ALWAYS)
+    }
 
 
 def break_even(slots: Sequence[float], gain: Floats) -> float:
@@ -103,9 +115,8 @@ def break_even_slots(runs: pd.DataFrame, way_s: float) -> tuple[float, float, fl
     Of the mean over seeds, and the 2.5 and 97.5 percentiles of `RESAMPLES` draws of seeds.
     """
     wide = runs.pivot_table(index="replication", columns=ORDERS, values="units_per_h")
-    walls = {label: wall_of(label) for label in runs[ORDERS].unique() if label != WHOLE}
     chosen = sorted(
-        (slots, label) for label, (slots, s) in walls.items() if s == way_s or slots == inf
+        (slots, label) for label, (slots, s) in walls_of(runs).items() if s == way_s or slots == inf
     )
     slots = [slots for slots, _ in chosen]
     each = np.stack([(wide[label] / wide[WHOLE] - 1).to_numpy() for _, label in chosen], axis=1)
@@ -161,7 +172,7 @@ def even(frame: pd.DataFrame) -> Table:
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for demand, runs in frame.groupby(DEMAND, sort=False):
-        walls = {label: wall_of(label) for label in runs[ORDERS].unique() if label != WHOLE}
+        walls = walls_of(runs)
         by_seed = {label: own.set_index("replication") for label, own in runs.groupby(ORDERS)}
         free = next(label for label, (slots, _) in walls.items() if slots == inf)
         tote = interval(tolerable_tote_s(by_seed[free], by_seed[WHOLE]))
@@ -194,21 +205,58 @@ def even(frame: pd.DataFrame) -> Table:
 _PARTS = ("mean", HALF, "2.5 %", "97.5 %")
 
 
+def against_better(frame: pd.DataFrame) -> Table:
+    """Return what splitting as far as the wall goes does against whole orders and always splitting.
+
+    Parameters
+    ----------
+    frame
+        Runs of the design.
+    """
+    column = "units_per_h"
+    rows: dict[str, dict[tuple[str, str], float]] = {}
+    for demand, runs in frame.groupby(DEMAND, sort=False):
+        wide = runs.pivot_table(index="replication", columns=ORDERS, values=column)
+        for label in walls_of(runs):
+            if label + ALWAYS not in wide:
+                continue
+            others = [WHOLE, label + ALWAYS]
+            better = max(others, key=lambda other: float(wide[other].mean()))
+            row: dict[tuple[str, str], float] = {}
+            for told, other in zip(("whole", "always", "better"), (*others, better), strict=True):
+                found = interval(100 * (wide[label] / wide[other] - 1))
+                row[f"against {told}, %", "mean"] = found.mean
+                row[f"against {told}, %", HALF] = found.half_width
+            rows[f"{demand}, {label}"] = row
+    made = rows_frame(rows, f"{DEMAND}, wall")
+    caption = (
+        "Units per hour of splitting as far as the wall goes, in percent more than whole orders, "
+        "than splitting whether the wall has room or not, and than whichever of the two has the "
+        "higher mean in these runs, seed by seed, with 95% confidence intervals (Student's t)."
+    )
+    return Table(made, {key: 1 for row in rows.values() for key in row}, caption)
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("price-of-splitting", __doc__)
-    options.add_argument("--large", action="store_true", help="the large site instead")
+    site = options.add_mutually_exclusive_group()
+    site.add_argument("--default", action="store_true", help="the default site instead")
+    site.add_argument("--large", action="store_true", help="the large site instead")
     given = options.parse_args(arguments)
-    name = "price-of-splitting-large" if given.large else "price-of-splitting"
-    if given.large:
+    name = "price-of-splitting"
+    if given.default or given.large:
+        name += "-default" if given.default else "-large"
         given.design = name
     study = done(given)
     frame = completed(study.frame, station_units_per_h(study))
     frame = frame.assign(**{CONTROLLERS: frame[ORDERS]})
     study.publish(overview(frame, (DEMAND, CONTROLLERS), COLUMNS), name, COLUMNS)
     study.publish(gains(frame, (DEMAND,), WHOLE, GAINED), f"{name}-gains", GAINED)
-    study.publish(even(frame), f"{name}-even", ("units_per_h", *GAINED))
-    require_optimised(study)
+    study.publish(against_better(frame), f"{name}-better", ("units_per_h",))
+    study.publish(even(frame), f"{name}-even", GAINED)
+    # where the wall is ignored, stations are blocked and little is left to decide
+    require_optimised(study, frame[~frame[ORDERS].str.endswith(ALWAYS)])
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The study of splitting: where it breaks even, by hand, and the command at smoke size."""
+"""The study of splitting: where it breaks even, by hand, and the command on a small design."""
 
 from __future__ import annotations
 
@@ -9,7 +9,13 @@ import pandas as pd
 import pytest
 
 from rmfs.experiments.papers import price_of_splitting
-from rmfs.experiments.papers.price_of_splitting import break_even, even, wall_of
+from rmfs.experiments.papers.price_of_splitting import (
+    against_better,
+    break_even,
+    even,
+    wall_of,
+)
+from rmfs.experiments.papers.study import command
 
 
 def test_a_wall_is_told_by_its_label():
@@ -36,6 +42,7 @@ def results():
             ("whole", 600.0, 500.0),
             ("10 slots, 60 s", 570.0, 500.0),
             ("20 slots, 60 s", 630.0, 500.0),
+            ("20 slots, 60 s, always", 560.0 if seed == 1 else 580.0, 500.0),
             ("any slots, 60 s", 720.0, 600.0 if seed == 1 else 604.0),
         ]:
             rows.append(
@@ -60,12 +67,53 @@ def test_where_splitting_breaks_even():
     assert not isnan(row["way, s", "±"])
 
 
-@pytest.mark.slow
-def test_the_study_as_a_command(tmp_path, capsys):
-    given = ["--smoke", "--jobs", "1", "--out", str(tmp_path / "runs")]
-    price_of_splitting.main([*given, "--published", str(tmp_path)])
-    for name in ("", "-gains", "-even"):
-        assert (tmp_path / f"price-of-splitting{name}-smoke.md").is_file()
-    told = (tmp_path / "price-of-splitting-smoke.csv").read_text("utf-8").splitlines()
-    assert sum(row.startswith(('"backlog', '"arrivals')) for row in told) == 16
-    assert "| backlog, any slots, 60 s" in capsys.readouterr().out
+def test_splitting_as_the_wall_goes_is_held_against_the_better_of_both():
+    rows = against_better(results()).frame
+    assert list(rows.index) == ["backlog, 20 slots, 60 s"]  # the others have no `always`
+    row = rows.iloc[0]
+    assert row["against whole, %", "mean"] == pytest.approx(5.0)
+    assert row["against always, %", "mean"] == pytest.approx(50 * (63 / 56 + 63 / 58 - 2))
+    assert row["against better, %", "mean"] == pytest.approx(5.0)  # 600 whole, 570 always
+
+
+def test_the_study_as_a_command(design, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    split = {"controllers": "pile-on-split", "scenario.packing.slots": 4}
+    always = {**split, "controllers.poa.split_orders": 100000}
+    path = design(
+        seeds=[1, 2],
+        base={
+            "layout": "small",
+            "layout.robots": 4,
+            "scenario.warmup_s": 400,
+            "scenario.duration_s": 500,
+            "scenario.packing.travel.constant_s": 60,
+        },
+        factors={
+            "demand": [{"label": "backlog", "scenario": "small"}],
+            "orders": [
+                {"label": "whole", "controllers": "pile-on"},
+                {"label": "4 slots, 60 s", **split},
+                {"label": "4 slots, 60 s, always", **always},
+                {"label": "any slots, 60 s", "controllers": "pile-on-split"},
+            ],
+        },
+    )
+    given = ["--design", str(path), "--out", "runs", "--published", "out", "--jobs", "1"]
+    assert command(price_of_splitting.main, given) == 0
+    rows = pd.read_csv("out/price-of-splitting.csv", index_col=0)
+    assert len(rows) == 4
+    assert rows.loc["backlog, 4 slots, 60 s", "wall_slots_max mean"] <= 4
+    assert rows.loc["backlog, 4 slots, 60 s, always", "wall_slots_max mean"] > 4  # by hand
+    assert rows.loc["backlog, any slots, 60 s", "wall_slots_max mean"] > 4
+    better = pd.read_csv("out/price-of-splitting-better.csv", index_col=0)
+    assert list(better.index) == ["backlog, 4 slots, 60 s"]
+    even = pd.read_csv("out/price-of-splitting-even.csv", index_col=0)
+    assert list(even.index) == ["backlog, 60 s"]
+
+
+def test_one_site_at_a_time(capsys):
+    with pytest.raises(SystemExit) as refused:
+        price_of_splitting.main(["--default", "--large"])
+    assert refused.value.code == 2
+    assert "not allowed with" in capsys.readouterr().err
