@@ -84,9 +84,9 @@ def test_the_study_as_a_command(design, tmp_path, monkeypatch):
         seeds=[1, 2],
         base={
             "layout": "small",
-            "layout.robots": 4,
-            "scenario.warmup_s": 400,
-            "scenario.duration_s": 500,
+            "layout.robots": 6,
+            "scenario.warmup_s": 600,
+            "scenario.duration_s": 900,
             "scenario.packing.travel.constant_s": 60,
         },
         factors={

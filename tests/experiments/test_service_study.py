@@ -29,7 +29,7 @@ def test_the_study_is_run_and_published(design, tmp_path, monkeypatch):
                 {"label": "first-come", "controllers.poa.name": "first-come"},
                 {"label": "pod-match", "controllers.poa.name": "pod-match"},
                 {"label": "optimiser", **late},
-                {"label": "optimiser, work", **late, "pacing": {"mode": "work"}},
+                {"label": "optimiser, work", **late, "pacing": "work"},
                 {"label": "start rule", **late, "controllers.ta.method": "greedy"},
                 {"label": "without due times", **planning},
             ],
