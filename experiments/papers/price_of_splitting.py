@@ -221,7 +221,7 @@ def against_better(frame: pd.DataFrame) -> Table:
             if label + ALWAYS not in wide:
                 continue
             others = [WHOLE, label + ALWAYS]
-            better = max(others, key=lambda other: float(wide[other].mean()))
+            better = str(wide[others].mean().idxmax())
             row: dict[tuple[str, str], float] = {}
             for told, other in zip(("whole", "always", "better"), (*others, better), strict=True):
                 found = interval(100 * (wide[label] / wide[other] - 1))

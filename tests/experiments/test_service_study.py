@@ -15,14 +15,14 @@ def test_the_study_is_run_and_published(design, tmp_path, monkeypatch):
     late = {**planning, "controllers.ta.late_s": 200}
     path = design(
         seeds=[1, 2],
-        base={"layout": "small", "scenario.duration_s": 600, "scenario.warmup_s": 0},
+        base={"layout": "small", "scenario.warmup_s": 0},
         factors={
             "due": [
                 {
                     "label": "tight",
                     "scenario": "small-arrivals",
-                    "scenario.orders.due.urgent_offset_s": 100,
-                    "scenario.orders.due.ordinary_offset_s": 400,
+                    "scenario.orders.due.urgent_offset_s": 60,
+                    "scenario.orders.due.ordinary_offset_s": 200,
                 }
             ],
             "decided": [
@@ -35,12 +35,12 @@ def test_the_study_is_run_and_published(design, tmp_path, monkeypatch):
             ],
         },
     )
-    given = ["--design", str(path), "--out", "runs", "--published", "out", "--jobs", "1"]
+    given = ["--smoke", "--design", str(path), "--out", "runs", "--published", "out", "--jobs", "1"]
     assert command(service.main, given) == 0
-    means = pd.read_csv("out/service.csv", index_col=0)["on_time_share mean"]
+    means = pd.read_csv("out/service-smoke.csv", index_col=0)["on_time_share mean"]
     assert len(means) == 6
     best = max(("first-come", "pod-match"), key=lambda rule: means[f"tight, {rule}"])
-    gained = pd.read_csv("out/service-gains.csv", index_col=0)
+    gained = pd.read_csv("out/service-gains-smoke.csv", index_col=0)
     assert gained.index[0] == f"tight, optimiser against best rule ({best})"
     assert gained["on_time_share, points mean"].iloc[0] == pytest.approx(
         100 * (means["tight, optimiser"] - means[f"tight, {best}"])
