@@ -15,6 +15,18 @@ from rmfs.errors import InputError
 from rmfs.experiments.calibration.command import calibrate
 from rmfs.experiments.console import open_console
 from rmfs.experiments.opening import RESULTS, made_below, opened, shipped
+from rmfs.experiments.options import (
+    Bootstrap,
+    Columns,
+    Confidence,
+    Design,
+    FileOption,
+    Interactions,
+    Jobs,
+    Lacking,
+    Made,
+    Out,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,50 +43,6 @@ FAILED = 1
 
 INCOMPLETE = 3
 """Exit code where a table or picture shows an experiment that lacks runs."""
-
-Design = Annotated[
-    str, typer.Argument(metavar="DESIGN", help="A design file, or the name of a shipped design.")
-]
-Made = Annotated[
-    str,
-    typer.Argument(
-        metavar="DESIGN",
-        help="A design file, the name of a shipped design, or a folder of results.",
-    ),
-]
-Out = Annotated[
-    Path | None,
-    typer.Option(help="Folder of the results. [default: results/NAME]", show_default=False),
-]
-Jobs = Annotated[
-    int | None,
-    typer.Option(
-        "--jobs", "-j", min=1, help="Runs at a time. [default: one per core]", show_default=False
-    ),
-]
-Columns = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--column",
-        "-c",
-        help="Column of the footprint; may be repeated. [default: the main ones]",
-        show_default=False,
-    ),
-]
-Confidence = Annotated[float, typer.Option(min=0.5, max=0.999, help="Of the intervals.")]
-Interactions = Annotated[
-    bool,
-    typer.Option("--interactions/--no-interactions", help="Show interactions of two factors, too."),
-]
-Lacking = Annotated[
-    bool,
-    typer.Option(
-        "--allow-incomplete", help="Exit with code 0 although runs are lacking; the note stays."
-    ),
-]
-Bootstrap = Annotated[
-    bool, typer.Option("--bootstrap", help="BCa bootstrap intervals instead of Student's t.")
-]
 
 
 @app.command("list")
@@ -239,10 +207,7 @@ def table(
             metavar="FACTOR", help="The levels of this factor as columns, the others as rows."
         ),
     ] = None,
-    file: Annotated[
-        Path | None,
-        typer.Option("--file", "-f", help="Write a .tex, .md, .csv or .html file."),
-    ] = None,
+    file: FileOption = None,
     rows: Annotated[
         Path | None,
         typer.Option(help="Write the rows themselves (reproducible columns) to a .csv file."),

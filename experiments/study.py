@@ -8,15 +8,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rmfs.errors import InputError
 from rmfs.experiments.complete import lacking
 from rmfs.experiments.design.planning import plan_of
 from rmfs.experiments.results import load
 from rmfs.experiments.store import Store
 from rmfs.experiments.tables import differences, means
-from rmfs.references import reference_of
+from rmfs.references import plain, reference_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -234,9 +232,9 @@ def experiment(
         "name": re.sub(r"[^A-Za-z0-9._-]", "-", name),
         "seeds": [int(seed) for seed in seeds],
         "base": {"layout": "default", "scenario": "default", "controllers": "default"}
-        | {key: _plain(value) for key, value in (base or {}).items()},
+        | {key: plain(value, reference_of) for key, value in (base or {}).items()},
         "factors": {key: [*map(_level, levels)] for key, levels in factors.items()},
-        "measures": [_plain(one) for one in measures],
+        "measures": [plain(one, reference_of) for one in measures],
         "keep": list(keep),
     }
     plan = plan_of(table, Path(), "rmfs.experiment")
@@ -258,16 +256,4 @@ def _level(value: Any) -> Any:
     """Return a level as a design has it; a class is shown by its name."""
     if isinstance(value, type):
         return {"label": value.__name__, "value": reference_of(value)}
-    return _plain(value)
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, type):
-        return reference_of(value)
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if isinstance(value, Path):
-        return str(value)
-    return value.item() if isinstance(value, np.generic) else value
+    return plain(value, reference_of)

@@ -11,14 +11,17 @@ import importlib
 import importlib.util
 import inspect
 import sys
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 from urllib.parse import quote, unquote
+
+import numpy as np
 
 from rmfs.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from importlib.machinery import ModuleSpec
     from types import ModuleType
 
@@ -114,6 +117,25 @@ def name_of(found: type) -> str:
         return reference_of(found) if found.__module__ != "__main__" else _remembered(found)
     except InputError:
         return _remembered(found)
+
+
+def plain(value: Any, name: Callable[[type], str]) -> Any:
+    """Return a value as a file would hold it.
+
+    Parameters
+    ----------
+    name
+        What stands for a class: `name_of` within this process, `reference_of` for others.
+    """
+    if isinstance(value, type):
+        return name(value)
+    if isinstance(value, Mapping):
+        return {key: plain(item, name) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item, name) for item in value]
+    if isinstance(value, Path):
+        return str(value)
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def _remembered(found: type) -> str:

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rmfs.cli.options import ControllersOption, LayoutOption, ScenarioOption
+from rmfs.cli.options import ControllersOption, LayoutOption, ScenarioOption, SetOption
 from rmfs.errors import InputError
 from rmfs.experiments.opening import RESULTS
+from rmfs.experiments.options import FileOption, Jobs
 
 if TYPE_CHECKING:
     from rmfs.experiments.calibration.procedure import Calibration, Step
@@ -31,14 +32,7 @@ def calibrate(
     layout: LayoutOption = "default",
     scenario: ScenarioOption = "default",
     controllers: ControllersOption = "default",
-    set_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Override a parameter, for example layout.robots=16; may be repeated.",
-        ),
-    ] = None,
+    set_: SetOption = None,
     pacing: Annotated[str, typer.Option(metavar="MODE", help="As in rmfs run.")] = "instant",
     key: Annotated[
         str, typer.Option(help="The parameter whose level is sought.")
@@ -62,22 +56,8 @@ def calibrate(
             help="Folder of the runs. [default: results/calibrate-COLUMN]", show_default=False
         ),
     ] = None,
-    jobs: Annotated[
-        int | None,
-        typer.Option(
-            "--jobs",
-            "-j",
-            min=1,
-            help="Runs at a time. [default: one per core]",
-            show_default=False,
-        ),
-    ] = None,
-    file: Annotated[
-        Path | None,
-        typer.Option(
-            "--file", "-f", help="Write what was done to a .tex, .md, .csv or .html file."
-        ),
-    ] = None,
+    jobs: Jobs = None,
+    file: FileOption = None,
 ) -> None:
     """Find the arrival rate at which a share of orders is on time, with a stated confidence.
 

@@ -40,10 +40,8 @@ class Runs:
         Of the footprint.
     folder
         Where they are stored.
-    processes
-        Runs at a time. Default: one per core.
-    watcher
-        Told of progress.
+    processes, watcher
+        As for `rmfs.experiment`.
 
     Raises
     ------

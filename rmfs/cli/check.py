@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
-from rmfs.cli.options import ControllersOption, LayoutOption, ScenarioOption
+from rmfs.cli.options import (
+    ControllersOption,
+    LayoutOption,
+    NotWellFormedOption,
+    ScenarioOption,
+    SetOption,
+)
 
 if TYPE_CHECKING:
     from rmfs.layout.model import Layout
@@ -17,20 +23,8 @@ def check(
     layout: LayoutOption = "default",
     scenario: ScenarioOption = "default",
     controllers: ControllersOption = "default",
-    set_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Override a parameter, for example layout.robots=16; may be repeated.",
-        ),
-    ] = None,
-    allow_not_well_formed: Annotated[
-        bool,
-        typer.Option(
-            "--allow-not-well-formed", help="Accept a layout in which robots may block each other."
-        ),
-    ] = False,
+    set_: SetOption = None,
+    allow_not_well_formed: NotWellFormedOption = False,
 ) -> None:
     """Say whether a run would be refused, and whether its fleet gets the energy it needs."""
     from rmfs.config import parse_override

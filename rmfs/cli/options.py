@@ -25,3 +25,17 @@ ControllersOption = Annotated[
         autocompletion=names_of("controllers"),
     ),
 ]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Override a parameter, for example layout.robots=16; may be repeated.",
+    ),
+]
+NotWellFormedOption = Annotated[
+    bool,
+    typer.Option(
+        "--allow-not-well-formed", help="Accept a layout in which robots may block each other."
+    ),
+]

@@ -13,7 +13,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rmfs.cli.exit_codes import GIVEN_UP, UNSAFE
-from rmfs.cli.options import ControllersOption, LayoutOption, ScenarioOption
+from rmfs.cli.options import (
+    ControllersOption,
+    LayoutOption,
+    NotWellFormedOption,
+    ScenarioOption,
+    SetOption,
+)
 from rmfs.cli.terminal import progress, step, terminable
 from rmfs.errors import InputError, InternalError, RuleError
 
@@ -49,14 +55,7 @@ def run(
             help="Replace the run folder if there is one; run what may not fit into memory.",
         ),
     ] = False,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Override a parameter, for example layout.robots=16; may be repeated.",
-        ),
-    ] = None,
+    set_: SetOption = None,
     pacing: Annotated[
         str,
         typer.Option(
@@ -85,12 +84,7 @@ def run(
     check: Annotated[
         bool, typer.Option("--check", help="Prove the motion safe; fills `collisions`.")
     ] = False,
-    allow_not_well_formed: Annotated[
-        bool,
-        typer.Option(
-            "--allow-not-well-formed", help="Run a layout in which robots may block each other."
-        ),
-    ] = False,
+    allow_not_well_formed: NotWellFormedOption = False,
     measure: Annotated[
         list[str] | None,
         typer.Option(

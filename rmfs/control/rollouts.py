@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import pydantic
 
 from rmfs.config import Table
+from rmfs.control import legality
 from rmfs.control.asks import Ask
 from rmfs.control.base import Controller, Parameters
 from rmfs.control.choices import choose
 from rmfs.control.halving import Comparison, solve
 from rmfs.control.lookahead import Goal
-from rmfs.control.problems import Problem
+from rmfs.control.problems import Problem, Trigger
 from rmfs.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     import numpy as np
 
+    from rmfs.control.asks import Call
     from rmfs.control.view import View
 
 AtLeastOne = Annotated[int, pydantic.Field(ge=1)]
@@ -45,6 +47,38 @@ class RolloutParameters(Parameters):
     many standard errors."""
     goal: Goal = Goal()
     """What a trial is worth."""
+
+
+class TriesOut:
+    """What rules that try decisions out share; goes before the class of their problem.
+
+    Attributes
+    ----------
+    base
+        The rule that says what would be done, and goes on in trials.
+    """
+
+    looks_ahead: ClassVar[bool] = True
+    optimisers: ClassVar[tuple[str, ...]] = ("rmfs.control.halving",)
+    base: Any
+    view: View
+
+    def hear(self, trigger: Trigger, subject: Any) -> None:
+        """Let the base rule hear."""
+        self.base.hear(trigger, subject)
+
+    def next_event_s(self) -> float:
+        """When the base rule wants to be asked."""
+        return float(self.base.next_event_s())
+
+    def best(self, call: Call) -> Iterator[Any]:
+        """Yield the decision that did best in trials, if it still can be taken."""
+        if call.solution is not None:
+            chosen = call.ask.memo[call.solution["row"]]
+            if legality.reason(chosen, self.view):
+                call.stale += 1
+            else:
+                yield chosen
 
 
 def base_rule(

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from rmfs.cli.options import SetOption
 from rmfs.errors import InputError
 
 app = typer.Typer(context_settings={"help_option_names": ["-h", "--help"]})
@@ -27,9 +28,7 @@ def learn(
     population: Annotated[int, typer.Option(min=4, help="Sets of weights of each.")] = 10,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the search.")] = 1,
     jobs: Annotated[int, typer.Option(min=1, help="Processes.")] = 1,
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Override a parameter.")
-    ] = None,
+    set_: SetOption = None,
 ) -> None:
     """Train linear rules by CMA-ES; write a controllers file that `rmfs run` takes."""
     from rmfs.config import parse_override

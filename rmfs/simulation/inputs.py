@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rmfs import control, references, scenario
 from rmfs import layout as layouts
 from rmfs.control.settings import ControllerSettings
@@ -96,20 +94,10 @@ def as_overrides(settings: Mapping[str, Any]) -> Overrides:
     wrong = [key for key in settings if not isinstance(key, str)]
     if wrong:
         raise InputError(f'set: {wrong[0]!r}: must be a dotted key, such as "layout.robots"')
-    return [(key.split("."), _plain(value)) for key, value in settings.items()]
-
-
-def _plain(value: Any) -> Any:
-    """Return a value as a file would hold it."""
-    if isinstance(value, type):
-        return references.name_of(value)
-    if isinstance(value, Mapping):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if isinstance(value, Path):
-        return str(value)
-    return value.item() if isinstance(value, np.generic) else value
+    return [
+        (key.split("."), references.plain(value, references.name_of))
+        for key, value in settings.items()
+    ]
 
 
 def name_of(given: Any) -> str:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rmfs.control import legality
 from rmfs.control.candidates import candidates_for
 from rmfs.control.decisions import AssignOrder
 from rmfs.control.features import RANKINGS, best_rows, numbers
 from rmfs.control.poa import PickOrderAssignment
-from rmfs.control.problems import Problem, Trigger
+from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
-from rmfs.control.rollouts import RolloutParameters, base_rule, question
+from rmfs.control.rollouts import RolloutParameters, TriesOut, base_rule, question
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
 
 
-class Rollout(PickOrderAssignment[RolloutParameters]):
+class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
     """Tries orders and stations out before it assigns an order.
 
     The base rule says what it would do. That and the best other pairs of order and station (by
@@ -32,22 +31,12 @@ class Rollout(PickOrderAssignment[RolloutParameters]):
     """
 
     parameters_model = RolloutParameters
-    looks_ahead = True
-    optimisers = ("rmfs.control.halving",)
 
     def __init__(self, parameters: RolloutParameters, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)
         self.base = base_rule(Problem.POA, parameters, view, rng)
         self.subscriptions = self.base.subscriptions  # type: ignore[misc]
         self.hears = self.base.hears  # type: ignore[misc]
-
-    def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Let the base rule hear."""
-        self.base.hear(trigger, subject)
-
-    def next_event_s(self) -> float:
-        """When the base rule wants to be asked."""
-        return float(self.base.next_event_s())
 
     def decide(self) -> Iterator[Any]:
         """Yield what the base rule says, or ask which decision is best."""
@@ -63,12 +52,7 @@ class Rollout(PickOrderAssignment[RolloutParameters]):
 
     def answered(self, call: Call) -> Iterator[Any]:
         """Yield the best decision, if it still holds."""
-        if call.solution is not None:
-            chosen = call.ask.memo[call.solution["row"]]
-            if legality.reason(chosen, self.view):
-                call.stale += 1
-            else:
-                yield chosen
+        yield from self.best(call)
         if call.completed_us > call.requested_us:
             yield from self.decide()
 

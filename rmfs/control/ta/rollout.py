@@ -10,9 +10,9 @@ from rmfs.control import legality
 from rmfs.control.candidates import candidates_for
 from rmfs.control.decisions import BringForBundles, BringForPicks, Park
 from rmfs.control.features import RANKINGS, best_rows, numbers
-from rmfs.control.problems import Problem, Trigger
+from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
-from rmfs.control.rollouts import RolloutParameters, base_rule, question
+from rmfs.control.rollouts import RolloutParameters, TriesOut, base_rule, question
 from rmfs.control.ta import Consult, TaskAllocation
 from rmfs.control.ta.stations import bring, keeper_of
 
@@ -36,7 +36,7 @@ class TaskRolloutParameters(RolloutParameters):
     pod (`pps`), the storage place (`psa`)."""
 
 
-class Rollout(TaskAllocation[TaskRolloutParameters]):
+class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
     """Tries tasks out before it gives one to a robot: other stations, other pods, other places.
 
     The base rule, with PPS and PSA, says what a robot would do. That is tried beside the same with
@@ -46,8 +46,6 @@ class Rollout(TaskAllocation[TaskRolloutParameters]):
     """
 
     parameters_model = TaskRolloutParameters
-    looks_ahead = True
-    optimisers = ("rmfs.control.halving",)
 
     def __init__(
         self, parameters: TaskRolloutParameters, view: View, rng: np.random.Generator
@@ -57,14 +55,6 @@ class Rollout(TaskAllocation[TaskRolloutParameters]):
         self.subscriptions = self.base.subscriptions  # type: ignore[misc]
         self.hears = self.base.hears  # type: ignore[misc]
         self._consult: Consult
-
-    def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Let the base rule hear."""
-        self.base.hear(trigger, subject)
-
-    def next_event_s(self) -> float:
-        """When the base rule wants to be asked."""
-        return float(self.base.next_event_s())
 
     def rest_place(self, robot: Robot) -> int:
         """Choose by the base rule."""
@@ -85,12 +75,7 @@ class Rollout(TaskAllocation[TaskRolloutParameters]):
 
     def answered(self, call: Call) -> Iterator[Any]:
         """Yield the best task, if it still can be done."""
-        if call.solution is not None:
-            chosen = call.ask.memo[call.solution["row"]]
-            if legality.reason(chosen, self.view):
-                call.stale += 1
-            else:
-                yield chosen
+        yield from self.best(call)
         if call.completed_us > call.requested_us:
             yield from self.decide(self._consult)
 

@@ -99,7 +99,35 @@ def _whole(column: str, text: str) -> int:
     return int(given)
 
 
-class OrderRows:
+class _StreamRows:
+    """Rows of orders or bundles."""
+
+    columns = ("time", "order", "sku", "quantity", "due")
+
+    def __init__(self, skus: SkuSet, problems: Problems, word: str, zero: datetime | None) -> None:
+        self.file = OrderFileBuilder(())
+        self._fields = _Fields(skus)
+        self._times = Times(zero)
+        self._problems = problems
+        self._word = word
+        self._time_us = 0
+
+    def begin(self, further: Sequence[str]) -> None:
+        """Keep what the further columns hold (see `Rows`)."""
+        self.file = OrderFileBuilder(further)
+
+    def take(self, number: int, fields: Sequence[str]) -> None:
+        """Take a row (see `Rows`)."""
+        try:
+            self._take(number, fields)
+        except FieldError as error:
+            self._problems.add(f"{self._word} {number}: {error}")
+
+    def _take(self, number: int, fields: Sequence[str]) -> None:
+        raise NotImplementedError
+
+
+class OrderRows(_StreamRows):
     """Rows of orders: the lines of an order follow each other and agree in time and due time.
 
     Parameters
@@ -114,36 +142,18 @@ class OrderRows:
         The moment of time zero, for times in ISO 8601 (see `Times`).
     """
 
-    columns = ("time", "order", "sku", "quantity", "due")
     required = frozenset(("time", "order", "sku", "quantity"))
 
     def __init__(
         self, skus: SkuSet, problems: Problems, word: str, zero: datetime | None = None
     ) -> None:
+        super().__init__(skus, problems, word, zero)
         self.builder = OrderStreamBuilder()
-        self.file = OrderFileBuilder(())
-        self._fields = _Fields(skus)
-        self._times = Times(zero)
-        self._problems = problems
-        self._word = word
         self._name: str | None = None
-        self._begun_at = 0
-        self._time_us = 0
         self._due_us = NO_DUE_US
         self._skus: list[int] = []
         self._units: list[int] = []
         self._names: set[str] = set()
-
-    def begin(self, further: Sequence[str]) -> None:
-        """Keep what the further columns hold (see `Rows`)."""
-        self.file = OrderFileBuilder(further)
-
-    def take(self, number: int, fields: Sequence[str]) -> None:
-        """Take a row (see `Rows`)."""
-        try:
-            self._take(number, fields)
-        except FieldError as error:
-            self._problems.add(f"{self._word} {number}: {error}")
 
     def _take(self, number: int, fields: Sequence[str]) -> None:
         time, name, sku, quantity, due, *further = fields
@@ -196,7 +206,7 @@ class OrderRows:
         self._close()
 
 
-class BundleRows:
+class BundleRows(_StreamRows):
     """Rows of bundles: each is a bundle.
 
     Parameters
@@ -213,7 +223,6 @@ class BundleRows:
         The moment of time zero, for times in ISO 8601 (see `Times`).
     """
 
-    columns = ("time", "order", "sku", "quantity", "due")
     required = frozenset(("time", "sku", "quantity"))
 
     def __init__(
@@ -224,26 +233,10 @@ class BundleRows:
         largest: float = math.inf,
         zero: datetime | None = None,
     ) -> None:
+        super().__init__(skus, problems, word, zero)
         self.builder = BundleStreamBuilder()
-        self.file = OrderFileBuilder(())
-        self._fields = _Fields(skus)
-        self._times = Times(zero)
         self._space_per_unit = skus.space_per_unit
-        self._problems = problems
-        self._word = word
         self._largest = largest
-        self._time_us = 0
-
-    def begin(self, further: Sequence[str]) -> None:
-        """Keep what the further columns hold (see `Rows`)."""
-        self.file = OrderFileBuilder(further)
-
-    def take(self, number: int, fields: Sequence[str]) -> None:
-        """Take a row (see `Rows`)."""
-        try:
-            self._take(number, fields)
-        except FieldError as error:
-            self._problems.add(f"{self._word} {number}: {error}")
 
     def _take(self, number: int, fields: Sequence[str]) -> None:
         time, name, sku, quantity, due, *further = fields

@@ -9,27 +9,22 @@ import pydantic
 
 from rmfs.control.asks import By
 from rmfs.control.decisions import (
-    AssignLines,
-    AssignOrder,
-    BringForBundles,
     BringForPicks,
     Park,
-    Rest,
 )
-from rmfs.control.pps.lexicographic import Lexicographic
 from rmfs.control.problems import Problem, Trigger
-from rmfs.control.ta import WORK, TaskAllocation
-from rmfs.control.ta.rest import RestPlaces, RestRule
+from rmfs.control.ta import WORK
+from rmfs.control.ta.rest import RestRule
 from rmfs.control.ta.stations import bring, keeper_of
 from rmfs.solvers.control.buffer import Buffer
+from rmfs.solvers.control.joint import JointAllocation
 from rmfs.solvers.control.pile_on import snapshot
 from rmfs.solvers.control.pile_on.parameters import JointParameters
 from rmfs.solvers.control.pile_on.plan import Plan
 from rmfs.solvers.control.pile_on.question import by_rule
-from rmfs.world.tasks import ReplenishTask
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from rmfs.control.asks import Ask, Call
     from rmfs.control.decisions import TaskDecision
@@ -37,9 +32,9 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
     from rmfs.solvers.control.pile_on.question import Question
     from rmfs.world.robots import Robot
-    from rmfs.world.stations import PickStation, ReplenishmentStation
+    from rmfs.world.stations import PickStation
 
-    Decision = Ask[Question] | TaskDecision | By[AssignOrder | AssignLines | BringForPicks]
+    Decision = Ask[Question] | TaskDecision | By[Any]
 
 
 AsksTasks = Literal["pod-at-station", "robot-free", "new-order"]
@@ -77,7 +72,7 @@ _ASKS: dict[Trigger, AsksTasks] = {
 }
 
 
-class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
+class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     """Asks the model which orders take slots, which pods come, and which robots fetch them.
 
     The model is asked, at most once per `buffer_s`, after what `triggers` names (a pod has reached
@@ -107,16 +102,14 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
     def __init__(
         self, parameters: PileOnTasksParameters, view: View, rng: np.random.Generator
     ) -> None:
-        super().__init__(parameters, view, rng)
-        self._heuristic = Lexicographic(Lexicographic.parameters_model(), view, rng)
+        super().__init__(parameters, view, rng, parameters.rest)
         self._plan = Plan(
             view,
             parameters.kept_slots,
             later=parameters.later,
             split_orders=parameters.split_orders,
         )
-        self._rest = RestPlaces(view, parameters.rest, self.draw)
-        self._at_bundles = max(round(parameters.replenishment_share * len(view.robots)), 1)
+        self._most_at_bundles = max(round(parameters.replenishment_share * len(view.robots)), 1)
         self._buffer = Buffer(view, parameters.buffer_s)
         self._changed = True
 
@@ -136,7 +129,7 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
         """Carry out the plan, ask if slots are left, and give the other robots their tasks."""
         for robot in [r for r in self.view.asking.values() if r.pod >= 0]:
             yield from self._go_on(robot, consult)
-        yield from self._replenish()
+        yield from self._replenish(self._most_at_bundles - self._at_bundles())
         yield from self._carry_out()
         yield from self._ask()
         for robot in [r for r in self.view.asking.values() if r.pod < 0]:
@@ -156,12 +149,6 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
                     called[pod] = called[pod]._replace(robot=robots[number])
         yield from self._carry_out()
 
-    def is_modelled(self, decision: Any) -> bool:
-        """Orders, and pods for picks with the robots that fetch them."""
-        if isinstance(decision, BringForPicks):
-            return decision.robot.pod < 0
-        return isinstance(decision, AssignOrder | AssignLines)
-
     # --- the model ------------------------------------------------------------------------------
 
     def _ask(self) -> Iterator[Decision]:
@@ -179,15 +166,6 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
         if any(s.free_slots > len(items[s.index]) for s in view.pick_stations):
             return True
         return bool((view.need > view.inventory.inbound[: len(view.pick_stations)]).any())
-
-    def _free_robots(self) -> list[Robot]:
-        """Robots without pod and task, in order."""
-        asking, resting = self.view.asking, self.view.resting
-        return [
-            robot
-            for robot in self.view.robots
-            if robot.index in resting or (robot.index in asking and robot.pod < 0)
-        ]
 
     # --- orders and pods ------------------------------------------------------------------------
 
@@ -210,11 +188,6 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
             fetch = BringForPicks(keeper_of(self.view, chosen, pod), pod, station.index)
             yield By(fetch, call)
 
-    def _nearest(self, robots: Sequence[Robot], pod: int) -> Robot:
-        at = self.view.storage.pod_waypoint[[pod]]
-        travel = self.view.travel
-        return min(robots, key=lambda r: (travel.estimate_s(r.waypoint, at)[0], r.index))
-
     # --- what the model leaves open -------------------------------------------------------------
 
     def _go_on(self, robot: Robot, consult: Consult) -> Iterator[Decision]:
@@ -226,46 +199,3 @@ class PileOnTasks(TaskAllocation[PileOnTasksParameters]):
         place = consult.place_for(robot)
         if place >= 0:
             yield Park(robot, place)
-
-    def _replenish(self) -> Iterator[Decision]:
-        """Send robots for bundles, as many as may work for that at a time."""
-        view = self.view
-        waiting = [s for s in view.replenishment_stations if view.has_open_work(s.index)]
-        working = sum(isinstance(robot.task, ReplenishTask) for robot in view.robots)
-        for robot in self._free_robots() if waiting else ():
-            if working >= self._at_bundles:
-                return
-            metres = view.travel.metres(robot.waypoint, np.array([s.waypoint for s in waiting]))
-            for number in np.argsort(metres, kind="stable").tolist():
-                station = waiting[number]
-                pod = self._heuristic.replenishment_pod(robot, station)
-                if pod >= 0:
-                    yield BringForBundles(keeper_of(view, robot, pod), pod, station.index)
-                    working += 1
-                    break
-
-    def _to_rest(self, robot: Robot) -> Rest:
-        place = self._rest.choose(robot)
-        return Rest(robot, place if place >= 0 else robot.waypoint)
-
-    def rest_place(self, robot: Robot) -> int:
-        """Choose by the rest rule."""
-        return self._rest.choose(robot)
-
-    # --- for the consult ------------------------------------------------------------------------
-
-    def serves(self, pod: int, station: int) -> bool:
-        """Whether there is work for a pod at a station of either kind."""
-        return self._heuristic.serves(pod, station)
-
-    def pick_pod(self, robot: Robot, station: PickStation) -> int:
-        """Nobody else gives tasks: none."""
-        return -1
-
-    def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Ask the heuristic."""
-        return self._heuristic.replenishment_pod(robot, station)
-
-    def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Ask the heuristic."""
-        return self._heuristic.next_station(robot, stations)

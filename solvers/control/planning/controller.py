@@ -9,27 +9,22 @@ import numpy as np
 
 from rmfs.control.asks import By
 from rmfs.control.decisions import (
-    AssignLines,
-    AssignOrder,
     BringForBundles,
     BringForPicks,
     Park,
-    Rest,
 )
-from rmfs.control.pps.lexicographic import Lexicographic
 from rmfs.control.problems import Problem, Trigger
-from rmfs.control.ta import WORK, TaskAllocation
-from rmfs.control.ta.rest import RestPlaces
+from rmfs.control.ta import WORK
 from rmfs.control.ta.stations import bring, keeper_of
+from rmfs.solvers.control.joint import JointAllocation
 from rmfs.solvers.control.planning import snapshot
 from rmfs.solvers.control.planning.parameters import PlanningParameters
 from rmfs.solvers.control.planning.plan import Plan
 from rmfs.solvers.control.planning.question import by_rule
 from rmfs.world.stations import PickStation
-from rmfs.world.tasks import ReplenishTask
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from rmfs.control.asks import Ask, Call
     from rmfs.control.decisions import TaskDecision
@@ -37,7 +32,6 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
     from rmfs.solvers.control.planning.question import Question
     from rmfs.world.robots import Robot
-    from rmfs.world.stations import ReplenishmentStation
 
     Decision = Ask[Question] | TaskDecision | By[Any]
 
@@ -45,7 +39,7 @@ _WORTH_A_PLAN = 2
 """Free slots of a station from which on a new order alone is worth a new plan."""
 
 
-class PlanningControl(TaskAllocation[PlanningParameters]):
+class PlanningControl(JointAllocation[PlanningParameters]):
     """Plans the next visits of every pick station, and commits itself to the first steps only.
 
     The model is asked, at most once per `buffer_s`, when a pod has reached a pick station, a robot
@@ -78,9 +72,7 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
     def __init__(
         self, parameters: PlanningParameters, view: View, rng: np.random.Generator
     ) -> None:
-        super().__init__(parameters, view, rng)
-        self._heuristic = Lexicographic(Lexicographic.parameters_model(), view, rng)
-        self._rest = RestPlaces(view, parameters.rest, self.draw)
+        super().__init__(parameters, view, rng, parameters.rest)
         self._plan = Plan(view, parameters.split_orders)
         self._asked_s = -inf
         self._asked = 0
@@ -125,12 +117,6 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
         yield from self._give_slots()
         yield from self._send()
 
-    def is_modelled(self, decision: Any) -> bool:
-        """Orders, and pods for picks with the robots that fetch them."""
-        if isinstance(decision, BringForPicks):
-            return decision.robot.pod < 0
-        return isinstance(decision, AssignOrder | AssignLines)
-
     def _ask(self) -> Iterator[Decision]:
         given, now_s = self.parameters, self.view.now_s
         self._wants_to_ask = self._changed and not self.in_flight
@@ -169,8 +155,7 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
             yield from self._replenish(needed - self._at_bundles())
         while (free := self._free_robots()) and (station := self._short()) is not None:
             pod = self._plan.pods[station.index].pop(0)
-            at = view.storage.pod_waypoint[[pod]]
-            near = min(free, key=lambda r: (view.travel.estimate_s(r.waypoint, at)[0], r.index))
+            near = self._nearest(free, pod)
             fetch = BringForPicks(keeper_of(view, near, pod), pod, station.index)
             yield By(fetch, self._plan.call(station.index))
             yield from self._give_slots()
@@ -188,15 +173,6 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
                 if work_s < given.horizon_s:
                     found.append((work_s, station.index))
         return self.view.pick_stations[min(found)[1]] if found else None
-
-    def _free_robots(self) -> list[Robot]:
-        """Robots without pod and task, in order."""
-        asking, resting = self.view.asking, self.view.resting
-        return [
-            robot
-            for robot in self.view.robots
-            if robot.index in resting or (robot.index in asking and robot.pod < 0)
-        ]
 
     # --- what is left to rules ------------------------------------------------------------------
 
@@ -221,49 +197,3 @@ class PlanningControl(TaskAllocation[PlanningParameters]):
         """Whether a pod waits for a slot that is about to be free, for an order it serves alone."""
         soon = any(order.unpicked_units == 0 for order in station.orders.values())
         return soon and self._plan.streams(robot.pod, station.index)
-
-    def _at_bundles(self) -> int:
-        """How many robots work for replenishment stations."""
-        return sum(isinstance(robot.task, ReplenishTask) for robot in self.view.robots)
-
-    def _replenish(self, most: int) -> Iterator[Decision]:
-        """Send at most so many robots for bundles, each to the nearest station with work."""
-        view = self.view
-        waiting = [s for s in view.replenishment_stations if view.has_open_work(s.index)]
-        for robot in self._free_robots() if waiting else ():
-            if most <= 0:
-                return
-            metres = view.travel.metres(robot.waypoint, np.array([s.waypoint for s in waiting]))
-            for number in np.argsort(metres, kind="stable").tolist():
-                station = waiting[number]
-                pod = self._heuristic.replenishment_pod(robot, station)
-                if pod >= 0:
-                    yield By(BringForBundles(keeper_of(view, robot, pod), pod, station.index), None)
-                    most -= 1
-                    break
-
-    def _to_rest(self, robot: Robot) -> Rest:
-        place = self._rest.choose(robot)
-        return Rest(robot, place if place >= 0 else robot.waypoint)
-
-    def rest_place(self, robot: Robot) -> int:
-        """Choose by the rest rule."""
-        return self._rest.choose(robot)
-
-    # --- for the consult ------------------------------------------------------------------------
-
-    def serves(self, pod: int, station: int) -> bool:
-        """Whether there is work for a pod at a station of either kind."""
-        return self._heuristic.serves(pod, station)
-
-    def pick_pod(self, robot: Robot, station: PickStation) -> int:
-        """Nobody else gives tasks: none."""
-        return -1
-
-    def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Ask the heuristic."""
-        return self._heuristic.replenishment_pod(robot, station)
-
-    def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Ask the heuristic."""
-        return self._heuristic.next_station(robot, stations)

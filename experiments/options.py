@@ -1,0 +1,56 @@
+"""Options and arguments that several commands of `rmfs experiment` have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+Design = Annotated[
+    str, typer.Argument(metavar="DESIGN", help="A design file, or the name of a shipped design.")
+]
+Made = Annotated[
+    str,
+    typer.Argument(
+        metavar="DESIGN",
+        help="A design file, the name of a shipped design, or a folder of results.",
+    ),
+]
+Out = Annotated[
+    Path | None,
+    typer.Option(help="Folder of the results. [default: results/NAME]", show_default=False),
+]
+Jobs = Annotated[
+    int | None,
+    typer.Option(
+        "--jobs", "-j", min=1, help="Runs at a time. [default: one per core]", show_default=False
+    ),
+]
+Columns = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--column",
+        "-c",
+        help="Column of the footprint; may be repeated. [default: the main ones]",
+        show_default=False,
+    ),
+]
+Confidence = Annotated[float, typer.Option(min=0.5, max=0.999, help="Of the intervals.")]
+Interactions = Annotated[
+    bool,
+    typer.Option("--interactions/--no-interactions", help="Show interactions of two factors, too."),
+]
+Lacking = Annotated[
+    bool,
+    typer.Option(
+        "--allow-incomplete", help="Exit with code 0 although runs are lacking; the note stays."
+    ),
+]
+Bootstrap = Annotated[
+    bool, typer.Option("--bootstrap", help="BCa bootstrap intervals instead of Student's t.")
+]
+FileOption = Annotated[
+    Path | None,
+    typer.Option("--file", "-f", help="Write a .tex, .md, .csv or .html file."),
+]

@@ -1,0 +1,105 @@
+"""What models of orders, pods and robots leave to rules: bundles, rest, and what others ask."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from rmfs.control.asks import By
+from rmfs.control.base import Parameters
+from rmfs.control.decisions import AssignLines, AssignOrder, BringForBundles, BringForPicks, Rest
+from rmfs.control.pps.lexicographic import Lexicographic
+from rmfs.control.ta import TaskAllocation
+from rmfs.control.ta.rest import RestPlaces, RestRule
+from rmfs.control.ta.stations import keeper_of
+from rmfs.world.tasks import ReplenishTask
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from typing import Any
+
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+    from rmfs.world.stations import PickStation, ReplenishmentStation
+
+P = TypeVar("P", bound=Parameters)
+
+
+class JointAllocation(TaskAllocation[P]):
+    """A rule of TA whose model decides orders, and pods for picks with the robots that fetch them.
+
+    Robots bring pods to replenishment stations, the nearest with work first, pods by PPS
+    lexicographic; idle ones rest by the rest rule.
+    """
+
+    def __init__(self, parameters: P, view: View, rng: np.random.Generator, rest: RestRule) -> None:
+        super().__init__(parameters, view, rng)
+        self._heuristic = Lexicographic(Lexicographic.parameters_model(), view, rng)
+        self._rest = RestPlaces(view, rest, self.draw)
+
+    def is_modelled(self, decision: Any) -> bool:
+        """Orders, and pods for picks with the robots that fetch them."""
+        if isinstance(decision, BringForPicks):
+            return decision.robot.pod < 0
+        return isinstance(decision, AssignOrder | AssignLines)
+
+    def _free_robots(self) -> list[Robot]:
+        """Robots without pod and task, in order."""
+        asking, resting = self.view.asking, self.view.resting
+        return [
+            robot
+            for robot in self.view.robots
+            if robot.index in resting or (robot.index in asking and robot.pod < 0)
+        ]
+
+    def _nearest(self, robots: Sequence[Robot], pod: int) -> Robot:
+        at = self.view.storage.pod_waypoint[[pod]]
+        travel = self.view.travel
+        return min(robots, key=lambda r: (travel.estimate_s(r.waypoint, at)[0], r.index))
+
+    def _at_bundles(self) -> int:
+        """How many robots work for replenishment stations."""
+        return sum(isinstance(robot.task, ReplenishTask) for robot in self.view.robots)
+
+    def _replenish(self, most: int) -> Iterator[By[BringForBundles]]:
+        """Send at most so many robots for bundles, each to the nearest station with work."""
+        view = self.view
+        waiting = [s for s in view.replenishment_stations if view.has_open_work(s.index)]
+        for robot in self._free_robots() if waiting else ():
+            if most <= 0:
+                return
+            metres = view.travel.metres(robot.waypoint, np.array([s.waypoint for s in waiting]))
+            for number in np.argsort(metres, kind="stable").tolist():
+                station = waiting[number]
+                pod = self._heuristic.replenishment_pod(robot, station)
+                if pod >= 0:
+                    yield By(BringForBundles(keeper_of(view, robot, pod), pod, station.index), None)
+                    most -= 1
+                    break
+
+    def _to_rest(self, robot: Robot) -> Rest:
+        place = self._rest.choose(robot)
+        return Rest(robot, place if place >= 0 else robot.waypoint)
+
+    def rest_place(self, robot: Robot) -> int:
+        """Choose by the rest rule."""
+        return self._rest.choose(robot)
+
+    # --- for the consult ------------------------------------------------------------------------
+
+    def serves(self, pod: int, station: int) -> bool:
+        """Whether there is work for a pod at a station of either kind."""
+        return self._heuristic.serves(pod, station)
+
+    def pick_pod(self, robot: Robot, station: PickStation) -> int:
+        """Nobody else gives tasks: none."""
+        return -1
+
+    def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
+        """Ask the heuristic."""
+        return self._heuristic.replenishment_pod(robot, station)
+
+    def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
+        """Ask the heuristic."""
+        return self._heuristic.next_station(robot, stations)
