@@ -9,6 +9,17 @@ r"""The plan as an integer programme.
 
 A visit gives no more than its pod has; the lines of a waiting order are served where the order is,
 all or none; an order closes no sooner than its last line; and what is kept fits into the slots.
+
+Three kinds of rows are stated per line or pod although one row for all would do, because the
+relaxation is so much tighter (2 % from the best plan, not 50 %). A line is served only if a pod
+comes that has all its units, a pod comes only if a line is served that it has, and an order is kept
+from its first line until it closes:
+
+.. math::
+
+    z_{lsv} \le \sum_{p: \text{has } l} y_{svp}, \quad
+    y_{svp} \le \sum_{l: \text{on } p} z_{lsv}, \quad
+    h_{osv} \ge \sum_{v' \le v} (z_{lsv'} - c_{osv'})
 """
 
 from __future__ import annotations
@@ -22,7 +33,11 @@ from rmfs.solvers.models.planning.values import NONE, Plan
 from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from rmfs.solvers.models.planning.data import Planning, Reals
+
+    Flags = NDArray[np.bool_]
 
 
 class Programme:
@@ -37,6 +52,8 @@ class Programme:
     def __init__(self, data: Planning) -> None:
         self.data = data
         self._build = ProgramBuilder()
+        self._rows: list[tuple[list[int], list[int], float, float]] = []
+        self._enough = data.stock[:, data.line_sku] >= data.line_units
         self._lines_of: list[list[int]] = [[] for _ in range(data.orders)]
         for line, order in enumerate(data.line_order.tolist()):
             self._lines_of[order].append(line)
@@ -47,6 +64,7 @@ class Programme:
         self._orders()
         self._closing()
         self._keeping()
+        self._add_rows()
         self.linear: LinearProgram = self._build.build(self._settled())
 
     # --- columns --------------------------------------------------------------------------------
@@ -56,7 +74,7 @@ class Programme:
         data, column = self.data, self._build.columns
         visits = [range(first + data.visits) for first in self._first]
         self._visits_of = visits
-        can_come = np.isfinite(data.cost)
+        can_come = np.isfinite(data.cost) & self._has_use()
         self._y = {
             (s, v, p): int(column(1, cost=data.cost[p, s] * data.decay**v)[0])
             for s in range(data.stations)
@@ -91,13 +109,19 @@ class Programme:
         at = int(self.data.order_station[order])
         return [at] if at >= 0 else list(range(self.data.stations))
 
-    def _may_serve(self, line: int, station: int, visit: int, can_come: Reals) -> bool:
-        """Whether some pod of a visit could have the units of a line."""
+    def _has_use(self) -> Flags:
+        """Whether a pod has all units of some line that a station may serve, shape (P, S)."""
         data = self.data
-        enough = data.stock[:, data.line_sku[line]] >= data.line_units[line]
+        at = data.order_station[data.line_order]
+        mine = [(at < 0) | (at == station) for station in range(data.stations)]
+        return np.array([self._enough[:, lines].any(axis=1) for lines in mine]).T
+
+    def _may_serve(self, line: int, station: int, visit: int, can_come: Flags) -> bool:
+        """Whether some pod of a visit could have the units of a line."""
+        enough = self._enough[:, line]
         if visit < self._first[station]:
-            return bool(enough[data.under_way[station][visit]])
-        return bool((enough & (can_come[:, station] > 0)).any())
+            return bool(enough[self.data.under_way[station][visit]])
+        return bool((enough & can_come[:, station]).any())
 
     # --- rows -----------------------------------------------------------------------------------
 
@@ -106,27 +130,42 @@ class Programme:
         """Add a row of columns and coefficients; one without columns says nothing here."""
         if terms:
             columns, values = zip(*terms, strict=True)
-            self._build.rows(1, (0, np.array(columns), np.array(values)), lower=lower, upper=upper)
+            self._rows.append((list(columns), list(values), lower, upper))
+
+    def _add_rows(self) -> None:
+        """Hand the rows over, all at once."""
+        if self._rows:
+            columns, values, lower, upper = zip(*self._rows, strict=True)
+            which = np.repeat(np.arange(len(columns)), [len(row) for row in columns])
+            entries = which, np.concatenate(columns), np.concatenate(values)
+            self._build.rows(len(columns), entries, lower=lower, upper=upper)
 
     def _visits(self) -> None:
         """Make one visit with one pod at a time, without gaps, none in vain."""
-        by_visit: dict[tuple[int, int], list[int]] = {}
+        by_visit: dict[tuple[int, int], list[tuple[int, int]]] = {}
         by_pod: dict[int, list[int]] = {}
         for (s, v, p), column in self._y.items():
-            by_visit.setdefault((s, v), []).append(column)
+            by_visit.setdefault((s, v), []).append((p, column))
             by_pod.setdefault(p, []).append(column)
-        lines: dict[tuple[int, int], list[int]] = {}
-        for (_, s, v), column in self._z.items():
-            lines.setdefault((s, v), []).append(column)
-        for (s, v), columns in by_visit.items():
-            self._row([(c, 1) for c in columns], upper=1)
+        lines: dict[tuple[int, int], list[tuple[int, int]]] = {}
+        for (line, s, v), column in self._z.items():
+            lines.setdefault((s, v), []).append((line, column))
+        for (s, v), pods in by_visit.items():
+            self._row([(column, 1) for _, column in pods], upper=1)
             before = by_visit.get((s, v - 1))
             if before:
-                self._row([(c, 1) for c in columns] + [(c, -1) for c in before], upper=0)
-            served = lines.get((s, v), [])
-            self._row([(c, 1) for c in columns] + [(c, -1) for c in served], upper=0)
+                self._row([(c, 1) for _, c in pods] + [(c, -1) for _, c in before], upper=0)
+            self._pods_and_lines(pods, lines.get((s, v), []))
         for columns in by_pod.values():
             self._row([(c, 1) for c in columns], upper=1)
+
+    def _pods_and_lines(self, pods: list[tuple[int, int]], lines: list[tuple[int, int]]) -> None:
+        """Serve a line only with a pod that has it; bring a pod only for a line that it has."""
+        enough = self._enough
+        for line, z in lines:
+            self._row([(z, 1)] + [(y, -1) for p, y in pods if enough[p, line]], upper=0)
+        for p, y in pods:
+            self._row([(y, 1)] + [(z, -1) for line, z in lines if enough[p, line]], upper=0)
 
     def _stock(self) -> None:
         """Serve no more than the pod has."""
@@ -140,9 +179,11 @@ class Programme:
                 pod = data.under_way[s][v]
                 self._row(terms, upper=float(data.stock[pod, sku]))
             else:
-                pods = np.flatnonzero(np.isfinite(data.cost[:, s]) & (data.stock[:, sku] > 0))
-                have = [(self._y[s, v, p], -int(data.stock[p, sku])) for p in pods.tolist()]
-                self._row(terms + have, upper=0)
+                most = sum(units for _, units in terms)
+                pods = np.flatnonzero(data.stock[:, sku] > 0).tolist()
+                have = [(p, -min(int(data.stock[p, sku]), most)) for p in pods]
+                came = [(self._y[s, v, p], units) for p, units in have if (s, v, p) in self._y]
+                self._row(terms + came, upper=0)
 
     def _orders(self) -> None:
         """Serve all lines of a waiting order at one station, or none; others once at most."""
@@ -177,17 +218,13 @@ class Programme:
         kept: dict[tuple[int, int], list[int]] = {}
         for (order, s, v), column in self._h.items():
             kept.setdefault((s, v), []).append(column)
-            end = len(self._visits_of[s])
+            closed = [(column, 1)] + [(c, 1) for c in self._closes(order, s, v + 1)]
+            if data.order_station[order] >= 0:
+                self._row(closed, lower=1)
+                continue
             for line in self._lines_of[order]:
-                if data.order_station[order] >= 0:
-                    before = [(c, 1) for c in self._served(line, s, 0, v + 1)]
-                    self._row([(column, 1), *before], lower=1)
-                    continue
                 early = [(c, -1) for c in self._served(line, s, 0, v + 1)]
-                for other in self._lines_of[order]:
-                    if other != line:
-                        late = [(c, -1) for c in self._served(other, s, v + 1, end)]
-                        self._row([(column, 1), *early, *late], lower=-1)
+                self._row([*closed, *early], lower=0)
         for (s, v), columns in kept.items():
             stays = int(((data.order_station == s) & (data.order_until > v)).sum())
             self._row([(c, 1) for c in columns], upper=data.kept[s] - stays)
