@@ -25,12 +25,20 @@ STEPS = 400
 _SEARCH = {"pile_on": "cp_sat", "planning": "cp_sat"}
 """Method whose own bound is used, where it is not the default one."""
 
-_LARGEST = 400_000
-"""Nonzeros of the largest programme whose relaxation is solved by the simplex method."""
+_LARGEST = 4_000_000
+"""Nonzeros of the largest programme whose relaxation is solved."""
+
+_LARGE = 50_000
+"""Nonzeros beyond which that is done by an interior point, not by the simplex method."""
 
 
 def bounds(
-    decision: Decision, work: float, where: str = "", *, guard_s: float | None = None
+    decision: Decision,
+    work: float,
+    where: str = "",
+    *,
+    guard_s: float | None = None,
+    search: bool = True,
 ) -> Iterator[tuple[str, float]]:
     """Yield bounds with who proves them; those that say nothing are left out.
 
@@ -44,20 +52,24 @@ def bounds(
         What the question is called in errors. Default: its name.
     guard_s
         Wall time after which the relaxation, and the search, are given up. Default: none.
+    search
+        Whether the exact search is asked as well. Default: yes.
     """
     guard = Limits(wall_guard_s=guard_s)
     data, family = model_data(decision, where), decision.family
     if family == "pile_on":
         first = pile_on.solve(data, "greedy")
         yield from _finite("prices", pile_on.bounded(data, first, STEPS).bound)
-    if family == "planning":
-        found = planning.solve(data, "greedy", bound_steps=STEPS)
-        yield from _finite("prices", found.bound)
     stated = None if family in ("zones", "run_bound") else exact(decision, where)
     if stated is not None and stated.program.nonzeros <= _LARGEST:
         with suppress(WallGuardError):
-            relaxed = highs.relax(stated.program, guard)
+            interior = stated.program.nonzeros > _LARGE
+            relaxed = highs.relax(stated.program, guard, interior=interior)
             yield from _finite("relaxation", relaxed.bound * stated.factor)
+    elif family == "planning":  # whose prices say less than its relaxation
+        yield from _finite("prices", planning.solve(data, "greedy", bound_steps=STEPS).bound)
+    if not search:
+        return
     method = _SEARCH.get(family, methods(family)[0])
     given = families.family(family).solve
     limits = replace(limits_of(method, work), wall_guard_s=guard_s)
@@ -67,16 +79,21 @@ def bounds(
 
 
 def best(
-    decision: Decision, work: float, where: str = "", *, guard_s: float | None = None
+    decision: Decision,
+    work: float,
+    where: str = "",
+    *,
+    guard_s: float | None = None,
+    search: bool = True,
 ) -> tuple[str, float]:
     """Return the best bound and who proves it; nan and nobody if there is none.
 
     Parameters
     ----------
-    decision, work, where, guard_s
+    decision, work, where, guard_s, search
         As for `bounds`.
     """
-    found = list(bounds(decision, work, where, guard_s=guard_s))
+    found = list(bounds(decision, work, where, guard_s=guard_s, search=search))
     if not found:
         return "", math.nan
     return max(found, key=lambda one: one[1] * decision.sign)

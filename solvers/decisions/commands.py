@@ -255,6 +255,9 @@ def improve(
     load: Annotated[
         float, typer.Option(min=0.0, help="Load of the machine above which it waits.")
     ] = math.inf,
+    guard: Annotated[
+        float, typer.Option(min=1.0, help="Wall time of a search, beyond which it is given up.")
+    ] = 120.0,
 ) -> None:
     """Search for better values and bounds of the library, as long as it may."""
     import os
@@ -267,7 +270,7 @@ def improve(
 
     os.nice(15)
     families, sizes = known("family", family, SCHEMAS), known("size", size, SITES)
-    effort = Effort(work, rounds, seconds, load=load)
+    effort = Effort(work, rounds, seconds, guard, load)
     count = improved(Library.load(library), effort, families, sizes, tell=typer.echo)
     typer.echo(f"{count} values and bounds got better")
 

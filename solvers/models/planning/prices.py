@@ -2,8 +2,9 @@ r"""A bound for any size: lines are paid for, and every visit takes what pays it
 
 Slots, and that the lines of an order go together, are left out; that a line is served once is paid
 for by a price :math:`\pi_l \ge 0` (Lagrange). What is left is, per visit and SKU, which lines to
-serve with the stock of the pod (a knapsack, bounded by its relaxation), and which pod makes which
-visit (an assignment). Whatever the prices are, the result is a bound; a subgradient improves them.
+serve with the stock of the pod (a knapsack, bounded by its relaxation), one at least, and which pod
+makes which visit (an assignment). Whatever the prices are, the result is a bound; a subgradient
+improves them.
 """
 
 from __future__ import annotations
@@ -14,7 +15,11 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from rmfs.solvers.models.planning.data import Integers, Planning, Reals
+
+    Flags = NDArray[np.bool_]
 
 _SLACK = 1e-9
 """Relative amount by which the bound is lowered for rounding in sums."""
@@ -74,8 +79,9 @@ def _relaxed(data: Planning, worth: Reals, prices: Reals) -> tuple[float, Reals]
     """Return the bound at given prices, and how often it serves each line, shape (L,)."""
     times = np.zeros(data.lines)
     total = float(prices.sum())
-    gains, rows, visits = [], [], []
+    gains, visits = [], []
     at = data.order_station[data.line_order]
+    enough = data.stock[:, data.line_sku] >= data.line_units
     for station in range(data.stations):
         mine = np.flatnonzero((at < 0) | (at == station))
         first = len(data.under_way[station])
@@ -84,26 +90,34 @@ def _relaxed(data: Planning, worth: Reals, prices: Reals) -> tuple[float, Reals]
             lines = mine[net > 0]
             if visit < first:
                 pods = np.array(data.under_way[station][visit : visit + 1])
-                gain, _ = _served(data, lines, net[net > 0], pods)
-                total += float(gain[0])
+                total += float(_served(data, lines, net[net > 0], pods)[0])
                 times += _amounts(data, lines, net[net > 0], int(pods[0]))
                 continue
-            pods = np.arange(data.pods)
-            gain, _ = _served(data, lines, net[net > 0], pods)
+            gain = _served(data, lines, net[net > 0], np.arange(data.pods))
+            # nobody comes in vain: without a line that pays, the one that costs least
+            least = np.where(enough[:, mine], net, -np.inf).max(axis=1, initial=-np.inf)
+            gain = np.where(gain > 0, gain, least)
             gains.append(gain - data.cost[:, station] * data.decay**visit)
-            rows.append((station, visit))
-            visits.append((lines, net[net > 0]))
+            visits.append((mine, net))
     if gains:
         table = np.maximum(np.array(gains), 0.0)
         row, pod = linear_sum_assignment(table, maximize=True)
         total += float(table[row, pod].sum())
         for r, p in zip(row.tolist(), pod.tolist(), strict=True):
             if gains[r][p] > 0:
-                times += _amounts(data, *visits[r], p)
+                times += _taken(data, *visits[r], p, enough[p])
     return -(total + _settled(data)), times
 
 
-def _served(data: Planning, lines: Integers, net: Reals, pods: Integers) -> tuple[Reals, Integers]:
+def _taken(data: Planning, mine: Integers, net: Reals, pod: int, enough: Flags) -> Reals:
+    """Return how much of each line a new visit serves in the relaxation, shape (L,)."""
+    amount = _amounts(data, mine[net > 0], net[net > 0], pod)
+    if not amount.any():
+        amount[mine[np.where(enough[mine], net, -np.inf).argmax()]] = 1.0
+    return amount
+
+
+def _served(data: Planning, lines: Integers, net: Reals, pods: Integers) -> Reals:
     """Return what each of some pods gains from lines at most, shape (p,), by its stock."""
     gain = np.zeros(len(pods))
     for sku in np.unique(data.line_sku[lines]).tolist():
@@ -113,7 +127,7 @@ def _served(data: Planning, lines: Integers, net: Reals, pods: Integers) -> tupl
         used = np.concatenate([[0.0], np.cumsum(units[order])])
         earned = np.concatenate([[0.0], np.cumsum(net[chosen][order])])
         gain += np.interp(data.stock[pods, sku], used, earned)
-    return gain, pods
+    return gain
 
 
 def _amounts(data: Planning, lines: Integers, net: Reals, pod: int) -> Reals:

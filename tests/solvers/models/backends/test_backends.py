@@ -62,13 +62,16 @@ def test_the_relaxation_bounds_the_integer_optimum_and_is_the_lp_optimum() -> No
         program = random_program(seed)
         best = enumerate_best(program)
         relaxed, simplex = clarabel.relax(program), highs.relax(program)
+        interior = highs.relax(program, interior=True)
         assert relaxed.bound <= best
         assert simplex.bound <= best
+        assert interior.bound <= best
         lp = highs.solve(continuous(program))
         if lp.status is Status.OPTIMAL:
             compared += 1
             assert relaxed.bound == pytest.approx(program.objective(lp.x), abs=1e-5)
             assert simplex.bound == pytest.approx(program.objective(lp.x), abs=1e-9)
+            assert interior.bound == pytest.approx(program.objective(lp.x), abs=1e-5)
     assert compared > 20
 
 
