@@ -79,13 +79,13 @@ def main(arguments: list[str] | None = None) -> None:
         timed = pd.DataFrame(_timed(library, families, sizes, given.questions, given.seeds))
         _publish(rows, timed.to_csv(index=False), machine=platform.processor() or "unknown")
     known = library.frame()
-    _table(given.published / "decision-library.md", state(known))
-    _table(given.published / "decision-online.md", online(library))
+    publish_table(given.published / "decision-library.md", state(known))
+    publish_table(given.published / "decision-online.md", online(library))
     if rows.exists():
         best = dict(zip(known["question"], known["value"], strict=True))
         table = with_gaps(pd.read_csv(rows), best)
         source = f"of {rows.name}"
-        _table(given.published / "decision-integrals.md", compared(table), source=source)
+        publish_table(given.published / "decision-integrals.md", compared(table), source=source)
         for name in ("performance", "data"):
             path = given.published / f"decision-{name}.png"
             _picture(path, table, name)
@@ -196,7 +196,9 @@ def _by_size(found: pd.DataFrame) -> pd.DataFrame:
     return frame.sort_values(["family", "size"]).reset_index(drop=True)
 
 
-def _table(path: Path, frame: pd.DataFrame, **more: Any) -> None:
+def publish_table(path: Path, rows: pd.DataFrame | list[dict[str, Any]], **more: Any) -> None:
+    """Publish a table as a page, with where it comes from; and print it."""
+    frame = pd.DataFrame(rows)
     _publish(path, frame.to_markdown(index=False) + "\n", **more)
     print(frame.to_string(index=False))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import isfinite, isnan
 from pathlib import Path
 from typing import Any
@@ -17,53 +18,16 @@ from rmfs.solvers.decisions.asking import asked_again
 from rmfs.solvers.decisions.checking import check
 from rmfs.solvers.decisions.files import Decision, read
 from rmfs.solvers.decisions.recording import DecisionRecorder
-
-SETS = {
-    "pile-on": "pile_on",
-    "pile-on-split": "pile_on",
-    "pile-on-dispatch": "pile_on",
-    "m1g": "pile_on",
-    "hadgs": "pile_on",
-    "planning": "planning",
-    "psa-placement": "placement",
-    "psa-prices": "zones",
-    "psa-stays": "stays",
-    "ta-matching": "matching",
-    "ta-balance": "balance",
-    "ta-routes": "sequence",
-    "stocking": "replenishment",
-    "ca-schedule": "charging",
-}
-"""A shipped set of controllers, and the family that it asks."""
-
-SMALLER: dict[str, Any] = {
-    "layout.robots": 6,
-    "layout.pick_stations.east": 2,
-    "layout.replenishment_stations.west": 2,
-    "layout.horizontal_aisles": 4,
-    "scenario.warmup_s": 0,
-    "scenario.skus.count": 200,
-    "scenario.replenishment.resume_below_share": 0.8,
-    "scenario.replenishment.pause_above_share": 0.9,
-}
-
-
-def recorded(controllers: str, duration_s: float, folder: Path, **more: Any) -> list[Decision]:
-    """Simulate half of the default floor and read what was written."""
-    keeper = DecisionRecorder(folder, {"controllers": controllers, "seed": 0})
-    given = SMALLER | {"scenario.duration_s": duration_s}
-    if controllers == "stocking":
-        given |= {"controllers.rps.work_s": 0.003, "controllers.rps.bundles": 10}
-    if controllers == "ca-schedule":
-        given |= {
-            "layout.other_stations.charger": {"kind": "charger", "north": 2},
-            "scenario.energy.battery": {"capacity_wh": 60, "initial_least_share": 0.4},
-            "controllers.ca.period_s": 10,
-        }
-    rmfs.simulate(controllers=controllers, set=given, observers=[keeper], **more)
-    found = [read(path) for path in sorted(folder.glob("*.json.gz"))]
-    assert keeper.written == len(found) > 0
-    return found
+from tests.tools.round_trip import (
+    DERIVED,
+    SETS,
+    SMALLER,
+    Count,
+    asked,
+    compare,
+    recorded,
+    unasked,
+)
 
 
 def same(one: Any, other: Any) -> bool:
@@ -98,16 +62,26 @@ def test_recorded_questions_give_the_recorded_answers(controllers: str, tmp_path
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("controllers", SETS)
-def test_five_hundred_recorded_questions_of_each(controllers: str, tmp_path: Path) -> None:
-    seconds, found = 3600.0, 0
-    for seed in range(60):
-        questions = recorded(controllers, seconds, tmp_path / str(seed), seed=seed)
-        assert_answers_come_again(questions[: 500 - found], SETS[controllers])
-        found += len(questions)
-        if found >= 500:
-            return
-    pytest.fail(f"only {found} questions")
+@pytest.mark.parametrize("name", [*SETS, *DERIVED])
+def test_five_hundred_recorded_questions_of_each(name: str) -> None:
+    count = (asked if name in SETS else unasked)(name, 500)
+    assert count.questions == count.same == 500
+
+
+@pytest.mark.parametrize("family", DERIVED)
+def test_questions_that_nobody_asks_are_answered_alike(family: str) -> None:
+    count = unasked(family, 5)
+    assert count.questions == count.same == 5
+
+
+def test_another_answer_is_counted(tmp_path: Path) -> None:
+    question = recorded("ta-matching", 30.0, tmp_path)[0]
+    assert question.recorded is not None
+    count = Count("ta-matching", "matching")
+    compare(count, question, asked_again)
+    worse = replace(question.recorded, objective=question.recorded.objective + 1.0)
+    compare(count, question, lambda one: worse)
+    assert (count.questions, count.same, count.wrong) == (2, 1, (question.name,))
 
 
 def test_recording_changes_nothing(tmp_path: Path) -> None:
@@ -127,7 +101,7 @@ def test_questions_whose_answers_come_too_late_are_written_at_the_end(tmp_path: 
 
 
 @pytest.mark.parametrize(
-    ("asked", "told"),
+    ("way", "told"),
     [
         ({"by": "oracle"}, "asked.by: names none of pile-on, planning"),
         ({"by": "planning", "speed": 3}, "asked: "),
@@ -135,10 +109,10 @@ def test_questions_whose_answers_come_too_late_are_written_at_the_end(tmp_path: 
         ({}, "asked.by: names none"),
     ],
 )
-def test_wrong_ways_of_asking_are_refused(asked: dict[str, Any], told: str, tmp_path: Path) -> None:
+def test_wrong_ways_of_asking_are_refused(way: dict[str, Any], told: str, tmp_path: Path) -> None:
     question = recorded("planning", 30.0, tmp_path)[0]
     with pytest.raises(InputError, match=told):
-        asked_again(Decision(question.family, question.data, asked=asked))
+        asked_again(Decision(question.family, question.data, asked=way))
 
 
 DESIGN = """
