@@ -143,7 +143,8 @@ def ask(
     kept = tuple(tuple(pod for pod in plan.pods[s.index] if may_come[pod]) for s in stations)
     may_come[[pod for station in others for pod in plan.pods[station]]] = False
     data = _planning(view, given, stations, rows, coming, may_come)
-    limits = Limits(iterations=given.steps, deterministic_s=given.work_s, gap=given.gap)
+    steps = given.steps * len(stations)
+    limits = Limits(iterations=steps, deterministic_s=given.work_s, gap=given.gap)
     question = Question(data, kept, given.method, limits, seed, given.bound_steps)
     sizes = {
         "stations": data.stations,

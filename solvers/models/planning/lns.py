@@ -1,9 +1,10 @@
-"""Large neighbourhood search: visits are taken out of a plan, and others put in (Shaw 1998).
+"""Neighbourhood search: visits are taken out of a plan, and others put in (Shaw 1998).
 
-Each step takes up to two visits out of one station or two, and draws pods for the gaps and the ends
-among those that look best, better ones more often; or it lets two visits change places. It is kept
-unless it is worth less. What the other stations serve stays with them, so that a step costs the
-same however many there are. The steps are compiled: `rmfs/traffic/src/visits`.
+Each step replaces a visit of a station, moves or adds one, or lets visits of two stations change
+places. The pod that comes is the best, by a quick estimate, of a few that are drawn among those that
+serve something. Plans a little worse are allowed at first (threshold accepting, Dueck and Scheuer
+1990). What the other stations serve stays with them, so that a step costs the same however many
+there are. The steps are compiled: `rmfs/traffic/src/visits`.
 """
 
 from __future__ import annotations

@@ -73,7 +73,7 @@ impl Visits {
     fn searched(&self, pods: Vec<Vec<u32>>, steps: u64, seed: u64) -> PyResult<Plan> {
         self.with(|filling, appeal| {
             let draft = extended(filling, appeal, &pods);
-            improved(filling, appeal, draft, steps, seed)
+            improved(filling, draft, steps, seed)
         })
     }
 }

@@ -1,6 +1,7 @@
 //! Which pods are worth a try at a station, by a rough estimate of what each could add.
 
-use super::filling::{Draft, Filling};
+use super::draft::Draft;
+use super::filling::Filling;
 use super::problem::Problem;
 
 /// Share of its worth at which a line counts whose order lacks other lines in the plan.

@@ -3,13 +3,16 @@
 //! Nothing here knows of traffic. It is part of this crate as the package has one compiled library.
 
 mod appeal;
+mod draft;
 mod filling;
+mod guess;
 mod problem;
 mod rule;
 mod search;
 
 pub use appeal::Appeal;
-pub use filling::{Draft, Filling};
+pub use draft::Draft;
+pub use filling::Filling;
 pub use problem::{Given, Line, NONE, Problem, Stocked};
 pub use rule::extended;
 pub use search::improved;

@@ -54,10 +54,14 @@ pub struct Problem {
     pub lines_of: Vec<Vec<u32>>,
     /// Open orders per station, in their order.
     pub open_at: Vec<Vec<u32>>,
-    /// Lines of waiting orders per SKU.
-    pub waiting_for: Vec<Vec<u32>>,
     pub on_pod: Vec<Vec<Stocked>>,
     pub with_sku: Vec<Vec<Stocked>>,
+    /// Words of a set of lines.
+    pub words: usize,
+    /// Lines of which each pod has the units, as sets, row by row.
+    serves: Vec<u64>,
+    /// Lines of waiting orders, as a set.
+    pub waiting: Vec<u64>,
 }
 
 impl Problem {
@@ -66,11 +70,12 @@ impl Problem {
         let pods = given.cost.len() / stations.max(1);
         let longest = given.under_way.iter().map(Vec::len).max().unwrap_or(0) + given.visits;
         let mut lines_of = vec![Vec::new(); given.order_station.len()];
-        let mut waiting_for = vec![Vec::new(); skus];
+        let words = given.lines.len().div_ceil(64);
+        let mut waiting = vec![0; words];
         for (number, line) in given.lines.iter().enumerate() {
             lines_of[line.order as usize].push(number as u32);
             if given.order_station[line.order as usize] < 0 {
-                waiting_for[line.sku as usize].push(number as u32);
+                put(&mut waiting, number as u32);
             }
         }
         let mut open_at = vec![Vec::new(); stations];
@@ -88,6 +93,14 @@ impl Problem {
                 with_sku[sku].push(Stocked { of: pod as u32, units });
             }
         }
+        let mut serves = vec![0; pods * words];
+        for (number, line) in given.lines.iter().enumerate() {
+            let enough = |stocked: &&Stocked| stocked.units >= line.units;
+            for stocked in with_sku[line.sku as usize].iter().filter(enough) {
+                let row = stocked.of as usize * words;
+                put(&mut serves[row..row + words], number as u32);
+            }
+        }
         let decay = (0..=longest).map(|visit| given.decay.powi(visit as i32)).collect();
         Self {
             stations,
@@ -96,9 +109,11 @@ impl Problem {
             decay,
             lines_of,
             open_at,
-            waiting_for,
             on_pod,
             with_sku,
+            words,
+            serves,
+            waiting,
             given,
         }
     }
@@ -106,6 +121,11 @@ impl Problem {
     /// The lines of an order.
     pub fn lines(&self, order: u32) -> impl Iterator<Item = (u32, &Line)> {
         self.lines_of[order as usize].iter().map(|&line| (line, &self.given.lines[line as usize]))
+    }
+
+    /// Lines of which a pod has the units, as a set.
+    pub fn serves(&self, pod: u32) -> &[u64] {
+        &self.serves[pod as usize * self.words..][..self.words]
     }
 
     pub fn cost(&self, pod: u32, station: usize) -> f64 {
@@ -120,4 +140,31 @@ impl Problem {
     pub fn first(&self, station: usize) -> usize {
         self.given.under_way[station].len()
     }
+}
+
+/// Puts a line into a set.
+pub fn put(set: &mut [u64], line: u32) {
+    set[line as usize / 64] |= 1 << (line % 64);
+}
+
+/// Takes a line out of a set.
+pub fn take_out(set: &mut [u64], line: u32) {
+    set[line as usize / 64] &= !(1 << (line % 64));
+}
+
+/// Whether a line is in a set.
+pub fn has(set: &[u64], line: u32) -> bool {
+    set[line as usize / 64] >> (line % 64) & 1 == 1
+}
+
+/// The lines of a set, given by its words, in order.
+pub fn lines_in(words: impl Iterator<Item = u64>) -> impl Iterator<Item = u32> {
+    words.enumerate().flat_map(|(word, bits)| {
+        let mut left = bits;
+        std::iter::from_fn(move || {
+            let bit = (left != 0).then(|| left.trailing_zeros())?;
+            left &= left - 1;
+            Some(word as u32 * 64 + bit)
+        })
+    })
 }

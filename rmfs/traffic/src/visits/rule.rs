@@ -1,7 +1,8 @@
 //! The start rule: one visit after the other, each the best of the few pods that look best.
 
 use super::appeal::Appeal;
-use super::filling::{Draft, Filling};
+use super::draft::Draft;
+use super::filling::Filling;
 use super::problem::Problem;
 
 /// Pods that are tried for each visit, and orders that are tried for several.

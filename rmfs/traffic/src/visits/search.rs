@@ -1,128 +1,170 @@
-//! Large neighbourhood search: visits are taken out of a plan, and others put in (Shaw 1998).
+//! Neighbourhood search: visits are taken out of a plan, and others put in (Shaw 1998), plans a
+//! little worse being allowed at first (threshold accepting, Dueck and Scheuer 1990, with a threshold
+//! drawn anew for each step).
 //!
 //! A step changes one or two stations; what the others serve stays with them, so a step costs the
 //! same however many stations there are.
 
-use super::appeal::Appeal;
-use super::filling::{Draft, Filling};
+use super::draft::{Draft, Saved};
+use super::filling::Filling;
+use super::guess::Guess;
+use super::problem::Problem;
 use crate::random::Random;
 
-/// Of ten steps, those that let two visits change places.
-const SWAPS: u64 = 3;
-/// Most visits of a station that are taken out at a time.
-const MOST_TAKEN: u64 = 2;
-/// Pods that a new visit is drawn from, those that look best.
-const LIST: usize = 8;
+/// Of a hundred steps, those that replace a visit, that move one, that add one, and that let visits
+/// of two stations change places. The others share out anew what two stations serve.
+const REPLACE: u64 = 51;
+const MOVE: u64 = 37;
+const ADD: u64 = 6;
+const SWAP: u64 = 3;
+/// One of so many steps that concern one station fills another anew too: it may take what the first
+/// lets go.
+const WITH_ANOTHER: u64 = 5;
+/// How much worse a plan may be at first, as a share of the mean worth of a line.
+const WORSE: f64 = 0.5;
+/// Parts that a threshold is drawn in.
+const PARTS: u64 = 1 << 20;
 
 /// Searches from a draft; what is found is not worth less.
-pub fn improved(
-    filling: &mut Filling,
-    appeal: &mut Appeal,
-    draft: Draft,
-    steps: u64,
-    seed: u64,
-) -> Draft {
+pub fn improved(filling: &mut Filling, draft: Draft, steps: u64, seed: u64) -> Draft {
+    let problem = filling.problem;
     let mut random = Random::new(seed);
-    let mut draft = draft;
-    let stations = filling.problem.stations;
-    for _ in 0..steps {
-        let mut changed = vec![random.below(stations as u64) as usize];
-        if stations > 1 && random.below(2) == 0 {
-            let other = random.below(stations as u64 - 1) as usize;
-            changed.push(other + usize::from(other >= changed[0]));
+    let mut guess = Guess::new(problem, &draft);
+    let mut value = draft.value();
+    let (mut draft, mut best_value, mut best) = (draft.clone(), value, draft);
+    let (mut saved, mut changed) = (Saved::default(), Vec::new());
+    let worse = WORSE * guess.mean_worth();
+    for step in 0..steps {
+        let kind = random.below(100);
+        choose_stations(problem, kind, &mut changed, &mut random);
+        draft.save(&changed, &mut saved);
+        if !change(filling, &mut guess, &mut draft, &changed, kind, &mut random) {
+            continue;
         }
-        let before: f64 = changed.iter().map(|&s| draft.at[s].value).sum();
-        let saved = draft.saved(&changed);
-        if random.below(10) < SWAPS {
-            swap(filling, &mut draft, &changed, &mut random);
-        } else {
-            renew(filling, appeal, &mut draft, &changed, &mut random);
+        filling.fill(&mut draft, &changed);
+        let gain = draft.value_of(&changed) - saved.value();
+        let threshold = worse * (steps - step) as f64 / steps as f64;
+        if gain < -threshold * random.below(PARTS) as f64 / PARTS as f64 {
+            draft.restore(problem, &saved);
+            continue;
         }
-        let after: f64 = changed.iter().map(|&s| draft.at[s].value).sum();
-        if after < before {
-            draft.restore(saved);
+        guess.changed(&saved, &draft, &changed);
+        value += gain;
+        if value > best_value {
+            best_value = value;
+            best.clone_from(&draft);
         }
     }
     // orders that stations have kept from each other may be better shared out anew
-    let whole = filling.draft(&draft.pods());
-    if whole.value() > draft.value() { whole } else { draft }
+    let whole = filling.draft(&best.pods());
+    if whole.value() > best.value() { whole } else { best }
 }
 
-/// Lets two visits of one station, or of two, change places if their pods can come there.
-fn swap(filling: &mut Filling, draft: &mut Draft, changed: &[usize], random: &mut Random) {
-    let (one, other) = (changed[0], changed[changed.len() - 1]);
-    let lengths = (draft.at[one].pods.len(), draft.at[other].pods.len());
-    if lengths.0 == 0 || lengths.1 == 0 || one == other && lengths.0 < 2 {
-        return;
-    }
-    let visit = random.below(lengths.0 as u64) as usize;
-    let its = if one == other {
-        let its = random.below(lengths.1 as u64 - 1) as usize;
-        its + usize::from(its >= visit)
-    } else {
-        random.below(lengths.1 as u64) as usize
-    };
-    let (pod, its_pod) = (draft.at[one].pods[visit], draft.at[other].pods[its]);
-    let problem = filling.problem;
-    if problem.cost(its_pod, one).is_finite() && problem.cost(pod, other).is_finite() {
-        draft.at[one].pods[visit] = its_pod;
-        draft.at[other].pods[its] = pod;
-        filling.fill(draft, changed);
+/// Chooses the stations that a step changes; a swap, and sharing out, take two where there are two.
+fn choose_stations(problem: &Problem, kind: u64, changed: &mut Vec<usize>, random: &mut Random) {
+    let stations = problem.stations as u64;
+    let one = random.below(stations) as usize;
+    changed.clear();
+    changed.push(one);
+    let takes_two = kind >= REPLACE + MOVE + ADD;
+    if stations > 1 && (takes_two || random.below(WITH_ANOTHER) == 0) {
+        let other = random.below(stations - 1) as usize;
+        changed.push(other + usize::from(other >= one));
     }
 }
 
-/// Takes out a few visits, and puts others in their place and at the ends.
-fn renew(
+/// Changes the visits of the first station, or of both; whether anything has changed.
+fn change(
     filling: &mut Filling,
-    appeal: &mut Appeal,
+    guess: &mut Guess,
     draft: &mut Draft,
     changed: &[usize],
+    kind: u64,
     random: &mut Random,
-) {
-    let mut gaps = Vec::new();
-    for &station in changed {
-        for _ in 0..=random.below(MOST_TAKEN) {
-            let pods = &mut draft.at[station].pods;
-            if !pods.is_empty() {
-                let visit = random.below(pods.len() as u64) as usize;
-                pods.remove(visit);
-                gaps.push((station, visit));
-            }
-        }
-        gaps.push((station, usize::MAX));
-    }
-    filling.fill(draft, changed);
-    while !gaps.is_empty() {
-        let (station, visit) = gaps.swap_remove(random.below(gaps.len() as u64) as usize);
-        if draft.at[station].pods.len() < filling.problem.given.visits {
-            insert(filling, appeal, draft, station, visit, random);
-        }
+) -> bool {
+    let station = changed[0];
+    if kind < REPLACE {
+        replace(filling, guess, draft, station, random)
+    } else if kind < REPLACE + MOVE {
+        relocate(draft, station, random)
+    } else if kind < REPLACE + MOVE + ADD {
+        add(filling, guess, draft, station, random)
+    } else if kind < REPLACE + MOVE + ADD + SWAP {
+        changed.len() > 1 && swap(filling.problem, draft, station, changed[1], random)
+    } else {
+        changed.len() > 1
     }
 }
 
-/// Lets a pod that looks good come in between, if that pays.
-fn insert(
+/// Takes a visit out, and puts another in: in its place, or anywhere.
+fn replace(
     filling: &mut Filling,
-    appeal: &mut Appeal,
+    guess: &mut Guess,
     draft: &mut Draft,
     station: usize,
-    visit: usize,
     random: &mut Random,
-) {
-    appeal.score(filling, draft, station);
-    let best = appeal.best(LIST);
-    if best.is_empty() {
-        return;
+) -> bool {
+    let visits = draft.at[station].pods.len() as u64;
+    if visits == 0 {
+        return false;
     }
-    // the minimum of two draws: better ones more often
-    let pick = random.below(best.len() as u64).min(random.below(best.len() as u64));
-    let pod = best[pick as usize];
-    let saved = draft.saved(&[station]);
-    let before = draft.at[station].value;
-    let visit = visit.min(draft.at[station].pods.len());
-    draft.at[station].pods.insert(visit, pod);
-    filling.fill(draft, &[station]);
-    if draft.at[station].value <= before {
-        draft.restore(saved);
+    let visit = random.below(visits) as usize;
+    let Some(pod) = guess.pod(filling, draft, station, Some(visit), random) else { return false };
+    let to = if random.below(2) == 0 { visit } else { random.below(visits) as usize };
+    draft.at[station].pods.remove(visit);
+    draft.at[station].pods.insert(to, pod);
+    true
+}
+
+/// Puts a visit somewhere else in the order of its station's.
+fn relocate(draft: &mut Draft, station: usize, random: &mut Random) -> bool {
+    let pods = &mut draft.at[station].pods;
+    if pods.len() < 2 {
+        return false;
     }
+    let visit = random.below(pods.len() as u64) as usize;
+    let to = random.below(pods.len() as u64 - 1) as usize;
+    let pod = pods.remove(visit);
+    pods.insert(to + usize::from(to >= visit), pod);
+    true
+}
+
+/// Puts one more visit in.
+fn add(
+    filling: &mut Filling,
+    guess: &mut Guess,
+    draft: &mut Draft,
+    station: usize,
+    random: &mut Random,
+) -> bool {
+    let visits = draft.at[station].pods.len();
+    if visits >= filling.problem.given.visits {
+        return false;
+    }
+    let Some(pod) = guess.pod(filling, draft, station, None, random) else { return false };
+    draft.at[station].pods.insert(random.below(visits as u64 + 1) as usize, pod);
+    true
+}
+
+/// Lets two visits of two stations change places if their pods can come there.
+fn swap(
+    problem: &Problem,
+    draft: &mut Draft,
+    one: usize,
+    other: usize,
+    random: &mut Random,
+) -> bool {
+    let (visits, its_visits) = (draft.at[one].pods.len(), draft.at[other].pods.len());
+    if visits == 0 || its_visits == 0 {
+        return false;
+    }
+    let visit = random.below(visits as u64) as usize;
+    let its_visit = random.below(its_visits as u64) as usize;
+    let (pod, its_pod) = (draft.at[one].pods[visit], draft.at[other].pods[its_visit]);
+    if problem.cost(its_pod, one).is_infinite() || problem.cost(pod, other).is_infinite() {
+        return false;
+    }
+    draft.at[one].pods[visit] = its_pod;
+    draft.at[other].pods[its_visit] = pod;
+    true
 }
