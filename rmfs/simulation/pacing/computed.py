@@ -26,7 +26,7 @@ SECONDS_PER_UNIT = {
     "rounding": 2.476e-05,
     "rule": 2.989e-07,
     "scipy": 1.2e-08,
-    "visits": 1.94e-09,
+    "visits": 3.98e-09,
 }
 """Seconds of a unit of work of each back end, as measured by `python -m
 tests.tools.calibrate` on an AMD EPYC on 2026-11-22 (results/published/seconds-per-unit.md)."""
@@ -39,7 +39,7 @@ SECONDS_PER_CALL = {
     "rounding": 0.001733,
     "rule": 0.0001915,
     "scipy": 6.29e-05,
-    "visits": 0.000254,
+    "visits": 3.114e-05,
 }
 """Seconds of a call besides, by the same measurement; of other back ends none."""
 
@@ -51,7 +51,7 @@ SECONDS_PER_ENTRY = {
     "rounding": 0.0,
     "rule": 6.158e-06,
     "scipy": 0.0,
-    "visits": 5.09e-09,
+    "visits": 6.673e-09,
 }
 """Seconds of an entry built (`Answer.built`), by the same measurement; of other back ends none."""
 
