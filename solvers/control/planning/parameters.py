@@ -29,7 +29,7 @@ class PlanningParameters(SearchParameters):
     stations: Count = 64
     """Pick stations planned for at a time, those with the least work on its way; what is planned
     for the others stays."""
-    steps: Annotated[int, pydantic.Field(ge=0)] = 1500
+    steps: Annotated[int, pydantic.Field(ge=0)] = 150
     """Steps of the search for each plan and station that is planned for."""
     buffer_s: NotNegative = 1.0
     """Seconds for which decisions are collected before the optimiser is asked again."""

@@ -38,7 +38,7 @@ METHODS = {
 }
 """Who searches for answers, in this order."""
 
-STEPS = {"lns": 400.0, "beam": 400.0, "hadgs": 400.0, "highs": 100.0}
+STEPS = {"lns": 20_000.0, "beam": 400.0, "hadgs": 400.0, "highs": 100.0}
 """Limit of the first round of those who count steps or nodes; the others get `work` seconds."""
 
 STEPS_OF = {"planning": {"lns": 40_000.0}}

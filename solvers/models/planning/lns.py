@@ -1,10 +1,10 @@
 """Neighbourhood search: visits are taken out of a plan, and others put in (Shaw 1998).
 
 Each step replaces a visit of a station, moves or adds one, or lets visits of two stations change
-places. The pod that comes is the best, by a quick estimate, of a few that are drawn among those that
-serve something. Plans a little worse are allowed at first (threshold accepting, Dueck and Scheuer
-1990). What the other stations serve stays with them, so that a step costs the same however many
-there are. The steps are compiled: `rmfs/traffic/src/visits`.
+places. The pod that comes is the best, by a quick estimate, of a few that are drawn among those
+that serve something. Plans a little worse are allowed at first (threshold accepting, Dueck and
+Scheuer 1990). What the other stations serve stays with them, so that a step costs the same however
+many there are. The steps are compiled: `rmfs/traffic/src/visits`.
 """
 
 from __future__ import annotations
