@@ -34,6 +34,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "picker-load": "rmfs.control.poa.picker_load:PickerLoad",
         "first-come": "rmfs.control.poa.order_rules:FirstCome",
         "due-time": "rmfs.control.poa.order_rules:DueTime",
+        "tardiness-cost": "rmfs.control.poa.order_rules:TardinessCost",
         "slack": "rmfs.control.poa.order_rules:Slack",
         "critical-ratio": "rmfs.control.poa.order_rules:CriticalRatio",
         "frequency-age": "rmfs.control.poa.order_rules:FrequencyAge",

@@ -114,6 +114,7 @@ class Recorder(Observer):
         )
         self.orders = Log(
             **{"order": "i4", "station": "i2", "lines": "i4", "units": "i4", "in_file": "i4"},
+            priority="i1",
             **{"created_s": "f8", "due_s": "f8", "assigned_s": "f8", "completed_s": "f8"},
             **{"cancelled_s": "f8", "units_cut": "i4"},
         )
@@ -162,6 +163,7 @@ class Recorder(Observer):
         self.layout, self.world, self.traffic = run.layout, run.world, run.traffic
         self.order_stream, self.bundle_stream = run.order_stream, run.bundle_stream
         self._disturbances = run.disturbances
+        self.due = run.scenario.orders.due
         if run.scenario.energy is not None:
             self.energy.begin(run.traffic, run.layout.robots, run.world.batteries)
         if run.scenario.packing is not None:
@@ -334,6 +336,7 @@ def order_row(order: Order) -> tuple[Any, ...]:
         len(order.all_lines),
         sum(line.units for line in order.all_lines) + order.units_cut,
         order.in_file,
+        order.priority,
         order.created_s,
         order.due_s,
         order.assigned_s,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from functools import partial
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import pydantic
@@ -32,6 +33,58 @@ class PriorityDue(Block):
         """Return the function that turns a number in [0, 1) into an offset in seconds."""
         share, urgent, ordinary = self.urgent_share, self.urgent_offset_s, self.ordinary_offset_s
         return partial(_by_priority, share, urgent, ordinary)
+
+
+class OrderClass(Block):
+    """Orders of one priority."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 ._-]{0,39}$")] = Field(
+        description="in tables and files of orders; up to 40 letters, digits, spaces, . _ -"
+    )
+    share: Share = Field(description="share of the orders")
+    offset_s: Positive = Field(description="s from arrival to due time")
+    weight: Annotated[float, Field(ge=0.001, le=1000)] = Field(
+        1.0,
+        description="what lateness counts, as a multiple of that of other orders; from 0.001 to "
+        "1000, so that the lightest still count",
+    )
+
+
+class ClassesDue(Block):
+    """Any number of classes of orders, each with a share, an offset and a weight."""
+
+    mode: Literal["classes"] = "classes"
+    classes: Annotated[tuple[OrderClass, ...], pydantic.Strict(strict=False)] = Field(
+        min_length=1, max_length=20, description="the most urgent first; their shares make 1"
+    )
+
+    @pydantic.field_validator("classes")
+    @classmethod
+    def _whole(cls, value: tuple[OrderClass, ...]) -> tuple[OrderClass, ...]:
+        names = [one.name for one in value]
+        twice = [name for name in names if names.count(name) > 1]
+        if twice:
+            raise ValueError(f"name {twice[0]} comes twice")
+        if abs((total := sum(one.share for one in value)) - 1.0) > 1e-6:
+            raise ValueError(f"shares must make 1 (they make {total:g})")
+        return value
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the classes."""
+        return tuple(one.name for one in self.classes)
+
+    def sampler(self) -> Callable[[float], float]:
+        """Return the function that turns a number in [0, 1) into an offset in seconds."""
+        return partial(_by_class, self._bounds(), tuple(one.offset_s for one in self.classes))
+
+    def class_of(self, uniform: float) -> int:
+        """Return the class whose offset the sampler takes for a number."""
+        return bisect_right(self._bounds(), uniform)
+
+    def _bounds(self) -> tuple[float, ...]:
+        """Sums of shares, without the last: rounding must leave nobody without a class."""
+        return tuple(accumulate(one.share for one in self.classes))[:-1]
 
 
 class NormalDue(Block):
@@ -91,7 +144,19 @@ class DepartureDue(Block):
         return partial(_always, self.lead_s)
 
 
-Due = Annotated[PriorityDue | NormalDue | DepartureDue, Field(discriminator="mode")]
+Due = Annotated[PriorityDue | ClassesDue | NormalDue | DepartureDue, Field(discriminator="mode")]
+
+NO_CLASS = -1
+"""Of an order in a scenario without classes (`ClassesDue`)."""
+
+
+def class_of(due: Due, uniform: float) -> int:
+    """Return the class of the order whose offset is drawn with a number, or `NO_CLASS`."""
+    return due.class_of(uniform) if isinstance(due, ClassesDue) else NO_CLASS
+
+
+def _by_class(bounds: tuple[float, ...], offsets_s: tuple[float, ...], uniform: float) -> float:
+    return offsets_s[bisect_right(bounds, uniform)]
 
 
 def _by_priority(share: float, urgent_s: float, ordinary_s: float, uniform: float) -> float:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from rmfs.errors import InputError
 from rmfs.random import Stream
+from rmfs.scenario.due import NO_CLASS, class_of
 from rmfs.scenario.parameters import Orders, not_above_skus
 from rmfs.scenario.substreams import Substreams
 
@@ -35,12 +37,15 @@ class OrderContent(NamedTuple):
     redraws
         How often a SKU was drawn of which too little was uncommitted; `DRAWS_PER_LINE` at most for
         each line.
+    priority
+        Its class, or -1 where there are none (`orders.due.mode = "classes"`).
     """
 
     skus: tuple[int, ...]
     units: tuple[int, ...]
     due_offset_s: float
     redraws: int
+    priority: int = NO_CLASS
 
 
 class OrderSource:
@@ -86,7 +91,7 @@ class OrderSource:
         self._substreams = Substreams(seed, Stream.ORDER_CONTENTS, path)
         self._lines = config.lines.sampler()
         self._units = config.units_per_line.sampler()
-        self._due = config.due.sampler()
+        self._due, self._class_of = config.due.sampler(), partial(class_of, config.due)
         self._by_popularity = skus.by_popularity
         self._affinity_share = 0.0 if skus.affinity is None else skus.affinity.share
         self._by_affinity = None if skus.affinity is None else skus.affinity.samplers(len(skus))
@@ -109,7 +114,7 @@ class OrderSource:
         """
         uniform = self._substreams.at(ordinal)
         lines = self._lines(uniform())
-        due_offset_s = self._due(uniform())
+        due_offset_s = self._due(urgency := uniform())
         units = [self._units(uniform()) for _ in range(lines)]
         first = [uniform() for _ in range(lines)]
         related = self._related(lines, uniform)
@@ -136,7 +141,8 @@ class OrderSource:
                     return None
                 sku = found
             chosen.append(sku)
-        return OrderContent(tuple(chosen), tuple(units), due_offset_s, redraws)
+        priority = self._class_of(urgency)
+        return OrderContent(tuple(chosen), tuple(units), due_offset_s, redraws, priority)
 
     def _related(self, lines: int, uniform: Callable[[], float]) -> list[bool]:
         """Which lines are drawn by affinity to the line before."""

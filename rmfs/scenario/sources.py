@@ -9,6 +9,7 @@ from rmfs import foreign
 from rmfs.errors import InputError
 from rmfs.scenario import exact
 from rmfs.scenario.clock import US_PER_S
+from rmfs.scenario.due import ClassesDue
 from rmfs.scenario.parameters import LetterSkus, SkuFile, StreamDemand, StreamReplenishment
 from rmfs.scenario.skus import SkuSet, draw_sku_set, read_sku_set
 from rmfs.scenario.skus.csv_file import read_sku_table
@@ -60,7 +61,9 @@ def order_stream(scenario: Scenario, skus: SkuSet) -> OrderStream:
         stream: OrderStream = foreign.read(config.file).orders(skus)
     else:
         zero = time_zero(scenario)
-        stream = read_orders(config.file, skus, zero)
+        due = scenario.orders.due
+        classes = due.names if isinstance(due, ClassesDue) else ()
+        stream = read_orders(config.file, skus, zero, classes)
         if zero is not None and len(stream):
             _check_comes(int(stream.time_us[0]), scenario, zero)
     _check_digest(config, digest(stream, skus) if config.digest else None)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rmfs.random import Stream
 from rmfs.scenario.categorical import Categorical
+from rmfs.scenario.due import class_of
 from rmfs.scenario.orders import OrderContent
 from rmfs.scenario.substreams import Substreams
 
@@ -38,7 +40,7 @@ class WordSource:
         self._alphabet = alphabet
         self._colour = Categorical(list(alphabet.colours.values())).pick
         self._units = config.units_per_letter.sampler()
-        self._due = config.due.sampler()
+        self._due, self._class_of = config.due.sampler(), partial(class_of, config.due)
         self._substreams = Substreams(seed, Stream.ORDER_CONTENTS, path)
 
     def draw(self, ordinal: int) -> OrderContent:
@@ -46,9 +48,10 @@ class WordSource:
         uniform = self._substreams.at(ordinal)
         words = self._alphabet.words
         word = words[int(uniform() * len(words))]
-        due_offset_s = self._due(uniform())
+        due_offset_s = self._due(urgency := uniform())
         lines: dict[int, int] = {}
         for letter in word:
             sku = self._alphabet.sku(letter, self._colour(uniform()))
             lines[sku] = lines.get(sku, 0) + self._units(uniform())
-        return OrderContent(tuple(lines), tuple(lines.values()), due_offset_s, redraws=0)
+        units, priority = tuple(lines.values()), self._class_of(urgency)
+        return OrderContent(tuple(lines), units, due_offset_s, 0, priority)

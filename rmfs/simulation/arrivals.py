@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rmfs.scenario import Site, bundle_intake, order_intake
+from rmfs.scenario.due import ClassesDue
 from rmfs.scenario.streams import BundleStream, OrderStream
 from rmfs.world.orders import Bundle, Order
 
@@ -57,6 +58,8 @@ class ArrivalProcess:
             capacity=world.inventory.total_capacity,
             largest_pod=float(layout.pod_capacity.max(initial=0.0)),
         )
+        due = scenario.orders.due
+        self._classes = due.classes if isinstance(due, ClassesDue) else ()
         self._orders = order_intake(scenario, world.skus, site, seed, recorder)
         self._bundles = bundle_intake(scenario, world.skus, site, seed, recorder)
         self._woken_us = self._wake = -1
@@ -103,6 +106,9 @@ class ArrivalProcess:
             world.orders_created, world.now_s, arrival.due_s, arrival.skus, arrival.units
         )
         order.in_file = arrival.in_file
+        if arrival.priority >= 0:
+            order.priority = arrival.priority
+            order.weight = self._classes[arrival.priority].weight
         world.add_order(order)
         self._events.order_created(order)
 

@@ -37,6 +37,7 @@ class OrderBacklog:
         self._sku = np.zeros((64, 4), np.int64)
         self._units = np.zeros((64, 4), np.int32)
         self._due_s = np.zeros(64)
+        self._weight = np.ones(64)
         self._index = np.zeros(64, np.int64)
         self._queued_at = np.full(64, -1, np.int32)
 
@@ -68,6 +69,11 @@ class OrderBacklog:
         return self._due_s[: len(self.at_row)]
 
     @property
+    def weight(self) -> NDArray[np.float64]:
+        """What lateness of each order counts, by its class, shape (B,)."""
+        return self._weight[: len(self.at_row)]
+
+    @property
     def index(self) -> NDArray[np.int64]:
         """Ordinal of arrival of each order, shape (B,)."""
         return self._index[: len(self.at_row)]
@@ -85,6 +91,7 @@ class OrderBacklog:
             self._sku[row, column] = line.sku
             self._units[row, column] = line.open_units
         self._due_s[row] = order.due_s
+        self._weight[row] = order.weight
         self._index[row] = order.index
         self._queued_at[row] = order.queued_at
         self.at_row.append(order)
@@ -103,6 +110,7 @@ class OrderBacklog:
             self._sku[row] = self._sku[end]
             self._units[row] = self._units[end]
             self._due_s[row] = self._due_s[end]
+            self._weight[row] = self._weight[end]
             self._index[row] = self._index[end]
             self._queued_at[row] = self._queued_at[end]
         self._sku[end] = 0
@@ -152,6 +160,7 @@ class OrderBacklog:
         self._units = np.pad(self._units, pad)
         self._index = np.pad(self._index, pad[0])
         self._due_s = np.pad(self._due_s, pad[0])
+        self._weight = np.pad(self._weight, pad[0])
         self._queued_at = np.pad(self._queued_at, pad[0], constant_values=-1)
 
 

@@ -70,6 +70,10 @@ class Order:
         When it was given up because stock could not serve it.
     units_cut
         Units ordered that are not delivered.
+    priority
+        Its class, or -1 where the scenario has none (`orders.due.mode = "classes"`).
+    weight
+        What its lateness counts, by its class.
     """
 
     index: int
@@ -89,6 +93,8 @@ class Order:
     in_file: int = -1
     cancelled_s: float = nan
     units_cut: int = 0
+    priority: int = -1
+    weight: float = 1.0
 
     @property
     def all_lines(self) -> tuple[OrderLine, ...]:

@@ -172,6 +172,7 @@ class World(WorldState):
             part = Order(
                 order.index, order.created_s, order.due_s, (), 0, 0, station, now_s, whole=order
             )
+            part.priority, part.weight = order.priority, order.weight
             order.parts.append(part)
             order.slots_taken += 1
             self.split_orders[order.index] = order

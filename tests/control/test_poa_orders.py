@@ -15,6 +15,7 @@ from rmfs.control.poa.order_rules import (
     FrequencyAge,
     RandomOrder,
     Slack,
+    TardinessCost,
 )
 from rmfs.control.poa.related import Related
 from rmfs.control.poa.workload import Workload
@@ -83,6 +84,36 @@ class TestWhichOrder:
             other.order(due_s, **units)
         made = decide(other, other.make(Slack, line_s=0.0, unit_s=0.0))
         assert [order for order, _ in made] == [0, 1]
+
+    def test_tardiness_cost(self, situation) -> None:
+        """Work of 70 s each, 70 on average, two ahead: urgency falls by e in 140 s of slack.
+
+        Slack of orders 0 to 3: 0 (overdue), 140, 280 and 280, of weights 1, 1, 1 and 4: costs
+        1, 0.368, 0.135 and 0.541.
+        """
+        situation.world.now_s = 100.0
+        for due_s, weight in ((90.0, 1.0), (310.0, 1.0), (450.0, 1.0), (450.0, 4.0)):
+            order = situation.order(due_s, s0=1)
+            order.weight = weight
+            situation.world.orders.remove(order)
+            situation.world.orders.add(order)
+        made = decide(situation, situation.make(TardinessCost))
+        assert [order for order, _ in made] == [0, 3, 1, 2]
+
+    def test_tardiness_cost_prefers_little_work(self, situation) -> None:
+        """All overdue: weight over work decides, 1/160, 1/70 and 3/160."""
+        situation.world.now_s = 100.0
+        for weight, units in (
+            (1.0, {"s0": 2, "s1": 2}),
+            (1.0, {"s0": 1}),
+            (3.0, {"s0": 2, "s1": 2}),
+        ):
+            order = situation.order(50.0, **units)
+            order.weight = weight
+            situation.world.orders.remove(order)
+            situation.world.orders.add(order)
+        made = decide(situation, situation.make(TardinessCost))
+        assert [order for order, _ in made] == [2, 1, 0]
 
     def test_frequency_and_age(self, situation) -> None:
         """Units ordered so far: 1 + 1 of SKU 0, 6 + 2 of SKU 1.

@@ -13,10 +13,12 @@ from rmfs.control.poa.criteria import (
     DueSoon,
     DueTime,
     FirstCome,
+    FirstWave,
     InboundMatches,
     Random,
     Related,
     Size,
+    Weight,
     best,
 )
 from rmfs.control.poa.queue import Queue
@@ -88,6 +90,10 @@ class TestCriteria:
         assert self.score(situation, DueTime()) == [-650, -800, -50]
         assert self.score(situation, DueSoon()) == [1, 0, 1]
         assert self.score(situation, DueSoon(within_s=0.0)) == [0, 0, 1]
+        assert self.score(situation, FirstWave()) == [1, 0, 1]  # the first truck, and who is late
+        assert self.score(situation, FirstWave(wave_s=150.0)) == [1, 1, 1]
+        situation.world.orders.weight[1] = 3.0
+        assert self.score(situation, Weight()) == [1, 3, 1]
         assert self.score(situation, Size()) == [2, 5, 3]
         assert self.score(situation, Size(count="lines")) == [1, 2, 1]
         assert len(set(self.score(situation, Random()))) == 3

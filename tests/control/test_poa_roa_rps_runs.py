@@ -18,6 +18,8 @@ NOT_BY_DEFAULT: list[tuple[str, dict[str, Any]]] = [
     ("poa", {"name": "first-come", "station": "least-busy", "fast_lane": True}),
     ("poa", {"name": "slack", "station": "least-busy"}),
     ("poa", {"name": "critical-ratio", "line_s": 30.0, "unit_s": 5.0}),
+    ("poa", {"name": "tardiness-cost", "ahead": 0.5, "fast_lane": True}),
+    ("poa", {"name": "queue", "queue_criteria": ["weight", {"criterion": "wave", "wave_s": 60.0}]}),
     ("poa", {"name": "due-time", "station": "most-busy", "stick_to_station": True}),
     ("poa", {"name": "foresight", "score": "surplus", "tie_breaker": "depletion"}),
     ("poa", {"name": "lines-in-common", "fast_lane": True, "tie_breaker": "random"}),

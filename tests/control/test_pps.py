@@ -18,6 +18,7 @@ from rmfs.control.pps.criteria import (
     PickDemand,
     PickWorkAmount,
     RandomCriterion,
+    WaveWork,
 )
 from rmfs.control.pps.lexicographic import Lexicographic
 from rmfs.control.pps.random import RandomPod
@@ -58,6 +59,36 @@ class TestCandidates:
         view = situation.view
         found = replenishment_candidates(view, view.robots[0], view.replenishment_stations[0])
         assert found.pods.tolist() == [3]
+
+
+class TestWaves:
+    def test_units_of_the_first_wave(self, situation) -> None:
+        """Now 100. Orders want 2 of SKU 0 by 200, 1 of SKU 1 by 200, 4 of SKU 0 by 260.
+
+        Pod 0 has 5 of SKU 0, pod 1 has 1 of SKU 1 and 1 of SKU 0, pod 2 has 9 of SKU 2.
+        """
+        situation.world.now_s = 100.0
+        situation.stock(0, s0=5)
+        situation.stock(1, s0=1, s1=1)
+        situation.stock(2, s2=9)
+        for due_s, units in ((200.0, {"s0": 2}), (200.0, {"s1": 1}), (260.0, {"s0": 4})):
+            situation.assigned(due_s=due_s, **units)
+        found, rng = candidates(situation), situation.rng
+        assert found.pods.tolist() == [0, 1]
+        assert WaveWork().score(found, rng).tolist() == [2, 2]
+        assert WaveWork(wave_s=59.0).score(found, rng).tolist() == [2, 2]
+        assert WaveWork(wave_s=60.0).score(found, rng).tolist() == [5, 2]
+
+    def test_late_orders_are_of_the_first_wave(self, situation) -> None:
+        situation.world.now_s = 100.0
+        situation.stock(0, s0=5)
+        situation.assigned(due_s=40.0, s0=1)
+        situation.assigned(due_s=150.0, s0=2)
+        situation.assigned(due_s=400.0, s0=1)
+        found = candidates(situation)
+        assert WaveWork().score(found, situation.rng).tolist() == [3]
+        situation.world.now_s = 500.0
+        assert WaveWork().score(candidates(situation), situation.rng).tolist() == [4]
 
 
 class TestCriteria:

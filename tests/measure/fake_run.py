@@ -138,6 +138,7 @@ class Settings(pydantic.BaseModel):
 def order(index, created, lines, *, due=nan, station=-1, assigned=nan, completed=nan):
     made = tuple(SimpleNamespace(sku=sku, units=units) for sku, units in lines)
     return SimpleNamespace(
+        priority=-1,
         index=index,
         created_s=created,
         due_s=due,

@@ -151,6 +151,7 @@ def served(orders) -> dict[str, float]:
         "on_time_share": np.mean(told["urgent"] + told["ordinary"]),
         "on_time_urgent_share": np.mean(told["urgent"]),
         "on_time_ordinary_share": np.mean(told["ordinary"]),
+        "on_time_weighted_share": np.mean(told["urgent"] + told["ordinary"]),  # all of weight 1
         "lateness_p95_s": late[below] + (at - below) * (late[below + 1] - late[below]),
         "lateness_max_s": late[-1],
         "orders_overdue_end": (waiting["due_s"] < END).sum(),

@@ -48,8 +48,74 @@ def test_every_order_counts_once(packing):
     assert 0 < footprint["on_time_urgent_share"] < 1
 
 
+CLASSES = [
+    {"name": "express", "share": 0.2, "offset_s": 240.0, "weight": 4.0},
+    {"name": "prime", "share": 0.3, "offset_s": 500.0},
+    {"name": "ordinary", "share": 0.5, "offset_s": 900.0, "weight": 0.5},
+]
+
+
+@pytest.mark.parametrize("packing", [None, PACKING], ids=["picked", "packed"])
+def test_service_by_class(packing):
+    given = SHORT | {"scenario.orders.due": {"mode": "classes", "classes": CLASSES}}
+    given |= {} if packing is None else {"scenario.packing": packing}
+    run = rmfs.simulate("small", "small-arrivals", "sequ", seed=1, set=given)
+    table = run.table("priorities").set_index("priority")
+    orders = run.table("orders").set_index("order")
+    done, created, due = orders["completed_s"], orders["created_s"], orders["due_s"]
+    if packing is not None:
+        parcels = run.table("parcels").set_index("order")
+        done = parcels["packed_s"].reindex(orders.index.union(parcels.index))
+        created = parcels["created_s"].combine_first(created)
+        due = parcels["due_s"].combine_first(due)
+    in_time = counted = 0.0
+    for one in CLASSES:
+        row = table.loc[one["name"]]
+        own = ((due - created).round(3) == one["offset_s"]).reindex(done.index)
+        late = (done - due)[own].dropna()
+        overdue = int((done.isna() & own & (due < END)).sum())
+        assert row["weight"] == one.get("weight", 1.0)
+        assert row["orders_done"] == len(late) > 0
+        assert row["orders_overdue_end"] == overdue
+        assert row["orders"] == len(late) + overdue
+        assert row["on_time_share"] == pytest.approx((late <= 0).sum() / row["orders"])
+        assert row["lateness_mean_s"] == pytest.approx(late.mean())
+        assert row["lateness_p95_s"] == pytest.approx(np.percentile(late, 95))
+        assert row["lateness_max_s"] == pytest.approx(late.max())
+        assert row["late_by_mean_s"] == pytest.approx(late.clip(lower=0).mean())
+        cycle = (done - created)[own].dropna()
+        assert row["cycle_mean_s"] == pytest.approx(cycle.mean())
+        assert row["cycle_p95_s"] == pytest.approx(np.percentile(cycle, 95))
+        in_time += row["weight"] * (late <= 0).sum()
+        counted += row["weight"] * row["orders"]
+    assert list(table.index) == ["express", "prime", "ordinary"]
+    footprint = run.footprint
+    assert footprint["on_time_urgent_share"] == table.loc["express", "on_time_share"]
+    assert footprint["on_time_weighted_share"] == pytest.approx(in_time / counted)
+    assert set(orders["priority"]) == set(table.index)
+
+
+def test_weights_decide_in_planning_and_tardiness_cost():
+    """With nearly all weight on a class, more of it is on time than with equal weights."""
+    due = {"scenario.orders.due": {"mode": "classes", "classes": CLASSES}, "layout.robots": 5}
+    same = [{**one, "weight": 1.0} for one in CLASSES]
+    heavy = [{**one, "weight": 50.0 if one["name"] == "prime" else 1.0} for one in CLASSES]
+    for ways in (
+        {"controllers": "planning", "late": {"controllers.ta.late_s": 200}},
+        {"controllers": "default", "late": {"controllers.poa.name": "tardiness-cost"}},
+    ):
+        shares = []
+        for classes in (same, heavy):
+            told = {"mode": "classes", "classes": classes}
+            given = SHORT | due | ways["late"] | {"scenario.orders.due": told}
+            run = rmfs.simulate("small", "small-arrivals", ways["controllers"], seed=1, set=given)
+            shares.append(run.table("priorities").set_index("priority").loc["prime"])
+        assert shares[1]["on_time_share"] > shares[0]["on_time_share"] + 0.05
+
+
 def test_other_due_times_have_no_classes():
     given = {"scenario.duration_s": 300.0, "scenario.orders.due": {"mode": "normal"}}
     footprint = rmfs.simulate("small", "small", "sequ", set=given).footprint
     assert footprint["on_time_share"] == 1
     assert footprint[["on_time_urgent_share", "on_time_ordinary_share"]].isna().all()
+    assert footprint["on_time_weighted_share"] == 1

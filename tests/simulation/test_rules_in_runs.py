@@ -80,6 +80,7 @@ RUNS: dict[str, dict[str, Any]] = {
         },
         "ta": {"other_stations": True, "search_radius_m": 30.0},
     },
+    "pps waves": {"pps": {"pick_pod": [{"criterion": "wave", "wave_s": 300.0}, "pile-on"]}},
     "pps exact times": {
         "pps": {"pick_pod": [{"criterion": "work-amount", "estimate_to_pod": False}]}
     },

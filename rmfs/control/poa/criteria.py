@@ -68,6 +68,32 @@ class DueSoon(Parameters):
         return view.orders.due_s[contest.rows] <= view.now_s + self.within_s
 
 
+class Weight(Parameters):
+    """Orders of the class whose lateness counts most."""
+
+    criterion: Literal["weight"] = "weight"
+
+    def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
+        """Weight of the class."""
+        return contest.view.orders.weight[contest.rows]
+
+
+class FirstWave(Parameters):
+    """Orders of the first wave: those that are due together with the first one."""
+
+    criterion: Literal["wave"] = "wave"
+    wave_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
+    """Orders due within so many seconds of the first one are of its wave."""
+
+    def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
+        """1 for orders of the first wave and for those that are late, else 0."""
+        view = contest.view
+        due_s = view.orders.due_s
+        coming = due_s[due_s >= view.now_s]
+        first_s = coming.min() if len(coming) else view.now_s
+        return due_s[contest.rows] <= first_s + self.wave_s
+
+
 class Size(Parameters):
     """The largest order."""
 
@@ -158,7 +184,16 @@ def _by_name(value: Any) -> Any:
 
 
 OrderCriterion = Annotated[
-    Random | FirstCome | DueTime | DueSoon | Size | Completable | InboundMatches | Related,
+    Random
+    | FirstCome
+    | DueTime
+    | DueSoon
+    | Weight
+    | FirstWave
+    | Size
+    | Completable
+    | InboundMatches
+    | Related,
     pydantic.Field(discriminator="criterion"),
     pydantic.BeforeValidator(_by_name),
 ]

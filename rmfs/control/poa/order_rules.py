@@ -128,7 +128,10 @@ class _ByWork(OrderRule):
 
     @abstractmethod
     def _scores(
-        self, left_s: NDArray[np.float64], work_s: NDArray[np.float64]
+        self,
+        left_s: NDArray[np.float64],
+        work_s: NDArray[np.float64],
+        weight: NDArray[np.float64],
     ) -> NDArray[np.float64]:
         """Return a score of each order, the smaller the sooner."""
 
@@ -141,7 +144,8 @@ class _ByWork(OrderRule):
         assert isinstance(given, WorkParameters)
         units = orders.units[rows]
         work_s = given.line_s * (units > 0).sum(axis=1) + given.unit_s * units.sum(axis=1)
-        scores = self._scores(orders.due_s[rows] - self.view.now_s, work_s)
+        left_s = orders.due_s[rows] - self.view.now_s
+        scores = self._scores(left_s, work_s, orders.weight[rows])
         best = rows[scores == scores.min()]
         return orders.at_row[first_row(best, orders, "first-come", self.draw)]
 
@@ -154,7 +158,10 @@ class Slack(_ByWork):
     """
 
     def _scores(
-        self, left_s: NDArray[np.float64], work_s: NDArray[np.float64]
+        self,
+        left_s: NDArray[np.float64],
+        work_s: NDArray[np.float64],
+        weight: NDArray[np.float64],
     ) -> NDArray[np.float64]:
         return left_s - work_s
 
@@ -168,9 +175,44 @@ class CriticalRatio(_ByWork):
     """
 
     def _scores(
-        self, left_s: NDArray[np.float64], work_s: NDArray[np.float64]
+        self,
+        left_s: NDArray[np.float64],
+        work_s: NDArray[np.float64],
+        weight: NDArray[np.float64],
     ) -> NDArray[np.float64]:
         return left_s / np.maximum(work_s, 1e-9)
+
+
+class TardinessCostParameters(WorkParameters):
+    """Parameters of POA tardiness-cost."""
+
+    ahead: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 2.0
+    """Mean works of the waiting orders over which urgency falls by the factor e: how far ahead the
+    rule looks."""
+
+
+class TardinessCost(_ByWork):
+    """Fills free slots with the orders whose lateness would cost most per work.
+
+    Cost: weight of the order's class / its work x exp(-slack / (`ahead` x mean work of the orders
+    that can be served)), with a slack (`line_s`, `unit_s`) of 0 at least. Ties: the order that came
+    first. Source: apparent tardiness cost (Vepsalainen, Morton 1987), with their `ahead` of 2.
+    """
+
+    parameters_model = TardinessCostParameters
+
+    def _scores(
+        self,
+        left_s: NDArray[np.float64],
+        work_s: NDArray[np.float64],
+        weight: NDArray[np.float64],
+    ) -> NDArray[np.float64]:
+        given = self.parameters
+        assert isinstance(given, TardinessCostParameters)
+        work_s = np.maximum(work_s, 1e-9)
+        slack_s = np.maximum(left_s - work_s, 0.0)
+        # as a logarithm, which does not vanish however much slack there is
+        return slack_s / (given.ahead * work_s.mean()) - np.log(weight / work_s)
 
 
 class FrequencyAge(OrderRule):

@@ -191,6 +191,25 @@ class PickWorkAmount(PodCriterion):
         return value_of(order, now_s, self.metric, positive=self.only_positive_lateness)
 
 
+class WaveWork(PodCriterion):
+    """Most units for the first wave of the station: orders that are due together.
+
+    A wave are the orders that go with one truck. Late orders are of the first wave, and so are the
+    orders of the station that are due next.
+    """
+
+    criterion: Literal["wave"] = "wave"
+    wave_s: NotNegative = 0.0
+    """Orders due within so many seconds of the next one are of its wave."""
+
+    def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
+        """Units that the pod can serve of the first wave, assigned orders only."""
+        orders = candidates.pick_station.orders.values()
+        coming = [order.due_s for order in orders if order.due_s >= candidates.view.now_s]
+        last_s = min(coming, default=candidates.view.now_s) + self.wave_s
+        return _valued(candidates, {order.index: float(order.due_s <= last_s) for order in orders})
+
+
 class BundleWorkAmount(PodCriterion):
     """Most bundles."""
 
@@ -294,7 +313,7 @@ def by_name(value: Any) -> Any:
 
 
 PickCriterion = Annotated[
-    RandomCriterion | Nearest | Fill | PickDemand | Completeable | PickWorkAmount,
+    RandomCriterion | Nearest | Fill | PickDemand | Completeable | PickWorkAmount | WaveWork,
     pydantic.Field(discriminator="criterion"),
     pydantic.BeforeValidator(by_name),
 ]

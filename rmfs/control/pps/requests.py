@@ -18,7 +18,7 @@ def value_of(order: Order, now_s: float, metric: RequestValue, *, positive: bool
     metric
         `picks`: 1. `age`: seconds since the order was assigned or, as long as it is queued, since
         it was queued, divided by its open requests. `lateness`: seconds since its due time, less
-        than 0 before it, divided likewise.
+        than 0 before it, divided likewise; after it, times the weight of the order's class.
     positive
         Whether lateness is 0 before the due time.
     """
@@ -28,4 +28,6 @@ def value_of(order: Order, now_s: float, metric: RequestValue, *, positive: bool
         since_s = order.assigned_s if order.station >= 0 else order.queued_s
         return (now_s - since_s) / order.open_units
     late_s = now_s - order.due_s
+    if late_s > 0:
+        late_s *= order.weight
     return (max(late_s, 0.0) if positive else late_s) / order.open_units

@@ -5,20 +5,21 @@ from __future__ import annotations
 from math import nan
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rmfs.measure.base import Measure
 from rmfs.measure.columns import INTEGER, LESS, MORE, REAL, Column
 from rmfs.measure.measures.reckoning import ratio
-from rmfs.scenario.due import PriorityDue
+from rmfs.measure.tables.priorities import class_names, class_weights, served
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from rmfs.measure.ended import EndedRun
-    from rmfs.observer import Observed
 
 
 class Service(Measure):
-    """On-time share and lateness, by priority where there are two classes."""
+    """On-time share and lateness; by priority, see the table `priorities`."""
 
     columns = (
         Column(
@@ -34,11 +35,19 @@ class Service(Measure):
             "on_time_urgent_share",
             REAL,
             "share",
-            "The same of urgent orders; empty unless due times are of two classes "
-            '(orders.due.mode = "priority"), as is the next',
+            'The same of urgent orders: those of the first class (orders.due.mode = "priority" or '
+            '"classes"); empty without classes, as is the next',
             better=MORE,
         ),
         Column("on_time_ordinary_share", REAL, "share", "The same of all others", better=MORE),
+        Column(
+            "on_time_weighted_share",
+            REAL,
+            "share",
+            "The same of all orders, each counted with the weight of its class "
+            '(orders.due.mode = "classes")',
+            better=MORE,
+        ),
         Column(
             "lateness_p95_s",
             REAL,
@@ -63,45 +72,28 @@ class Service(Measure):
         ),
     )
 
-    def __init__(self) -> None:
-        self._urgent_s = nan
-
-    def run_started(self, run: Observed) -> None:
-        """Take note of what is urgent."""
-        due = run.scenario.orders.due
-        if isinstance(due, PriorityDue):
-            self._urgent_s = due.urgent_offset_s
-
     def footprint(self, run: EndedRun) -> dict[str, Any]:
         """Look at orders, and at parcels if there are any."""
-        orders = run.tables["orders"][["order", "created_s", "due_s", "completed_s", "cancelled_s"]]
-        done_s = orders["completed_s"]
-        if run.recorder.packing.given is not None:
-            parcels = run.tables["parcels"]
-            # an order may have been picked in the warm-up and be packed in the measured time
-            orders = orders.merge(
-                parcels[["order", "created_s", "due_s", "packed_s"]], "outer", on="order"
-            )
-            for name in ("created_s", "due_s"):
-                orders[name] = orders.pop(f"{name}_x").fillna(orders.pop(f"{name}_y"))
-            done_s = orders["packed_s"]
-        due_s, end_s = orders["due_s"], run.end_s
-        done = done_s >= run.start_s
-        cancelled = orders["cancelled_s"] >= run.start_s
-        overdue = done_s.isna() & ~cancelled & (due_s < end_s)
-        counted, in_time = done | overdue | cancelled, done & (done_s <= due_s)
-        urgent = due_s - orders["created_s"] <= self._urgent_s + 1e-6
-        two = self._urgent_s == self._urgent_s
-        lateness = (done_s - due_s)[done]
-        waiting = orders["created_s"][done_s.isna() & ~cancelled]
+        orders, names = served(run.logs), class_names(run.logs)
+        done, cancelled, overdue = orders["done"], orders["cancelled"], orders["overdue"]
+        counted, in_time = done | overdue | cancelled, orders["on_time"]
+        first, several = orders["class"] == 0, len(names) > 1
+        weight = np.array(class_weights(run.logs))[orders["class"]]
+        lateness = (orders["done_s"] - orders["due_s"])[done]
+        waiting = orders["created_s"][orders["done_s"].isna() & ~cancelled]
         return {
             "on_time_share": _share(in_time, counted),
-            "on_time_urgent_share": _share(in_time & urgent, counted & urgent) if two else nan,
-            "on_time_ordinary_share": _share(in_time & ~urgent, counted & ~urgent) if two else nan,
+            "on_time_urgent_share": _share(in_time & first, counted & first) if several else nan,
+            "on_time_ordinary_share": _share(in_time & ~first, counted & ~first)
+            if several
+            else nan,
+            "on_time_weighted_share": ratio(
+                float((weight * in_time).sum()), float((weight * counted).sum())
+            ),
             "lateness_p95_s": lateness.quantile(0.95),
             "lateness_max_s": lateness.max(),
             "orders_overdue_end": int(overdue.sum()),
-            "oldest_order_end_s": end_s - waiting.min(),
+            "oldest_order_end_s": run.end_s - waiting.min(),
         }
 
 

@@ -40,6 +40,8 @@ from rmfs.measure.tables.packing import parcels as parcels
 from rmfs.measure.tables.packing import totes as totes
 from rmfs.measure.tables.pickers import PICKERS as PICKERS
 from rmfs.measure.tables.pickers import pickers as pickers
+from rmfs.measure.tables.priorities import PRIORITIES as PRIORITIES
+from rmfs.measure.tables.priorities import priorities as priorities
 from rmfs.measure.tables.robots import ROBOTS as ROBOTS
 from rmfs.measure.tables.robots import robots as robots
 from rmfs.measure.tables.series import SERIES as SERIES
@@ -63,6 +65,7 @@ MAKERS = {
     "stations": stations,
     "orders": orders,
     "order_lines": order_lines,
+    "priorities": priorities,
     "delays": delays,
     "parcels": parcels,
     "totes": totes,
@@ -89,6 +92,7 @@ DECLARED: dict[str, Sequence[Column]] = {
     "stations": STATIONS,
     "orders": ORDERS,
     "order_lines": ORDER_LINES,
+    "priorities": PRIORITIES,
     "delays": DELAYS,
     "parcels": PARCELS,
     "totes": TOTES,

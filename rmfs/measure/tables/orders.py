@@ -9,6 +9,7 @@ import numpy as np
 from rmfs.measure.columns import INTEGER, REAL, TEXT, Column
 from rmfs.measure.energy import WH
 from rmfs.measure.tables.tidy import tidy
+from rmfs.scenario.due import ClassesDue
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 ORDERS = (
     Column("order", INTEGER, "", "Ordinal of arrival, from the start of the run"),
     Column("name", TEXT, "", "Its name in the file of orders; empty if it was drawn"),
+    Column("priority", TEXT, "", "Its class; empty where orders have none (mode classes)"),
     Column("station", INTEGER, "", "Pick station, -1 while waiting for one"),
     Column("lines", INTEGER, "lines", "Order lines, without those cut to nothing"),
     Column("units", INTEGER, "units", "Units ordered"),
@@ -46,6 +48,7 @@ def orders(logs: Logs) -> pd.DataFrame:
     """Every order that was waiting, open, completed or cancelled during the measured time."""
     frame = seen(logs)
     frame["name"] = _names(logs, frame.pop("in_file"))
+    frame["priority"] = _priorities(logs, frame["priority"])
     frame["turnover_s"] = frame["completed_s"] - frame["created_s"]
     frame["throughput_time_s"] = frame["completed_s"] - frame["assigned_s"]
     frame["lateness_s"] = frame["completed_s"] - frame["due_s"]
@@ -62,6 +65,14 @@ def seen(logs: Logs) -> pd.DataFrame:
     frame = logs.orders
     gone = (frame["completed_s"] < logs.start_s) | (frame["cancelled_s"] < logs.start_s)
     return frame[~gone].reset_index(drop=True)
+
+
+def _priorities(logs: Logs, number: pd.Series[int]) -> NDArray[Any]:
+    """Return the names of classes by their numbers."""
+    due = logs.recorder.due
+    names = due.names if isinstance(due, ClassesDue) else ()
+    # an order without a class has number -1: the last of these
+    return np.array([*names, ""], dtype=object)[number.to_numpy()]
 
 
 def _names(logs: Logs, in_file: pd.Series[int]) -> NDArray[Any]:

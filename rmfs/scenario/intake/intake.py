@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar, runtime_checkable
 
 from rmfs.scenario.clock import US_PER_S, nearest_us
+from rmfs.scenario.due import NO_CLASS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -29,6 +30,8 @@ class OrderArrival(NamedTuple):
         How often a SKU was drawn of which too little was uncommitted.
     in_file
         Its place among the orders of a file, or -1.
+    priority
+        Its class, or -1 where there are none.
     """
 
     time_us: int
@@ -37,12 +40,14 @@ class OrderArrival(NamedTuple):
     due_us: int
     redraws: int
     in_file: int = -1
+    priority: int = NO_CLASS
 
     @classmethod
     def of(cls, content: OrderContent, time_us: int) -> OrderArrival:
         """Let a drawn order come at a time."""
         due_us = time_us + nearest_us(content.due_offset_s)
-        return cls(time_us, content.skus, content.units, due_us, content.redraws)
+        skus, units, priority = content.skus, content.units, content.priority
+        return cls(time_us, skus, units, due_us, content.redraws, priority=priority)
 
     @property
     def due_s(self) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rmfs.random import Stream
 from rmfs.scenario.clock import nearest_us
 from rmfs.scenario.departures import Departures
-from rmfs.scenario.due import DepartureDue
+from rmfs.scenario.due import NO_CLASS, ClassesDue, DepartureDue, class_of
 from rmfs.scenario.intake.assembly import Assembly
 from rmfs.scenario.intake.backlog import BacklogOrders
 from rmfs.scenario.intake.batches import Batch, Batches, add
@@ -23,6 +23,7 @@ from rmfs.scenario.substreams import Substreams
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from rmfs.scenario.due import Due
     from rmfs.scenario.intake.contents import Contents
     from rmfs.scenario.intake.state import Site, State
     from rmfs.scenario.intake.thinning import Candidate
@@ -59,6 +60,8 @@ def order_intake(
     orders = _Orders(scenario, skus, site, seed, scenario.demand.down)
     if recorder is None:
         return orders.intake(None)
+    due = scenario.orders.due
+    recorder.orders.classes = due.names if isinstance(due, ClassesDue) else ()
     return orders.intake(partial(_record, recorder))
 
 
@@ -94,7 +97,7 @@ class _Orders(Assembly[OrderArrival]):
     def _from_file(self) -> Timed[OrderArrival]:
         stream = order_stream(self._scenario, self._skus)
         self._stream = stream
-        due = self._scenario.orders.due.sampler()
+        due = self._scenario.orders.due
         substreams = Substreams(self._seed, Stream.ORDER_CONTENTS, DUE_TIMES)
         make = partial(_from_stream, stream, due, substreams)
         return Timed(self._at_times(stream.time_us.tolist()), make)
@@ -128,16 +131,25 @@ def _of_candidate(draw: Contents, candidate: Candidate, state: State) -> OrderAr
 
 def _from_stream(
     stream: OrderStream,
-    due: Callable[[float], float],
+    due: Due,
     substreams: Substreams,
     candidate: Candidate,
     _state: State,
 ) -> OrderArrival:
     ordinal, time_us, _ = candidate
-    due_us = int(stream.due_us[ordinal])
+    due_us, uniform = int(stream.due_us[ordinal]), substreams.at(ordinal)()
+    priority = NO_CLASS if stream.priority is None else int(stream.priority[ordinal])
+    told = priority != NO_CLASS
+    if not told:
+        priority = class_of(due, uniform)
     if due_us == NO_DUE_US:
-        due_us = time_us + nearest_us(due(substreams.at(ordinal)()))
-    return OrderArrival(time_us, *stream.lines(ordinal), due_us, redraws=0, in_file=ordinal)
+        offset_s = due.sampler()(uniform)
+        if told:
+            assert isinstance(due, ClassesDue)
+            offset_s = due.classes[priority].offset_s
+        due_us = time_us + nearest_us(offset_s)
+    lines = stream.lines(ordinal)
+    return OrderArrival(time_us, *lines, due_us, redraws=0, in_file=ordinal, priority=priority)
 
 
 def _for_departure(
@@ -155,7 +167,7 @@ def _in_batch(draw: Contents, ordinal: int, now_us: int, state: State) -> OrderA
 
 
 def _record(recorder: StreamRecorder, order: OrderArrival) -> None:
-    recorder.orders.add(order.time_us, order.due_us, order.skus, order.units)
+    recorder.orders.add(order.time_us, order.due_us, order.skus, order.units, order.priority)
 
 
 def _up_to(time_s: float, number: int) -> Batch:

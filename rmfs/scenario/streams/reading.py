@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     from rmfs.scenario.streams.stream import BundleStream, OrderStream
 
 
-def read_orders(path: Path, skus: SkuSet, zero: datetime | None = None) -> OrderStream:
+def read_orders(
+    path: Path, skus: SkuSet, zero: datetime | None = None, classes: tuple[str, ...] = ()
+) -> OrderStream:
     """Read orders from a .csv or .parquet file.
 
     The columns are time (s or ISO 8601, not decreasing), order (any name), sku (its name or id),
@@ -34,6 +36,8 @@ def read_orders(path: Path, skus: SkuSet, zero: datetime | None = None) -> Order
     zero
         The moment of time zero. Default: midnight before the first order, where times are in ISO
         8601.
+    classes
+        Names of the classes of orders, for a column priority; it may be empty or missing.
 
     Raises
     ------
@@ -41,7 +45,7 @@ def read_orders(path: Path, skus: SkuSet, zero: datetime | None = None) -> Order
         One line that names the wrong lines, each with its column and the reason.
     """
     problems = Problems(path)
-    rows = OrderRows(skus, problems, _word(path), zero)
+    rows = OrderRows(skus, problems, _word(path), zero, classes)
     _read(path, rows, problems)
     return replace(rows.builder.build(), file=rows.file.build())
 

@@ -6,6 +6,7 @@ import difflib
 import math
 from typing import TYPE_CHECKING, Protocol
 
+from rmfs.scenario.due import NO_CLASS
 from rmfs.scenario.streams.order_file import OrderFileBuilder
 from rmfs.scenario.streams.stream import NO_DUE_US, BundleStreamBuilder, OrderStreamBuilder
 from rmfs.scenario.streams.times import FieldError, Times, number
@@ -102,7 +103,7 @@ def _whole(column: str, text: str) -> int:
 class _StreamRows:
     """Rows of orders or bundles."""
 
-    columns = ("time", "order", "sku", "quantity", "due")
+    columns: tuple[str, ...] = ("time", "order", "sku", "quantity", "due")
 
     def __init__(self, skus: SkuSet, problems: Problems, word: str, zero: datetime | None) -> None:
         self.file = OrderFileBuilder(())
@@ -140,15 +141,25 @@ class OrderRows(_StreamRows):
         What a row is called: line or row.
     zero
         The moment of time zero, for times in ISO 8601 (see `Times`).
+    classes
+        Names of the classes of orders; without any, a column `priority` is the user's own.
     """
 
     required = frozenset(("time", "order", "sku", "quantity"))
 
     def __init__(
-        self, skus: SkuSet, problems: Problems, word: str, zero: datetime | None = None
+        self,
+        skus: SkuSet,
+        problems: Problems,
+        word: str,
+        zero: datetime | None = None,
+        classes: tuple[str, ...] = (),
     ) -> None:
         super().__init__(skus, problems, word, zero)
-        self.builder = OrderStreamBuilder()
+        if classes:
+            self.columns = (*self.columns, "priority")
+        self.builder = OrderStreamBuilder(classes)
+        self._classes, self._priority = classes, NO_CLASS
         self._name: str | None = None
         self._due_us = NO_DUE_US
         self._skus: list[int] = []
@@ -157,6 +168,7 @@ class OrderRows(_StreamRows):
 
     def _take(self, number: int, fields: Sequence[str]) -> None:
         time, name, sku, quantity, due, *further = fields
+        priority = self._class(further.pop(0)) if self._classes else NO_CLASS
         if name != self._name:
             self._begin(name)
         time_us = self._times.us("time", time)
@@ -164,16 +176,24 @@ class OrderRows(_StreamRows):
         index, units = self._fields.sku(sku), self._fields.units(quantity)
         if not self._skus:
             self._set_times(time_us, due_us, time)
+            self._priority = priority
             self.file.add_order(name)
         elif time_us != self._time_us:
             raise FieldError(f"time differs from the line before of order {name:.40}")
         elif due_us != self._due_us:
             raise FieldError(f"due differs from the line before of order {name:.40}")
+        elif priority != self._priority:
+            raise FieldError(f"priority differs from the line before of order {name:.40}")
         if index in self._skus:
             raise FieldError(f"sku {sku} comes twice in order {name:.40}")
         self._skus.append(index)
         self._units.append(units)
         self.file.add_line(number, further)
+
+    def _class(self, text: str) -> int:
+        if text and text not in self._classes:
+            raise FieldError(f"priority {text:.40} is no class; valid: {', '.join(self._classes)}")
+        return self._classes.index(text) if text else NO_CLASS
 
     def _begin(self, name: str) -> None:
         if not name:
@@ -198,7 +218,7 @@ class OrderRows(_StreamRows):
     def _close(self) -> None:
         """Add the order whose lines have been taken."""
         if self._skus:
-            self.builder.add(self._time_us, self._due_us, self._skus, self._units)
+            self.builder.add(self._time_us, self._due_us, self._skus, self._units, self._priority)
             self._skus, self._units = [], []
 
     def end(self) -> None:

@@ -43,6 +43,10 @@ class OrderStream(_Frozen):
         SKU (index) and units of each line, shape (m,).
     file
         What the file they come from says beside that, if they come from one.
+    classes
+        Names of the classes of orders, if there are classes.
+    priority
+        Class of each order, shape (n,); -1 where none is given. None if there are no classes.
     """
 
     time_us: NDArray[np.int64]
@@ -51,6 +55,8 @@ class OrderStream(_Frozen):
     sku: NDArray[np.int64]
     units: NDArray[np.int64]
     file: OrderFile | None = None
+    classes: tuple[str, ...] = ()
+    priority: NDArray[np.int64] | None = None
 
     def __len__(self) -> int:
         return len(self.time_us)
@@ -85,14 +91,30 @@ class BundleStream(_Frozen):
 
 
 class OrderStreamBuilder:
-    """Collects orders, 16 bytes a line and 24 an order."""
+    """Collects orders, 16 bytes a line and 32 an order.
 
-    def __init__(self) -> None:
+    Attributes
+    ----------
+    classes
+        Names of the classes of orders, if there are classes.
+    """
+
+    def __init__(self, classes: tuple[str, ...] = ()) -> None:
+        self.classes = classes
+        self._priority = array("q")
         self._time_us, self._due_us, self._first_line = array("q"), array("q"), array("q")
         self._sku, self._units = array("q"), array("q")
 
-    def add(self, time_us: int, due_us: int, skus: Sequence[int], units: Sequence[int]) -> None:
+    def add(
+        self,
+        time_us: int,
+        due_us: int,
+        skus: Sequence[int],
+        units: Sequence[int],
+        priority: int = -1,
+    ) -> None:
         """Add an order; times may not decrease."""
+        self._priority.append(priority)
         self._time_us.append(time_us)
         self._due_us.append(due_us)
         self._first_line.append(len(self._sku))
@@ -110,6 +132,8 @@ class OrderStreamBuilder:
             np.append(_copied(self._first_line), len(self._sku)),
             _copied(self._sku),
             _copied(self._units),
+            classes=self.classes,
+            priority=_copied(self._priority) if self.classes else None,
         )
 
 

@@ -94,12 +94,22 @@ def _text(stream: Stream, skus: SkuSet) -> Iterator[str]:
             time, sku, quantity = row
             yield f"{time},{order},{sku},{quantity}\n"
         return
-    yield f"{','.join(ORDER_COLUMNS)}\n"
+    classes = _classes(stream)
+    more = () if classes is None else ("priority",)
+    yield f"{','.join((*ORDER_COLUMNS, *more))}\n"
     first_line = stream.first_line.tolist()
     for order, (time, due_us) in enumerate(zip(times, stream.due_us.tolist(), strict=True)):
         due = "" if due_us == NO_DUE_US else _seconds(due_us)
+        last = due if classes is None else f"{due},{classes[order]}"
         for line in range(first_line[order], first_line[order + 1]):
-            yield f"{time},{order},{ids[line]},{units[line]},{due}\n"
+            yield f"{time},{order},{ids[line]},{units[line]},{last}\n"
+
+
+def _classes(stream: OrderStream) -> list[str] | None:
+    """Return the name of the class of each order, empty where none is given."""
+    if stream.priority is None:
+        return None
+    return [("", *stream.classes)[1 + number] for number in stream.priority.tolist()]
 
 
 def _seconds(time_us: int) -> str:
@@ -115,4 +125,8 @@ def _columns(stream: Stream, skus: SkuSet) -> dict[str, NDArray[Any]]:
     order = np.repeat(np.arange(len(stream)), np.diff(stream.first_line))
     due_us = stream.due_us[order]
     due = np.where(due_us == NO_DUE_US, np.nan, due_us / US_PER_S)
-    return {"time": stream.time_us[order] / US_PER_S, "order": order, **lines, "due": due}
+    columns = {"time": stream.time_us[order] / US_PER_S, "order": order, **lines, "due": due}
+    classes = _classes(stream)
+    if classes is not None:
+        columns["priority"] = np.array(classes, dtype=object)[order]
+    return columns

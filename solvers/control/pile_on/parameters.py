@@ -52,7 +52,8 @@ class JointParameters(SearchParameters):
     visit_s: NotNegative = 60.0
     """Seconds that a visit costs a robot besides the way to the station."""
     age_reward: NotNegative = 0.005
-    """What a second of waiting adds to the worth of an order that gets a slot."""
+    """What a second of waiting adds to the worth of an order that gets a slot, times the weight of
+    its class."""
     kept_slots: Annotated[int, pydantic.Field(ge=0)] = 1
     """Slots of each station kept for what the pod at its head can serve."""
     bound_steps: Annotated[int, pydantic.Field(ge=0)] = 20

@@ -156,6 +156,7 @@ def _arrays(
         inbound[list(plan.pods[station.index])] = station.index
     slots = [(s.slots - len(plan.items[s.index])) * s.active for s in view.pick_stations]
     waited = np.array([view.now_s - item.order.created_s for item in items])
+    weight = np.array([item.order.weight for item in items])
     return PileOn(
         slots=np.maximum(slots, 0),
         line_order=order,
@@ -166,7 +167,7 @@ def _arrays(
         available=view.storage.is_at_hand & (inbound < 0),
         inbound=inbound,
         open_units=open_units[:, wanted],
-        worth=given.age_reward * np.maximum(waited, 0.0),
+        worth=given.age_reward * np.maximum(waited, 0.0) * weight,
         variant=given.variant,
         weights=given.weights,
     )

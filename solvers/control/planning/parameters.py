@@ -42,10 +42,10 @@ class PlanningParameters(SearchParameters):
     age_reward: NotNegative = 0.002
     """What a second of waiting adds to the worth of closing an order."""
     late_s: NotNegative = 0.0
-    """Seconds of a robot that closing an order is worth more once it is due; before, this falls by
-    the factor e for every `late_within_s` left. As later visits count less (`decay`), it is the
-    price of tardiness (apparent tardiness cost, Vepsalainen and Morton 1987). 0: due times do not
-    count."""
+    """Seconds of a robot that closing an order is worth more once it is due, times the weight of
+    its class; before, this falls by the factor e for every `late_within_s` left. As later visits
+    count less (`decay`), it is the price of tardiness (apparent tardiness cost, Vepsalainen and
+    Morton 1987). 0: due times do not count."""
     late_within_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 300.0
     """See `late_s`; about the time from a plan to its last visit."""
     open_s: NotNegative = 60.0

@@ -213,7 +213,9 @@ def _order_worth(
     )
     if given.late_s:
         left_s = np.array([order.due_s for order in orders]) - view.now_s
-        worth = worth + given.late_s * np.exp(-np.maximum(left_s, 0.0) / given.late_within_s)
+        weight = np.array([order.weight for order in orders])
+        urgency = np.exp(-np.maximum(left_s, 0.0) / given.late_within_s)
+        worth = worth + given.late_s * weight * urgency
     return worth
 
 

@@ -1,0 +1,128 @@
+"""Service by priority: the orders of every class, on time and late."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rmfs.measure.columns import INTEGER, REAL, TEXT, Column
+from rmfs.measure.tables.orders import seen
+from rmfs.measure.tables.packing import parcels
+from rmfs.measure.tables.tidy import tidy
+from rmfs.scenario.due import ClassesDue, PriorityDue
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    from rmfs.measure.tables.logs import Logs
+
+_HAIR_S = 1e-6
+
+PRIORITIES = (
+    Column(
+        "priority",
+        TEXT,
+        "",
+        "Class of orders: as the scenario names it, urgent or ordinary where it has these two, "
+        "else all",
+    ),
+    Column("weight", REAL, "", "What lateness of the class counts"),
+    Column("orders", INTEGER, "orders", "Done or cancelled, or overdue at the end"),
+    Column("orders_done", INTEGER, "orders", "Done: packed, where there is packing, else picked"),
+    Column("orders_overdue_end", INTEGER, "orders", "Past their due time and not done at the end"),
+    Column("on_time_share", REAL, "share", "Orders done by their due time, of `orders`"),
+    Column("lateness_mean_s", REAL, "s", "Done less due time, negative if early, of those done"),
+    Column("lateness_p95_s", REAL, "s", "95th percentile of the same"),
+    Column("lateness_max_s", REAL, "s", "Greatest of the same"),
+    Column("late_by_mean_s", REAL, "s", "Mean of the same with 0 for those done by their due time"),
+    Column("cycle_mean_s", REAL, "s", "From arrival until done, mean of the orders done"),
+    Column("cycle_p95_s", REAL, "s", "95th percentile of the same"),
+)
+
+
+def priorities(logs: Logs) -> pd.DataFrame:
+    """One row per class of orders, for the measured time."""
+    orders, names, weights = served(logs), class_names(logs), class_weights(logs)
+    rows = [
+        {"priority": name, "weight": weight, **_of(orders[orders["class"] == number])}
+        for number, (name, weight) in enumerate(zip(names, weights, strict=True))
+    ]
+    columns = {column.name: [row[column.name] for row in rows] for column in PRIORITIES}
+    return tidy("priorities", PRIORITIES, columns)
+
+
+def class_names(logs: Logs) -> tuple[str, ...]:
+    """Return the names of the classes of orders, the most urgent first."""
+    due = logs.recorder.due
+    if isinstance(due, ClassesDue):
+        return due.names
+    return ("urgent", "ordinary") if isinstance(due, PriorityDue) else ("all",)
+
+
+def class_weights(logs: Logs) -> tuple[float, ...]:
+    """Return what lateness of each class counts."""
+    due = logs.recorder.due
+    if isinstance(due, ClassesDue):
+        return tuple(one.weight for one in due.classes)
+    return (1.0,) * len(class_names(logs))
+
+
+def served(logs: Logs) -> pd.DataFrame:
+    """Return the orders that count for service, as columns.
+
+    Returns
+    -------
+    DataFrame
+        `order`, `created_s`, `due_s`, `done_s` (packed, where there is packing, else picked; empty
+        if not), `class`, and whether it is `done`, `cancelled`, `overdue` or `on_time`. Orders
+        before the measured time are left out; those that wait and are not overdue are none of
+        these.
+    """
+    frame = seen(logs)[["order", "created_s", "due_s", "completed_s", "cancelled_s"]]
+    frame = frame.rename(columns={"completed_s": "done_s"})
+    if logs.recorder.packing.given is not None:
+        # an order may have been picked in the warm-up and be packed in the measured time
+        packed = parcels(logs)[["order", "created_s", "due_s", "packed_s"]]
+        frame = frame.drop(columns="done_s").merge(packed, "outer", on="order")
+        for name in ("created_s", "due_s"):
+            frame[name] = frame.pop(f"{name}_x").fillna(frame.pop(f"{name}_y"))
+        frame = frame.rename(columns={"packed_s": "done_s"})
+    frame["class"] = _classes(logs, frame)
+    frame["done"] = frame["done_s"] >= logs.start_s
+    frame["cancelled"] = frame["cancelled_s"] >= logs.start_s
+    waits = frame["done_s"].isna() & ~frame["cancelled"]
+    frame["overdue"] = waits & (frame["due_s"] < logs.end_s)
+    frame["on_time"] = frame["done"] & (frame["done_s"] <= frame["due_s"])
+    return frame
+
+
+def _classes(logs: Logs, frame: pd.DataFrame) -> NDArray[np.int64]:
+    due = logs.recorder.due
+    if isinstance(due, ClassesDue):
+        every = logs.orders.set_index("order")["priority"]
+        return every.reindex(frame["order"]).to_numpy(np.int64)
+    if isinstance(due, PriorityDue):
+        offset_s = (frame["due_s"] - frame["created_s"]).to_numpy()
+        return (offset_s > due.urgent_offset_s + _HAIR_S).astype(np.int64)
+    return np.zeros(len(frame), np.int64)
+
+
+def _of(orders: pd.DataFrame) -> dict[str, Any]:
+    """Return the measures of the orders of a class."""
+    done = orders[orders["done"]]
+    lateness, cycle = done["done_s"] - done["due_s"], done["done_s"] - done["created_s"]
+    counted = int((orders["done"] | orders["cancelled"] | orders["overdue"]).sum())
+    return {
+        "orders": counted,
+        "orders_done": len(done),
+        "orders_overdue_end": int(orders["overdue"].sum()),
+        "on_time_share": int(orders["on_time"].sum()) / counted if counted else np.nan,
+        "lateness_mean_s": lateness.mean(),
+        "lateness_p95_s": lateness.quantile(0.95),
+        "lateness_max_s": lateness.max(),
+        "late_by_mean_s": lateness.clip(lower=0.0).mean(),
+        "cycle_mean_s": cycle.mean(),
+        "cycle_p95_s": cycle.quantile(0.95),
+    }
