@@ -212,7 +212,8 @@ class TardinessCost(_ByWork):
         work_s = np.maximum(work_s, 1e-9)
         slack_s = np.maximum(left_s - work_s, 0.0)
         # as a logarithm, which does not vanish however much slack there is
-        return slack_s / (given.ahead * work_s.mean()) - np.log(weight / work_s)
+        scores: NDArray[np.float64] = slack_s / (given.ahead * work_s.mean())
+        return scores - np.log(weight / work_s)
 
 
 class FrequencyAge(OrderRule):
