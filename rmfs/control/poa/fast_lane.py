@@ -36,6 +36,11 @@ class _Visit:
     newest: int
     fitting: dict[int, Order] = field(default_factory=dict)
 
+    def begin(self, number: int, newest: int) -> None:
+        """Know nothing yet of another pod."""
+        self.number, self.newest = number, newest
+        self.fitting.clear()
+
 
 class FastLane:
     """Assigns orders of the backlog to the station where their pod stands.
@@ -56,37 +61,46 @@ class FastLane:
 
     def decide(self) -> Iterator[AssignOrder]:
         """Yield until no pod that is being served can complete an order."""
-        newest = next(reversed(self._view.orders.orders), -1)
-        for station in self._view.pick_stations:
-            if station.robot < 0 or not station.active:
-                continue
-            while station.free_slots > 0:
-                order = self._best(station, newest)
+        for station in self._promising():
+            pod = self._view.robots[station.robot].pod
+            fitting = self._visits[station.index].fitting
+            while fitting and station.free_slots > 0:
+                self._forget_lost(fitting, station.index, pod)
+                order = min(fitting.values(), key=self._rank, default=None)
                 if order is None:
                     break
                 yield AssignOrder(order, station.index)
 
-    def _best(self, station: PickStation, newest: int) -> Order | None:
-        pod = self._view.robots[station.robot].pod
-        visit = self._visits[station.index]
-        if visit.number != station.visits:
-            visit = self._visits[station.index] = _Visit(station.visits, newest)
-            self._look_at_all(visit, pod)
-        elif visit.newest < newest:
-            self._look_at_new(visit, pod)
-            visit.newest = newest
-        if not visit.fitting:
-            return None
-        self._forget_lost(visit, station.index, pod)
-        return min(visit.fitting.values(), key=self._rank, default=None)
+    def _promising(self) -> list[PickStation]:
+        """Stations with a slot whose pod may complete an order: hardly ever are there any.
 
-    def _forget_lost(self, visit: _Visit, station: int, pod: int) -> None:
+        All stations are gone through each time, so what is done for one without news is little.
+        """
+        newest = next(reversed(self._view.orders.orders), -1)
+        new: dict[int, list[Order]] = {}
+        promising = []
+        for station, visit in zip(self._view.pick_stations, self._visits, strict=True):
+            if station.robot < 0 or len(station.orders) >= station.slots or not station.active:
+                continue
+            if visit.number != station.visits:
+                visit.begin(station.visits, newest)
+                self._look_at_all(visit, self._view.robots[station.robot].pod)
+            elif visit.newest < newest:
+                orders = new.get(visit.newest)
+                if orders is None:
+                    orders = new[visit.newest] = self._view.orders.after(visit.newest)
+                self._look_at_new(visit, self._view.robots[station.robot].pod, orders)
+                visit.newest = newest
+            if visit.fitting:
+                promising.append(station)
+        return promising
+
+    def _forget_lost(self, fitting: dict[int, Order], station: int, pod: int) -> None:
         """Forget orders that have gone elsewhere or that the pod can complete no more."""
         backlog = self._view.orders.orders
-        need = self._view.need[station].item
-        for index, order in list(visit.fitting.items()):
-            if index not in backlog or not self._completes(pod, order, need):
-                del visit.fitting[index]
+        for index, order in list(fitting.items()):
+            if index not in backlog or not self._completes(pod, order, station):
+                del fitting[index]
 
     def _look_at_all(self, visit: _Visit, pod: int) -> None:
         orders = self._view.orders
@@ -97,15 +111,16 @@ class FastLane:
             order = orders.at_row[row]
             visit.fitting[order.index] = order
 
-    def _look_at_new(self, visit: _Visit, pod: int) -> None:
-        for order in self._view.orders.after(visit.newest):
-            if self._completes(pod, order, None):
+    def _look_at_new(self, visit: _Visit, pod: int, orders: list[Order]) -> None:
+        available = self._view.inventory.available.item
+        for order in orders:
+            for line in order.lines:
+                if available(line.sku, pod) < line.units:
+                    break
+            else:
                 visit.fitting[order.index] = order
 
-    def _completes(self, pod: int, order: Order, need: Callable[[int], int] | None) -> bool:
-        """Whether the pod has all units of the order to spare."""
-        available = self._view.inventory.available.item
-        return all(
-            available(line.sku, pod) - (need(line.sku) if need else 0) >= line.units
-            for line in order.lines
-        )
+    def _completes(self, pod: int, order: Order, station: int) -> bool:
+        """Whether the pod has all units of the order beyond what its station needs already."""
+        available, need = self._view.inventory.available.item, self._view.need[station].item
+        return all(available(line.sku, pod) - need(line.sku) >= line.units for line in order.lines)

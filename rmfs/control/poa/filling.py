@@ -69,8 +69,8 @@ class Filling(PickOrderAssignment[P]):
         while len(self.view.orders):
             stations = [
                 station
-                for station in self.view.pick_stations
-                if station.active and station.free_slots > self._kept_slots[station.index]
+                for station, kept in zip(self.view.pick_stations, self._kept_slots, strict=True)
+                if len(station.orders) < station.slots - kept and station.active
             ]
             chosen = self.next_assignment(stations) if stations else None
             if chosen is None:

@@ -207,6 +207,8 @@ class StationTeams(TaskAllocation[P]):
             return
         everybody = self.looks_elsewhere() or self.may_be_moved(consult)
         news = set() if everybody else self._stations_with_news()
+        if not everybody and news.isdisjoint(map(self._station_of.__getitem__, resting)):
+            return
         for robot in list(resting.values()):
             if not everybody and self._station_of[robot.index] not in news:
                 continue
@@ -219,11 +221,11 @@ class StationTeams(TaskAllocation[P]):
 
     def _stations_with_news(self) -> set[int]:
         """Stations with work for which no pod has been looked for in vain."""
-        view, searched = self.view, self._searched
+        version = self.view.storage.version
         return {
-            station
-            for station in range(len(view.stations))
-            if view.has_open_work(station) and searched[station] != view.work_version(station)
+            station.index
+            for station, searched in zip(self.view.stations, self._searched, strict=True)
+            if station.has_open_work and searched != (version, *station.work_version)
         }
 
     # --- who works for which station ------------------------------------------------------------
