@@ -43,6 +43,8 @@ class View:
         `stations` holds both, pick stations first (`rmfs.world.stations`).
     all_stations
         Those, and after them the stations of all other kinds.
+    slot_news, work_news
+        Which stations may have a slot, a robot or open work that had not (`rmfs.world.news`).
     need
         Open units per pick station and SKU, shape (S, K).
     lines
@@ -85,6 +87,7 @@ class View:
         self.replenishment_stations = world.replenishment_stations
         self.stations = world.work_stations
         self.all_stations = world.stations
+        self.slot_news, self.work_news = world.slot_news, world.work_news
         self.need = world.need
         self.lines = world.lines
         self.bundles_waiting = world.bundles_waiting

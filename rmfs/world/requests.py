@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from rmfs.world.news import News
     from rmfs.world.orders import Order, OrderLine
 
 
@@ -21,6 +22,8 @@ class OpenRequests:
     ----------
     need
         Open units per SKU, shape (K,): the station's row of a matrix, kept up to date here.
+    news, station
+        Told that there are requests now where there were none, or none any more, and of whom.
 
     Attributes
     ----------
@@ -33,8 +36,9 @@ class OpenRequests:
         before.
     """
 
-    def __init__(self, need: NDArray[np.int32]) -> None:
+    def __init__(self, need: NDArray[np.int32], news: News, station: int) -> None:
         self._need = need
+        self._news, self._station = news, station
         self.lines: dict[int, deque[OrderLine]] = {}
         self.units = 0
         self.version = 0
@@ -45,12 +49,18 @@ class OpenRequests:
 
     def add_lines(self, lines: Iterable[OrderLine]) -> None:
         """Take in the requests of lines that are open."""
+        before = self.units
         for line in lines:
             if line.open_units:
                 self.lines.setdefault(line.sku, deque()).append(line)
                 self._need[line.sku] += line.open_units
                 self.units += line.open_units
         self.version += 1
+        self._count_from(before)
+
+    def _count_from(self, before: int) -> None:
+        if (before == 0) != (self.units == 0):
+            self._news.tell(self._station)
 
     def remove(self, order: Order) -> None:
         """Let go of the open requests of an order."""
@@ -61,7 +71,9 @@ class OpenRequests:
                 if not waiting:
                     del self.lines[line.sku]
                 self._need[line.sku] -= line.open_units
+        before = self.units
         self.units -= order.open_units
+        self._count_from(before)
 
     def reopen(self, line: OrderLine) -> None:
         """Open one request of a line again; its line comes first."""
@@ -72,6 +84,7 @@ class OpenRequests:
         self._need[line.sku] += 1
         self.units += 1
         self.version += 1
+        self._count_from(self.units - 1)
 
     def take(self, sku: int, at_most: int) -> list[OrderLine]:
         """Close requests for a SKU, first come first served.
@@ -96,6 +109,7 @@ class OpenRequests:
         if taken:
             self._need[sku] -= len(taken)
             self.units -= len(taken)
+            self._count_from(self.units + len(taken))
         return taken
 
     def take_line(self, line: OrderLine, at_most: int) -> int:
@@ -111,4 +125,5 @@ class OpenRequests:
                     del self.lines[line.sku]
             self._need[line.sku] -= count
             self.units -= count
+            self._count_from(self.units + count)
         return count

@@ -8,6 +8,7 @@ import numpy as np
 
 from rmfs.world.backlog import BundleBacklog, OrderBacklog
 from rmfs.world.inventory import Inventory, read_only
+from rmfs.world.news import News
 from rmfs.world.robots import Robot
 from rmfs.world.stations import PickStation, ReplenishmentStation, Station
 from rmfs.world.storage import Storage
@@ -43,6 +44,10 @@ class WorldState:
         The two backlogs.
     pick_stations, replenishment_stations
         In the order of the layout.
+    slot_news
+        Pick stations that were switched on or off, reached, left, or got or lost an order.
+    work_news
+        Stations in the common numbering that have got open work, or have none any more.
     work_stations
         Both of these, in the common numbering: the stations to which rules assign work.
     stations
@@ -108,13 +113,15 @@ class WorldState:
         self.lines: NDArray[np.int32] = read_only(self._lines)
         self.queued_need: NDArray[np.int32] = read_only(queued_need)
         self.bundles_waiting: NDArray[np.int32] = read_only(waiting)
+        self.slot_news = slots = News(len(layout.pick_stations))
+        self.work_news = work = News(len(layout.pick_stations) + len(layout.replenishment_stations))
         self.pick_stations = [
-            PickStation(i, station, tier[station.waypoint], need[i], queued_need[i])
+            PickStation(i, station, tier[station.waypoint], need[i], queued_need[i], slots, work)
             for i, station in enumerate(layout.pick_stations)
         ]
         self.replenishment_stations = [
             ReplenishmentStation(
-                len(self.pick_stations) + i, i, station, tier[station.waypoint], waiting[i]
+                len(self.pick_stations) + i, i, station, tier[station.waypoint], waiting[i], work
             )
             for i, station in enumerate(layout.replenishment_stations)
         ]

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from rmfs.layout.model import PickStation as PickStationLayout
     from rmfs.layout.model import ReplenishmentStation as ReplenishmentStationLayout
+    from rmfs.world.news import News
     from rmfs.world.orders import Bundle, Order
     from rmfs.world.robots import Robot
     from rmfs.world.tasks import Task
@@ -34,10 +35,6 @@ class Station(Generic[T]):
         Among the stations of its kind.
     waypoint, tier
         Where the robot stands that is being served.
-    active
-        Whether new work may be assigned; what is assigned is finished in any case.
-    robot
-        The robot at the head of the queue, or -1.
     visits
         How many robots have reached the head so far.
     tasks
@@ -49,10 +46,33 @@ class Station(Generic[T]):
         self.number = number
         self.waypoint = waypoint
         self.tier = tier
-        self.active = False
-        self.robot = -1
+        self._active = False
+        self._robot = -1
         self.visits = 0
         self.tasks: dict[int, T] = {}
+
+    @property
+    def active(self) -> bool:
+        """Whether new work may be assigned; what is assigned is finished in any case."""
+        return self._active
+
+    @active.setter
+    def active(self, active: bool) -> None:
+        self._active = active
+        self.changed()
+
+    @property
+    def robot(self) -> int:
+        """The robot at the head of the queue, or -1."""
+        return self._robot
+
+    @robot.setter
+    def robot(self, robot: int) -> None:
+        self._robot = robot
+        self.changed()
+
+    def changed(self) -> None:
+        """Take note that it is switched, served or filled otherwise; a kind may tell others."""
 
     def verify(self, robots: Sequence[Robot]) -> None:
         """Check what is known of it by recounting; a kind adds its own.
@@ -107,13 +127,20 @@ class PickStation(Station[PickTask]):
         tier: int,
         need: NDArray[np.int32],
         queued_need: NDArray[np.int32],
+        slot_news: News,
+        work_news: News,
     ) -> None:
         super().__init__(index, index, layout.waypoint, tier)
+        self._slot_news = slot_news
         self.slots = layout.order_slots
         self.orders: dict[int, Order] = {}
-        self.requests = OpenRequests(need)
+        self.requests = OpenRequests(need, work_news, index)
         self.queued: dict[int, Order] = {}
-        self.queued_requests = OpenRequests(queued_need)
+        self.queued_requests = OpenRequests(queued_need, work_news, index)
+
+    def changed(self) -> None:
+        """Tell those who keep lists of stations with slots."""
+        self._slot_news.tell(self.index)
 
     @property
     def free_slots(self) -> int:
@@ -162,6 +189,7 @@ class ReplenishmentStation(Station[ReplenishTask]):
         layout: ReplenishmentStationLayout,
         tier: int,
         waiting_count: NDArray[np.int32],
+        work_news: News,
     ) -> None:
         super().__init__(index, number, layout.waypoint, tier)
         self.capacity = layout.capacity
@@ -170,6 +198,7 @@ class ReplenishmentStation(Station[ReplenishTask]):
         self.waiting: dict[int, list[Bundle]] = {}
         self.version = 0
         self._waiting_count = waiting_count
+        self._work_news = work_news
 
     @property
     def free_space(self) -> float:
@@ -196,8 +225,10 @@ class ReplenishmentStation(Station[ReplenishTask]):
         self.waiting.setdefault(bundle.pod, []).append(bundle)
         self._waiting_count[bundle.pod] += 1
         self.version += 1
+        self._work_news.tell(self.index)
 
     def take(self, pod: int) -> list[Bundle]:
         """Hand over all bundles that wait for a pod."""
         self._waiting_count[pod] = 0
+        self._work_news.tell(self.index)
         return self.waiting.pop(pod, [])

@@ -138,6 +138,7 @@ class World(WorldState):
             order.assigned_s = self.now_s
         order.slots_taken += 1
         target.orders[order.index] = order
+        target.changed()
         self._open(target, order.lines)
         return order
 
@@ -177,6 +178,7 @@ class World(WorldState):
             order.slots_taken += 1
             self.split_orders[order.index] = order
             target.orders[order.index] = part
+            target.changed()
         if isnan(order.assigned_s):
             order.assigned_s = self.now_s
         part.take_over(lines)
@@ -212,7 +214,9 @@ class World(WorldState):
         """
         if order.unpicked_units:
             raise ValueError(f"order {order.index} lacks {order.unpicked_units} units")
-        del self.pick_stations[order.station].orders[order.index]
+        station = self.pick_stations[order.station]
+        del station.orders[order.index]
+        station.changed()
         for line in order.lines:
             self._lines[order.station, line.sku] -= 1
         order.completed_s = self.now_s

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rmfs.control.decisions import AssignOrder
+from rmfs.world.news import Follower
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from rmfs.control.view import View
     from rmfs.world.orders import Order
-    from rmfs.world.stations import PickStation
 
 
 @dataclass(slots=True)
@@ -58,42 +58,65 @@ class FastLane:
         self._view = view
         self._rank = rank
         self._visits = [_Visit(-1, -1) for _ in view.pick_stations]
+        self._news = Follower(view.slot_news)
+        self._serving: set[int] = set()
+        self._hopeful: set[int] = set()
+        self._newest = -1
 
     def decide(self) -> Iterator[AssignOrder]:
         """Yield until no pod that is being served can complete an order."""
-        for station in self._promising():
+        for index in self._promising():
+            station, fitting = self._view.pick_stations[index], self._visits[index].fitting
             pod = self._view.robots[station.robot].pod
-            fitting = self._visits[station.index].fitting
             while fitting and station.free_slots > 0:
-                self._forget_lost(fitting, station.index, pod)
+                self._forget_lost(fitting, index, pod)
                 order = min(fitting.values(), key=self._rank, default=None)
                 if order is None:
                     break
-                yield AssignOrder(order, station.index)
+                yield AssignOrder(order, index)
 
-    def _promising(self) -> list[PickStation]:
-        """Stations with a slot whose pod may complete an order: hardly ever are there any.
+    def _promising(self) -> list[int]:
+        """Stations whose pod may complete an order that has a slot there, ascending.
 
-        All stations are gone through each time, so what is done for one without news is little.
+        Only stations with news are looked at, unless there are new orders.
         """
         newest = next(reversed(self._view.orders.orders), -1)
+        changed, serving = self._news.take(), self._serving
+        for index in changed:
+            station = self._view.pick_stations[index]
+            if station.robot >= 0 and station.active and station.free_slots > 0:
+                serving.add(index)
+            else:
+                serving.discard(index)
         new: dict[int, list[Order]] = {}
-        promising = []
-        for station, visit in zip(self._view.pick_stations, self._visits, strict=True):
-            if station.robot < 0 or len(station.orders) >= station.slots or not station.active:
-                continue
-            if visit.number != station.visits:
-                visit.begin(station.visits, newest)
-                self._look_at_all(visit, self._view.robots[station.robot].pod)
-            elif visit.newest < newest:
-                orders = new.get(visit.newest)
-                if orders is None:
-                    orders = new[visit.newest] = self._view.orders.after(visit.newest)
-                self._look_at_new(visit, self._view.robots[station.robot].pod, orders)
-                visit.newest = newest
-            if visit.fitting:
-                promising.append(station)
-        return promising
+        for index in serving if newest != self._newest else changed & serving:
+            self._look(index, newest, new)
+        self._newest = newest
+        return sorted(i for i in self._hopeful if i in serving and self._visits[i].fitting)
+
+    def _look(self, index: int, newest: int, new: dict[int, list[Order]]) -> None:
+        """Find orders that the pod at a station can complete, among all or among new ones.
+
+        Parameters
+        ----------
+        new
+            Orders that came after one of an index, as far as they have been looked up.
+        """
+        station, visit = self._view.pick_stations[index], self._visits[index]
+        pod = self._view.robots[station.robot].pod
+        if visit.number != station.visits:
+            visit.begin(station.visits, newest)
+            self._look_at_all(visit, pod)
+        elif visit.newest < newest:
+            orders = new.get(visit.newest)
+            if orders is None:
+                orders = new[visit.newest] = self._view.orders.after(visit.newest)
+            self._look_at_new(visit, pod, orders)
+            visit.newest = newest
+        if visit.fitting:
+            self._hopeful.add(index)
+        else:
+            self._hopeful.discard(index)
 
     def _forget_lost(self, fitting: dict[int, Order], station: int, pod: int) -> None:
         """Forget orders that have gone elsewhere or that the pod can complete no more."""

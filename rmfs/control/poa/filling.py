@@ -9,6 +9,7 @@ from rmfs.control.base import Parameters
 from rmfs.control.poa import PickOrderAssignment
 from rmfs.control.poa.fast_lane import FastLane
 from rmfs.control.poa.ties import TieBreaker, order_rank
+from rmfs.world.news import Follower
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -51,6 +52,8 @@ class Filling(PickOrderAssignment[P]):
         self._kept_slots = [
             int(self._lane is not None and station.slots > 1) for station in view.pick_stations
         ]
+        self._news = Follower(view.slot_news)
+        self._to_fill: set[int] = set()
 
     @abstractmethod
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
@@ -67,15 +70,22 @@ class Filling(PickOrderAssignment[P]):
         if self._lane is not None:
             yield from self._lane.decide()
         while len(self.view.orders):
-            stations = [
-                station
-                for station, kept in zip(self.view.pick_stations, self._kept_slots, strict=True)
-                if len(station.orders) < station.slots - kept and station.active
-            ]
+            stations = self._stations_to_fill()
             chosen = self.next_assignment(stations) if stations else None
             if chosen is None:
                 return
             yield chosen
+
+    def _stations_to_fill(self) -> list[PickStation]:
+        """Stations with a slot to be filled, ascending; only those with news are looked at."""
+        stations, to_fill = self.view.pick_stations, self._to_fill
+        for index in self._news.take():
+            station = stations[index]
+            if station.active and station.free_slots > self._kept_slots[index]:
+                to_fill.add(index)
+            else:
+                to_fill.discard(index)
+        return [stations[index] for index in sorted(to_fill)]
 
     def servable_rows(self) -> NDArray[np.intp]:
         """Rows of the backlog whose orders the stock can serve."""

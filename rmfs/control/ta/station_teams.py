@@ -15,6 +15,7 @@ from rmfs.control.ta import Consult, TaskAllocation
 from rmfs.control.ta.balance import reassign
 from rmfs.control.ta.rest import RestPlaces, RestRule
 from rmfs.control.ta.stations import bring, far_first, keeper_of, station_of_task, waypoints
+from rmfs.world.news import Follower
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -61,6 +62,8 @@ class StationTeams(TaskAllocation[P]):
         self._works_for = [station_of_task(robot) for robot in view.robots]
         self._workers = [self._works_for.count(station) for station in range(stations)]
         self._searched: list[tuple[int, ...]] = [(-1, -1)] * stations
+        self._with_work: set[int] = set()
+        self._work_news = Follower(view.work_news)
         self._active: frozenset[int] = frozenset()
         self._balance(self.first_stations())
         self._balance_due_s = view.now_s + parameters.period_s if parameters.period_s else inf
@@ -221,12 +224,13 @@ class StationTeams(TaskAllocation[P]):
 
     def _stations_with_news(self) -> set[int]:
         """Stations with work for which no pod has been looked for in vain."""
-        version = self.view.storage.version
-        return {
-            station.index
-            for station, searched in zip(self.view.stations, self._searched, strict=True)
-            if station.has_open_work and searched != (version, *station.work_version)
-        }
+        view, searched, with_work = self.view, self._searched, self._with_work
+        for station in self._work_news.take():
+            if view.has_open_work(station):
+                with_work.add(station)
+            else:
+                with_work.discard(station)
+        return {s for s in with_work if searched[s] != view.work_version(s)}
 
     # --- who works for which station ------------------------------------------------------------
 
