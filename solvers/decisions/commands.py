@@ -242,6 +242,24 @@ def draw(
             typer.echo(f"{one} {big}: {count} new")
 
 
+@app.command("import")
+def import_(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="Racks and orders, as Valle and Beasley do.")
+    ],
+    pickers: Annotated[int, typer.Option(min=1, max=1000, help="Pick stations.")],
+    orders_each: Annotated[int, typer.Option(min=1, max=1000, help="Orders that each takes.")],
+    out: Annotated[Path, typer.Option(help="Folder of the question.")] = Path("questions"),
+) -> None:
+    """Make a question of rack allocation of an instance of the literature."""
+    from rmfs.solvers.decisions.files import write
+    from rmfs.solvers.decisions.racks import read_racks
+
+    question = read_racks(file, pickers, orders_each)
+    write(question, out)
+    typer.echo(out / f"{question.name}.json.gz")
+
+
 @app.command()
 def improve(
     library: LibraryFolder = LIBRARY,
