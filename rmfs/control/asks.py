@@ -182,6 +182,8 @@ class Call:
         Decisions of the solution that were applied, and that no longer held.
     fallback
         Decisions that the heuristic took in its place when it had failed or found nothing.
+    done
+        How many of its parts have been dealt with (`left`).
     """
 
     number: int
@@ -197,6 +199,7 @@ class Call:
     applied: int = 0
     stale: int = 0
     fallback: int = 0
+    done: dict[str, int] = field(default_factory=dict)
 
     @property
     def solution(self) -> Mapping[str, Any] | None:
@@ -209,6 +212,24 @@ class Call:
         if self.completed_us < 0:
             return float("nan")
         return (self.completed_us - self.requested_us) / 1e6
+
+    def left(self, name: str, parts: Sequence[D]) -> Iterator[D]:
+        """Yield the parts of an answer that have not been dealt with.
+
+        A rule for TA that goes through its answer by this can be asked again in the middle of it:
+        when PPS, PSA or repositioning are decided outside, `answered` ends with the first question
+        to them, and is called anew once that is answered (`Controller.goes_on`).
+
+        Parameters
+        ----------
+        name
+            Of these parts among all of the answer's.
+        parts
+            All of them; the same ones each time.
+        """
+        while (number := self.done.get(name, 0)) < len(parts):
+            self.done[name] = number + 1
+            yield parts[number]
 
     def count(self) -> None:
         """Count a decision that was based on it."""

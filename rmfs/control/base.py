@@ -88,6 +88,10 @@ class Controller(Generic[P]):
     optimisers
         Modules with the functions that solve its questions (`rmfs.control.asks`); a controller
         that asks optimisers names one at least.
+    goes_on
+        Whether `answered` may be called again with a call whose answer it was carrying out when
+        somebody outside was asked: it then goes on where it was (`Call.left`). To be said by rules
+        for TA that ask optimisers; without it PPS, PSA and repositioning cannot be decided outside.
     looks_ahead
         Whether it is given `lookahead`, with which it tries decisions out.
     in_flight
@@ -103,6 +107,7 @@ class Controller(Generic[P]):
     decides: ClassVar[frozenset[Problem]] = frozenset()
     is_dummy: ClassVar[bool] = False
     optimisers: ClassVar[tuple[str, ...]] = ()
+    goes_on: ClassVar[bool] = False
     looks_ahead: ClassVar[bool] = False
     lookahead: LookAhead
     in_flight: int = 0

@@ -59,6 +59,7 @@ class TriesOut:
     """
 
     looks_ahead: ClassVar[bool] = True
+    goes_on: ClassVar[bool] = True
     optimisers: ClassVar[tuple[str, ...]] = ("rmfs.control.halving",)
     base: Any
     view: View
@@ -73,8 +74,9 @@ class TriesOut:
 
     def best(self, call: Call) -> Iterator[Any]:
         """Yield the decision that did best in trials, if it still can be taken."""
-        if call.solution is not None:
-            chosen = call.ask.memo[call.solution["row"]]
+        rows = [] if call.solution is None else [call.solution["row"]]
+        for row in call.left("best", rows):
+            chosen = call.ask.memo[row]
             if legality.reason(chosen, self.view):
                 call.stale += 1
             else:

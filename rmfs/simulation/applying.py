@@ -68,13 +68,13 @@ class Applying:
         TypeError
             If it is no decision.
         """
-        if type(decision) is say.Prepare:
-            self._prepare(decision, call)
-            return
         how = self._how.get(type(decision))
-        if how is None:
+        if how is not None:
+            how(decision)
+        elif type(decision) is say.Prepare:
+            self._prepare(decision, call)
+        else:
             raise TypeError(f"{decision!r} is no decision (see rmfs.control.decisions)")
-        how(decision)
 
     def _switch_station(self, decision: say.SwitchStation) -> None:
         station = self._world.stations[decision.station]

@@ -58,7 +58,7 @@ class Deciding:
         self._apply: Callable[[Any, Call | None], None]
         self._optimisers: OptimiserGateway
         self._nested_ns = 0
-        self._unfinished = (0, 0, 0)
+        self._unfinished: dict[int, tuple[int, int, int]] = {}
         self.statistics: dict[Problem, DecisionStatistics] = {
             problem: DecisionStatistics(str(problem), choice.name)
             for problem, choice in choices.items()
@@ -128,43 +128,60 @@ class Deciding:
         decide: Callable[[], Iterable[Any]],
         outside: Outside,
         state: RuleState,
+        answer: Call | None = None,
     ) -> None:
-        """Ask a rule that asks the outside in the middle of its work.
+        """Ask a rule that asks the outside in the middle of its work, as `ask` does others.
 
         Raises
         ------
         Awaits
             If the outside has to answer first. The rule is as it was after its last decision, and
             is to be asked again.
+
+        Parameters
+        ----------
+        decide
+            Asks it for its decisions, or tells it the answer of an optimiser.
+        outside
+            Knows what was answered.
+        state
+            Keeps what the rule remembers.
+        answer
+            The call whose answer it is told.
         """
         controller = self._controllers[problem]
-        count, by_rule, spent_ns = self._unfinished
+        which = -1 if answer is None else answer.number
+        count, by_rule, spent_ns = self._unfinished.pop(which, (0, 0, 0))
         nested_ns, self._nested_ns = self._nested_ns, 0
         start = perf_counter_ns()
-        kept = state.keep(controller)
+        kept = state.keep(controller, answer)
+        follows = False
         outside.taken = 0
-        given = iter(decide())
         try:
-            for told in given:
-                decision, call = told_by(told, None)
+            for told in decide():
+                decision, call = told_by(told, answer)
+                outside.begin_attempt()
+                follows = True
                 if type(decision) is Ask:
                     self._optimisers.ask(problem, controller, decision)
                 else:
-                    self._apply(decision, call)
                     count += 1
+                    by_rule += call is None
+                    self._apply(decision, call)
                     if controller.optimisers and controller.is_modelled(decision):
                         self.decided(problem, call)
-                    by_rule += call is None
                 outside.begin_attempt()
-                kept = state.keep(controller)
+                kept, follows = state.keep(controller, answer), False
         except Awaits:
-            state.restore(controller, kept)
-            self._unfinished = count, by_rule, spent_ns
+            # who asks may be what follows from a decision: an answer that is carried out at once,
+            # or the start of what was prepared; the decision is taken then
+            if not follows:
+                state.restore(controller, kept)
+            self._unfinished[which] = count, by_rule, spent_ns
             self._nested_ns = nested_ns
             raise
         spent_ns += perf_counter_ns() - start - self._nested_ns
         self._nested_ns = nested_ns
-        self._unfinished = (0, 0, 0)
         outside.begin_attempt()
         self.record(problem, spent_ns, count, by_rule)
         self._alarms.asked(problem)

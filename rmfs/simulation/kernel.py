@@ -337,14 +337,15 @@ class Kernel:
 
     def _go_on_until(self, end_us: int, limit: Limit | None) -> Decision | None:
         agenda = self.agenda
-        waits = self.optimisers.limit_us if self.optimisers.waits else None
+        limits = [limit] if limit is not None else []
+        if self.optimisers.waits:
+            limits.insert(0, self.optimisers.limit_us)
         while not self._ended:
             if not self._unsettled:
                 allowed_us = end_us
-                for one in (waits, limit):
+                for one in limits:
                     # an answer that comes while this waits goes into the agenda
-                    if one is not None:
-                        allowed_us = min(allowed_us, one(agenda.now_us))
+                    allowed_us = min(allowed_us, one(agenda.now_us))
                 self._move(min(agenda.next_us, allowed_us))
             if not self._settle():
                 return self.decision

@@ -4,7 +4,8 @@ A run that waits holds no frame of a controller: all it needs to go on is data, 
 copied and stored while it waits. A problem that the phase itself asks about is a *turn*: one
 decision after the other, until the outside declines. A question that a rule for TA asks in the
 middle of its own work ends that work (`Awaits`); when the answer is there, the rule is set back to
-where it was before, asked again, and given the answers of this attempt in their order.
+where it was after its last decision, asked again, and given the answers since then in their order.
+So is a rule that is carrying out the answer of an optimiser: it goes on with what is left of it.
 """
 
 from __future__ import annotations
@@ -50,11 +51,12 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
                 f"choose another rule for {taker.problem}, or decide that outside"
             )
     task_rule = choices[Problem.TA]
-    if problems & ASKED_BY_TA and task_rule.controller.optimisers:
+    rule = task_rule.controller
+    if problems & ASKED_BY_TA and rule.optimisers and not rule.goes_on:
         raise InputError(
             f"outside {', '.join(sorted(problems & ASKED_BY_TA))}: ta {task_rule.name} asks these "
-            "questions while it carries out the answer of an optimiser, and cannot be interrupted; "
-            "choose a rule for TA, or decide TA outside"
+            "questions while it carries out the answer of an optimiser, and does not say that it "
+            "can go on after one (goes_on); choose another rule for TA, or decide TA outside"
         )
     return problems
 
@@ -111,9 +113,8 @@ class Outside:
 
     def drop_taken(self) -> None:
         """What was asked about tasks prepared ahead is not asked again by TA's rule."""
-        if self.taken:
-            del self.given[: self.taken]
-            self.taken = 0
+        del self.given[: self.taken]
+        self.taken = 0
 
     def begin_attempt(self) -> None:
         """A rule for TA begins, or goes on after a decision of its own was applied."""

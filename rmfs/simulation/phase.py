@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control import decisions as say
@@ -14,7 +15,7 @@ from rmfs.simulation.outside import ASKED_BY_TA, Awaits, Outside
 from rmfs.simulation.rule_state import RuleState
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from rmfs.control.asks import Call
     from rmfs.control.base import Controller
@@ -77,9 +78,12 @@ class DecisionPhase:
         self._visits = visits
         self._guard = guard
         self._answers: list[Call] = []
+        self._half_told: list[Call] = []
+        self._starting: Robot | None = None
         self._interrupted = -1
         self._applying: Applying
         self._arrivals: ArrivalProcess
+        self._steps: list[Callable[[], None]]
         self.choices = dict(choices)
         self.outside = outside
         self._rule_state = RuleState()
@@ -91,6 +95,7 @@ class DecisionPhase:
     def connect(self, applying: Applying, arrivals: ArrivalProcess) -> None:
         """Say who applies decisions, and who makes orders and bundles."""
         self._applying, self._arrivals = applying, arrivals
+        self._steps = self._what_is_done()
 
     def exchange(self, choice: Choice) -> None:
         """Install another controller for a problem; it is asked in the phase of this instant.
@@ -140,38 +145,53 @@ class DecisionPhase:
 
     def settle(self) -> bool:
         """Go through the steps that are due until none is; false if the outside has to decide."""
-        outside, due = self.outside, self._due
-        while outside.pending is None:
-            step = self._interrupted
-            if step < 0:
-                step = due.take()
-                if step < 0:
-                    return True
-            else:
-                self._interrupted = -1
+        outside, due, storage, what = self.outside, self._due, self._world.storage, self._steps
+        if outside.pending is not None or (self._interrupted >= 0 and not self._go_on()):
+            return False
+        while True:
+            if storage.version != due.storage_version:
+                due.storage_changed()
+            bits = due.bits
+            if not bits:
+                return True
+            due.bits = rest = bits & (bits - 1)
+            step = (bits ^ rest).bit_length() - 1
             try:
-                self._do(step)
+                what[step]()
             except Awaits as awaits:
-                outside.pending = awaits.question
-                self._interrupted = step
-        return False
+                outside.pending, self._interrupted = awaits.question, step
+                return False
 
-    def _do(self, step: int) -> None:
-        if step == steps.ARRIVALS:
-            self._arrivals.top_up()
-        elif step == steps.LATE_BINDING:
-            self._late_binding.bind()
-        elif step == steps.TASKS:
-            self._give_tasks()
-        elif step == steps.ANSWERS:
-            self._take_answers()
-        elif step == steps.CHARGES and self._guard is None:
-            pass  # robots have as much energy as they need
-        else:
-            problem = Problem.MM if step == steps.MANAGE else steps.PROBLEM_OF[step]
-            if problem in self.outside.problems and problem not in ASKED_BY_TA:
-                raise Awaits(Question(problem, "turn"))
-            self._deciding.ask(problem, self._controllers.installed[problem].decide())
+    def _go_on(self) -> bool:
+        """Go on with the step in which the outside was asked; false if it is asked again."""
+        step, self._interrupted = self._interrupted, -1
+        try:
+            self._finish()
+            self._steps[step]()
+        except Awaits as awaits:
+            self.outside.pending, self._interrupted = awaits.question, step
+        return self.outside.pending is None
+
+    def _what_is_done(self) -> list[Callable[[], None]]:
+        """Return what each step is, by its number."""
+        asked = {step: partial(self._ask, problem) for step, problem in steps.PROBLEM_OF.items()}
+        done: dict[int, Callable[[], None]] = {
+            **asked,
+            steps.ANSWERS: self._take_answers,
+            steps.MANAGE: partial(self._ask, Problem.MM),
+            steps.ARRIVALS: self._arrivals.top_up,
+            steps.LATE_BINDING: self._late_binding.bind,
+            steps.TASKS: self._give_tasks,
+        }
+        return [done[step] for step in range(len(done))]
+
+    def _ask(self, problem: Problem) -> None:
+        """Ask the controller of a problem, or somebody outside."""
+        if problem is Problem.CA and self._guard is None:
+            return  # robots have as much energy as they need
+        if problem in self.outside.problems and problem not in ASKED_BY_TA:
+            raise Awaits(Question(problem, "turn"))
+        self._deciding.ask(problem, self._controllers.installed[problem].decide())
 
     def _give_tasks(self) -> None:
         """Start tasks prepared ahead, then ask TA, with whom repositioning is asked as well."""
@@ -181,10 +201,12 @@ class DecisionPhase:
             raise Awaits(Question(Problem.TA, "turn"))
         if self._guard is not None:
             self._guard.secure(self._consult)
-        self._visits.give()
+        if self._visits.controllers:
+            self._visits.give()
         outside.taken = 0  # all that was answered in this attempt is asked again, in its order
         self._start_prepared()
-        outside.drop_taken()
+        if outside.taken:
+            outside.drop_taken()
         rule = self._controllers.installed[Problem.TA]
         orders_too = Problem.POA in rule.decides
         overdue = Problem.TA in self._alarms.overdue
@@ -204,13 +226,12 @@ class DecisionPhase:
 
     def _start_prepared(self) -> None:
         world = self._world
-        robots = list(world.asking.values())
+        robots = [robot for robot in world.asking.values() if robot.prepared]
         if self.outside.problems:
             # one at rest has prepared tasks if somebody had to be asked about the first
-            robots += world.resting.values()
+            robots += [robot for robot in world.resting.values() if robot.prepared]
         for robot in robots:
-            if robot.prepared:
-                self._dispatch.start_prepared(robot, self._consult)
+            self._dispatch.start_prepared(robot, self._consult)
 
     def prepare(self, decision: say.Prepare, call: Call | None) -> None:
         """Remember tasks for later, or start the first if the robot has nothing better to do."""
@@ -220,7 +241,9 @@ class DecisionPhase:
         if rule.optimisers and call is None:
             self._deciding.decided(Problem.TA, call)
         if robot.task is None or robot.index in self._world.resting:
+            self._starting = robot  # it may have to wait for the outside
             self._dispatch.start_prepared(robot, self._consult)
+            self._starting = None
 
     # --- answers of optimisers ------------------------------------------------------------------
 
@@ -230,21 +253,50 @@ class DecisionPhase:
         self._due.want_answers()
 
     def _take_answers(self) -> None:
-        answers, self._answers = sorted(self._answers, key=lambda call: call.number), []
-        for call in answers:
-            self.tell(call)
+        self._answers.sort(key=lambda call: call.number)
+        while self._answers:
+            self.tell(self._answers.pop(0))
 
     def tell(self, call: Call) -> None:
         """Tell the controller that asked what came back, and apply what it makes of it."""
-        controller = call.controller
-        controller.in_flight -= 1
+        call.controller.in_flight -= 1
         call.completed_us = self._agenda.now_us
-        if self._controllers[call.problem] is not controller:
+        self._carry_out(call)
+
+    def _carry_out(self, call: Call) -> None:
+        """Apply what a controller makes of an answer, or of what is left of it."""
+        problem, controller = call.problem, call.controller
+        if self._controllers[problem] is not controller:
             call.outcome = Outcome.ABANDONED
+        elif problem is Problem.TA and self.outside.problems & ASKED_BY_TA:
+            try:
+                self._deciding.ask_between_answers(
+                    problem, lambda: controller.answered(call), self.outside, self._rule_state, call
+                )
+            except Awaits:
+                self._half_told.append(call)
+                raise
         else:
-            self._deciding.ask(call.problem, controller.answered(call), call)
+            self._deciding.ask(problem, controller.answered(call), call)
         self._events.optimiser_answered(call)
         call.forget()
+
+    def _finish(self) -> None:
+        """Go on with what had to wait for the outside before the step in which that was goes on."""
+        outside = self.outside
+        if self._starting is not None:
+            outside.taken = 0
+            self._dispatch.start_prepared(self._starting, self._consult)
+            self._starting = None
+            outside.drop_taken()
+        # an answer may have come while another was carried out: the innermost is the first
+        waiting, self._half_told = self._half_told, []
+        for number, call in enumerate(waiting):
+            try:
+                self._carry_out(call)
+            except Awaits:
+                self._half_told += waiting[number + 1 :]
+                raise
 
     # --- turns of the outside ---------------------------------------------------------------------
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import io
 import pickle
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rmfs.control.asks import Call
 from rmfs.control.base import Parameters
 from rmfs.control.trackers import Tracker
 from rmfs.control.travel import Travel
@@ -15,32 +16,44 @@ from rmfs.simulation.arrays import ArrayPickler
 if TYPE_CHECKING:
     from rmfs.control.base import Controller
 
-_WORLD = ("rmfs.world.", "rmfs.layout.", "rmfs.scenario.", "rmfs.traffic.")
-_ATOMS = (Parameters, View, Travel, Tracker)
+_WORLD = ("rmfs.world.", "rmfs.layout.", "rmfs.scenario.", "rmfs.traffic.", "rmfs.simulation.")
+_ATOMS = (Parameters, View, Travel, Tracker, Call)
 _KNOWN: dict[type, bool] = {}
 """Whether objects of a type are referred to: told once per type, there are hundreds of objects."""
+
+
+class Kept(NamedTuple):
+    """What a controller remembered: pickled, what that refers to, and calls with their counts."""
+
+    content: bytes
+    shared: list[object]
+    counted: list[tuple[Call, int, dict[str, int]]]
 
 
 class RuleState:
     """Keeps copies of what controllers remember.
 
     Robots, orders, pods and all else of the world is referred to, not copied; so are the view, the
-    parameters, and trackers, which hear of events and do not change when a rule decides.
+    parameters, and trackers, which hear of events and do not change when a rule decides. Of a call
+    what the rule counts and how far it has come is kept.
     """
 
-    def keep(self, controller: Controller[Any]) -> tuple[bytes, list[object]]:
-        """Copy what a controller remembers."""
+    def keep(self, controller: Controller[Any], answer: Call | None) -> Kept:
+        """Copy what a controller remembers, and how far it has come with an answer."""
         shared: list[object] = []
         stream = io.BytesIO()
         _Keeper(stream, controller, shared).dump(vars(controller))
-        return stream.getvalue(), shared
+        calls = {id(thing): thing for thing in (*shared, answer) if isinstance(thing, Call)}
+        counted = [(call, call.stale, dict(call.done)) for call in calls.values()]
+        return Kept(stream.getvalue(), shared, counted)
 
-    def restore(self, controller: Controller[Any], kept: tuple[bytes, list[object]]) -> None:
+    def restore(self, controller: Controller[Any], kept: Kept) -> None:
         """Let a controller remember what it did when this was kept."""
-        content, shared = kept
-        remembered: dict[str, Any] = _Restorer(io.BytesIO(content), shared).load()
+        remembered: dict[str, Any] = _Restorer(io.BytesIO(kept.content), kept.shared).load()
         vars(controller).clear()
         vars(controller).update(remembered)
+        for call, stale, done in kept.counted:
+            call.stale, call.done = stale, dict(done)
 
 
 class _Keeper(ArrayPickler):

@@ -57,13 +57,15 @@ class Due:
     ----------
     bits
         Bit k is set if step k is due.
+    storage_version
+        Of the pods and places that those who are due have been told of.
     """
 
     def __init__(self, world: World, controllers: ControllerSet) -> None:
         self._world = world
         self._controllers = controllers
         self._masks: list[int] = []
-        self._storage_version = world.storage.version
+        self.storage_version = world.storage.version
         self.bits = 0
         self.connect()
 
@@ -104,15 +106,7 @@ class Due:
         if self._world.asking:
             self.bits |= 1 << TASKS
 
-    def take(self) -> int:
-        """Take the earliest step that is due; -1 if none is."""
-        version = self._world.storage.version
-        if version != self._storage_version:
-            self._storage_version = version
-            self.signal(Trigger.POD_AT_HAND)
-        bits = self.bits
-        if not bits:
-            return -1
-        rest = bits & (bits - 1)
-        self.bits = rest
-        return (bits ^ rest).bit_length() - 1
+    def storage_changed(self) -> None:
+        """Take note that pods or places have become free or taken."""
+        self.storage_version = self._world.storage.version
+        self.signal(Trigger.POD_AT_HAND)

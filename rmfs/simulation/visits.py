@@ -80,7 +80,7 @@ class Visits:
 
     def give(self) -> None:
         """Send robots that need a task on the visits that are due."""
-        for robot in list(self._world.asking.values()) if self.controllers else ():
+        for robot in list(self._world.asking.values()):
             for controller in self.controllers:
                 visit = controller.visit_for(robot)
                 if visit is not None:

@@ -30,8 +30,11 @@ class JointAllocation(TaskAllocation[P]):
     """A rule of TA whose model decides orders, and pods for picks with the robots that fetch them.
 
     Robots bring pods to replenishment stations, the nearest with work first, pods by PPS
-    lexicographic; idle ones rest by the rest rule.
+    lexicographic; idle ones rest by the rest rule. What is made of an answer is kept as a plan, and
+    asks nobody.
     """
+
+    goes_on = True
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator, rest: RestRule) -> None:
         super().__init__(parameters, view, rng)

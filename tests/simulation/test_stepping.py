@@ -12,7 +12,9 @@ import pytest
 import rmfs
 from rmfs.control.decisions import AssignOrder, BringForPicks, Park
 from rmfs.errors import InputError
+from rmfs.measure.dictionary import reproducible
 from rmfs.simulation.decision import Decision, ImpossibleError
+from rmfs.solvers.control.tasks.dispatch import DispatchControl
 
 DURATION_S = 250
 NEVER_ASKED = ("mm", "repositioning")  # by default: rules that never do anything
@@ -20,12 +22,23 @@ DECIDED_BY_RULES = ["poa", "roa", "rps", "pps", "psa", "ta", "sa", "mm", "reposi
 
 
 def simulation(
-    *outside: str, controllers: str = "default", seed: int = 3, **given: Any
+    *outside: str,
+    controllers: str = "default",
+    seed: int = 3,
+    pacing: str = "instant",
+    **given: Any,
 ) -> rmfs.Simulation:
     keys = {"layout.robots": 10, "scenario.warmup_s": 60, "scenario.duration_s": DURATION_S}
     keys |= {key.replace("__", "."): value for key, value in given.items()}
     return rmfs.Simulation(
-        "default", "default", controllers, seed=seed, set=keys, outside=outside, trace=True
+        "default",
+        "default",
+        controllers,
+        seed=seed,
+        set=keys,
+        outside=outside,
+        pacing=pacing,
+        trace=True,
     )
 
 
@@ -91,6 +104,60 @@ def of_the_rules(rules: str) -> dict[str, Any]:
     inside = simulation(**RULES[rules])
     inside.run()
     return told(inside)
+
+
+# rules for TA that ask an optimiser, and which questions of theirs can be answered outside
+BY_OPTIMISERS: dict[str, tuple[dict[str, Any], tuple[str, ...]]] = {
+    "dispatch": ({"controllers__ta": "dispatch"}, ("pps", "psa", "repositioning")),
+    "dispatch at once": ({"controllers__ta": {"name": "dispatch", "buffer_s": 0}}, ("pps", "psa")),
+    "dispatch later": ({"controllers__ta": "dispatch", "pacing": "fixed=3"}, ("pps", "psa")),
+    "planning": ({"controllers": "planning"}, ("psa", "repositioning")),
+    "pile-on": (
+        {"controllers": "pile-on-dispatch", "scenario__warmup_s": 0, "scenario__duration_s": 90},
+        ("psa",),
+    ),
+    "rollout": (
+        {
+            "controllers__ta": {"name": "rollout", "samples": 1, "horizon_s": 5.0},
+            "scenario__duration_s": 60,
+        },
+        ("pps", "psa"),
+    ),
+}
+
+
+def measured(run: rmfs.Simulation) -> tuple[Any, ...]:
+    """The footprint, and how each question to an optimiser went."""
+    done = run.result()
+    calls = done.recorder.questions
+    went = [(c.number, c.outcome, c.applied, c.stale, c.fallback, c.completed_us) for c in calls]
+    return done.footprint[reproducible("footprint")].to_json(), went
+
+
+@pytest.mark.parametrize(
+    ("rule", "outside"),
+    [(rule, outside) for rule, (_, problems) in BY_OPTIMISERS.items() for outside in problems]
+    + [("dispatch", "pps psa")],
+)
+def test_what_a_rule_asks_while_it_carries_out_an_answer_is_decided_outside(
+    rule: str, outside: str
+) -> None:
+    """The run ends as the rules would have it end: also where each question waits in a copy."""
+    given = BY_OPTIMISERS[rule][0]
+    run = simulation(*outside.split(), **given)
+    asked = 0
+    while (decision := run.step()) is not None:
+        asked += 1
+        if asked % 25 == 1:  # it is pending: the copy goes on from there
+            run = run.fork()
+            decision = run.decision
+            assert decision is not None
+        take(decision)
+    assert asked > 0 or outside in NEVER_ASKED
+    inside = simulation(**given)
+    inside.run()
+    assert told(run) == told(inside)
+    assert measured(run) == measured(inside)
 
 
 def test_all_problems_at_once() -> None:
@@ -210,6 +277,12 @@ def test_a_rule_that_asks_about_several_robots_gets_all_answers(seed: int) -> No
     assert run.ended
 
 
+class AsksAndForgets(DispatchControl):
+    """Cannot go on with an answer."""
+
+    goes_on = False
+
+
 @pytest.mark.parametrize(
     ("outside", "rules", "reason"),
     [
@@ -220,7 +293,11 @@ def test_a_rule_that_asks_about_several_robots_gets_all_answers(seed: int) -> No
             {"controllers__ta": "random", "controllers__pps": "dummy"},
             "ta random decides pps as well",
         ),
-        ("psa", {"controllers__ta": "dispatch"}, "ta dispatch asks these questions while"),
+        (
+            "psa",
+            {"controllers__ta": {"name": f"{__name__}:AsksAndForgets"}},
+            "asks these questions while .* can go on after one",
+        ),
     ],
 )
 def test_what_cannot_be_decided_outside_is_refused(

@@ -56,6 +56,8 @@ class Asking(TaskAllocation[P]):
     with work that has the fewest pods under way, ties by distance.
     """
 
+    goes_on = True
+
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)
         self._rest = RestPlaces(view, parameters.rest, self.draw)
@@ -68,7 +70,7 @@ class Asking(TaskAllocation[P]):
 
     @abstractmethod
     def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield what still holds of a solution."""
+        """Yield what still holds of a solution; goes through its parts by `call.left`."""
 
     def next_event_s(self) -> float:
         """When the optimiser may be asked again, if it is to be asked."""

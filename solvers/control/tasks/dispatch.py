@@ -131,7 +131,7 @@ class DispatchControl(Asking[DispatchParameters]):
         memo: Memo = call.ask.memo
         view = self.view
         told = np.asarray(call.solution["robot"])
-        for task in np.flatnonzero(told >= 0).tolist():
+        for task in call.left("tasks", np.flatnonzero(told >= 0).tolist()):
             robot, station = memo.robots[int(told[task])], memo.station[task]
             free = robot.task is None or robot.index in view.resting
             if memo.own[task]:
@@ -144,7 +144,7 @@ class DispatchControl(Asking[DispatchParameters]):
                     yield bring(view, keeper_of(view, robot, pod), pod, station)
                     continue
             call.stale += 1
-        for robot in memo.robots:
+        for robot in call.left("robots", memo.robots):
             if robot.task is None and robot.index in view.asking:
                 place = consult.place_for(robot) if robot.pod >= 0 else -1
                 if place >= 0:

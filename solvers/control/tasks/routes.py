@@ -174,13 +174,13 @@ class RoutesControl(Asking[RoutesParameters]):
         assert call.solution is not None
         memo: Memo = call.ask.memo
         view = self.view
-        for robot in memo.again:
+        for robot in call.left("again", memo.again):
             if robot.task is None and consult.serves(robot.pod, robot.station):
                 yield bring(view, robot, robot.pod, robot.station)
             else:
                 call.stale += 1
         steps = zip(memo.robots, call.solution["place"], call.solution["task"], strict=True)
-        for robot, place, task in steps:
+        for robot, place, task in call.left("steps", list(steps)):
             if robot.task is not None and robot.index not in view.resting:
                 continue
             if robot.pod >= 0:
