@@ -51,6 +51,9 @@ class JointParameters(SearchParameters):
     """What each unit of such an order is worth besides."""
     visit_s: NotNegative = 60.0
     """Seconds that a visit costs a robot besides the way to the station."""
+    balance: NotNegative = 0.0
+    """Seconds of a robot that a visit costs more for each second of work that its station has more
+    than the one with least: work is spread over stations and their pickers."""
     age_reward: NotNegative = 0.005
     """What a second of waiting adds to the worth of an order that gets a slot, times the weight of
     its class."""

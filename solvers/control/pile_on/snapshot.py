@@ -10,6 +10,7 @@ import numpy as np
 from rmfs.control.asks import Ask
 from rmfs.solvers.control.items import Item, servable
 from rmfs.solvers.control.pile_on.question import Question, solve
+from rmfs.solvers.control.workload import excess_s
 from rmfs.solvers.models.pile_on import Candidates, PileOn, everything
 from rmfs.solvers.models.pile_on.candidates import whole_price
 from rmfs.solvers.models.pile_on.partial_assignment import PartialAssignment
@@ -163,7 +164,7 @@ def _arrays(
         line_sku=np.searchsorted(wanted, sku),
         line_units=units,
         stock=view.inventory.available[wanted].T.astype(np.int64),
-        travel=_travel(view),
+        travel=_travel(view, given),
         available=view.storage.is_at_hand & (inbound < 0),
         inbound=inbound,
         open_units=open_units[:, wanted],
@@ -173,11 +174,17 @@ def _arrays(
     )
 
 
-def _travel(view: View) -> NDArray[np.float64]:
-    """Time of a loaded robot from each pod's place to each pick station, shape (P, S), s."""
+def _travel(view: View, given: JointParameters) -> NDArray[np.float64]:
+    """Time of a loaded robot from each pod's place to each pick station, shape (P, S), s.
+
+    And what it costs that the station has more work than others (`balance`).
+    """
     at = view.storage.pod_waypoint
     times = [view.travel.to(s.waypoint, loaded=True)[at] for s in view.pick_stations]
-    return np.minimum(np.stack(times, axis=1), UNREACHABLE_S)
+    travel = np.minimum(np.stack(times, axis=1), UNREACHABLE_S)
+    if given.balance:
+        travel += given.balance * excess_s(view, view.pick_stations)
+    return travel
 
 
 def _fetch(view: View, robots: Sequence[Robot]) -> NDArray[np.float64]:

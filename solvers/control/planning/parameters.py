@@ -53,6 +53,9 @@ class PlanningParameters(SearchParameters):
     free."""
     visit_s: NotNegative = 100.0
     """Seconds of a robot that a visit is worth whatever it serves, as its station has work."""
+    balance: NotNegative = 0.0
+    """Seconds of a robot that a visit costs more for each second of work that its station has more
+    than the one with least: work is spread over stations and their pickers."""
     decay: Annotated[float, pydantic.Field(gt=0, le=1)] = 0.9
     """What the next visit of a station counts, as a share of this one."""
     stock_floor: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.6

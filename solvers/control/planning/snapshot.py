@@ -10,6 +10,7 @@ import numpy as np
 from rmfs.control.asks import Ask
 from rmfs.solvers.control.items import servable
 from rmfs.solvers.control.planning.question import Question, solve
+from rmfs.solvers.control.workload import excess_s
 from rmfs.solvers.models.planning import Planning
 from rmfs.solvers.models.solution import Limits
 
@@ -228,8 +229,9 @@ def _cost(
     """Time of a robot for a visit, the way there and back, less its worth, shape (P, S), s."""
     at = view.storage.pod_waypoint
     cost = np.full((len(at), len(stations)), np.inf)
+    uneven = given.balance * excess_s(view, stations) if given.balance else np.zeros(len(stations))
     for number, station in enumerate(stations):
         if station.active:
             way_s = view.travel.to(station.waypoint, loaded=True)[at]
-            cost[may_come, number] = (2 * way_s - given.visit_s)[may_come]
+            cost[may_come, number] = (2 * way_s - given.visit_s + uneven[number])[may_come]
     return cost

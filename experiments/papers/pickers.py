@@ -1,0 +1,71 @@
+"""How evenly work is spread over pickers, and what that costs.
+
+Two pickers of different speed who tire, on the small site with arrivals. Rules that look at pickers
+stand beside pod match, and optimisers with balance in their objective beside the same without.
+Published are means, and differences of the latter seed by seed.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from rmfs.experiments.papers.benefit import CONTROLLERS, overview, require_optimised
+from rmfs.experiments.papers.study import command, done, parser
+from rmfs.experiments.statistics import interval
+from rmfs.experiments.tables import HALF, Table, digits, rows_frame
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+DECIDED = "decided"
+SPREAD = ("picker_work_variation", "picker_fatigue_max")
+COSTS = ("units_per_h", "order_turnover_mean_s", "distance_per_unit_m")
+COMPARED = (
+    ("workload", "pod match"),
+    ("picker load", "workload"),
+    ("picker load, fatigue", "workload"),
+    ("staffed", "pod match"),
+    ("pile-on, balance", "pile-on"),
+    ("planning, balance", "planning"),
+)
+"""What is compared with what."""
+
+
+def differences(frame: pd.DataFrame) -> Table:
+    """Return what rules and balance change, seed by seed, in the unit of each column.
+
+    Parameters
+    ----------
+    frame
+        Runs of the design.
+    """
+    rows: dict[str, dict[tuple[str, str], float]] = {}
+    for one, other in COMPARED:
+        row: dict[tuple[str, str], float] = {}
+        for column in (*SPREAD, *COSTS):
+            wide = frame.pivot_table(index="replication", columns=DECIDED, values=column)
+            found = interval(wide[one] - wide[other])
+            row[column, "mean"], row[column, HALF] = found.mean, found.half_width
+        rows[f"{one} less {other}"] = row
+    made = rows_frame(rows, "compared")
+    decimals = {}
+    for column in (*SPREAD, *COSTS):
+        shown = digits(made[column, HALF], made[column, "mean"])
+        decimals |= {(column, part): shown for part in ("mean", HALF)}
+    caption = "Differences seed by seed, with 95% confidence intervals (Student's t)."
+    return Table(made, decimals, caption)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the study and publish it."""
+    study = done(parser("pickers", __doc__).parse_args(arguments))
+    frame = study.frame.assign(**{CONTROLLERS: study.frame[DECIDED]})
+    columns = (*SPREAD, *COSTS)
+    study.publish(overview(frame, (CONTROLLERS,), columns), "pickers", columns)
+    study.publish(differences(frame), "pickers-differences", columns)
+    require_optimised(study)
+
+
+if __name__ == "__main__":
+    sys.exit(command(main))

@@ -1,0 +1,33 @@
+"""Work of pick stations, so that it can be spread evenly over them and their pickers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+    from rmfs.world.stations import PickStation
+
+
+def excess_s(view: View, stations: Sequence[PickStation]) -> NDArray[np.float64]:
+    """Return by how much the work of each station exceeds that of the one with least, shape (S,).
+
+    Work: units of orders at the station that are not picked yet, in seconds of whoever picks there
+    now. Stations that are switched off are not compared with.
+    """
+    work_s = np.array([_work_s(view, station) for station in stations])
+    active = np.array([station.active for station in stations], np.bool_)
+    if not active.any():
+        return np.zeros(len(stations))
+    return np.maximum(work_s - work_s[active].min(), 0.0)
+
+
+def _work_s(view: View, station: PickStation) -> float:
+    units = sum(order.unpicked_units for order in station.orders.values())
+    return units * view.unit_s(station.index)
