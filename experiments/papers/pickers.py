@@ -49,7 +49,7 @@ def differences(frame: pd.DataFrame) -> Table:
             row[column, "mean"], row[column, HALF] = found.mean, found.half_width
         rows[f"{one} less {other}"] = row
     made = rows_frame(rows, "compared")
-    decimals = {}
+    decimals: dict[tuple[str, str], int] = {}
     for column in (*SPREAD, *COSTS):
         shown = digits(made[column, HALF], made[column, "mean"])
         decimals |= {(column, part): shown for part in ("mean", HALF)}

@@ -25,7 +25,9 @@ def excess_s(view: View, stations: Sequence[PickStation]) -> NDArray[np.float64]
     active = np.array([station.active for station in stations], np.bool_)
     if not active.any():
         return np.zeros(len(stations))
-    return np.maximum(work_s - work_s[active].min(), 0.0)
+    least_s = float(work_s[active].min())
+    excess: NDArray[np.float64] = np.maximum(work_s - least_s, 0.0)
+    return excess
 
 
 def _work_s(view: View, station: PickStation) -> float:
