@@ -87,7 +87,7 @@ MORE: dict[str, dict[str, Any]] = {
 }
 """What is changed so that a set asks often, and small questions."""
 
-HOUR_S, MOST_SEEDS = 3600.0, 60
+RUN_S, MOST_SEEDS = 600.0, 200
 
 
 @dataclass
@@ -162,7 +162,7 @@ def asked(controllers: str, most: int) -> Count:
     for seed in range(MOST_SEEDS):
         with tempfile.TemporaryDirectory() as folder:
             count.runs += 1
-            for question in recorded(controllers, HOUR_S, Path(folder), seed):
+            for question in recorded(controllers, RUN_S, Path(folder), seed):
                 if question.family == count.family and question.recorded is not None:
                     compare(count, question, asked_again)
                 if count.questions >= most:
@@ -221,7 +221,7 @@ def _made(family: str, folder: Path, seed: int, most: int) -> Iterator[Decision]
             yield Decision(family, plain_data(family, data), {"layout": "small"})
         return
     seen = set()
-    asked = recorded("pile-on", HOUR_S, folder, seed)
+    asked = recorded("pile-on", RUN_S, folder, seed)
     for question in derived(family, "small", (one for one in asked if one.family == "pile_on")):
         if question.hash not in seen and _is_question(question):
             seen.add(question.hash)
