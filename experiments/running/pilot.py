@@ -11,7 +11,7 @@ import numpy as np
 from rmfs.errors import InputError
 from rmfs.experiments.design import resolve
 from rmfs.measure.footprints import some_tables
-from rmfs.simulation.kernel import StalledError
+from rmfs.simulation.loop import StalledError
 from rmfs.simulation.run import simulate
 
 if TYPE_CHECKING:

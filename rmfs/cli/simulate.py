@@ -213,7 +213,7 @@ def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
         Further parameters of `rmfs.simulate`.
     """
     from rmfs.simulation.idle_rules import IdleRuleWarning
-    from rmfs.simulation.kernel import StalledError
+    from rmfs.simulation.loop import StalledError
     from rmfs.simulation.pacing import OptimiserError, ReplayError
     from rmfs.simulation.run import simulate
 

@@ -112,7 +112,7 @@ def demonstrate(
     from rmfs.cli.simulate import conclude, default_name
     from rmfs.cli.terminal import progress, step
     from rmfs.measure.folder import fill, load_run, reserved
-    from rmfs.simulation.kernel import StalledError
+    from rmfs.simulation.loop import StalledError
     from rmfs.simulation.pacing import OptimiserError
 
     _log_to_stderr()

@@ -80,10 +80,10 @@ class DecisionPhase:
         self._answers: list[Call] = []
         self._half_told: list[Call] = []
         self._starting: Robot | None = None
-        self._interrupted = -1
+        self._interrupted = 0
         self._applying: Applying
         self._arrivals: ArrivalProcess
-        self._steps: list[Callable[[], None]]
+        self._steps: dict[int, Callable[[], None]]
         self.choices = dict(choices)
         self.outside = outside
         self._rule_state = RuleState()
@@ -146,7 +146,7 @@ class DecisionPhase:
     def settle(self) -> bool:
         """Go through the steps that are due until none is; false if the outside has to decide."""
         outside, due, storage, what = self.outside, self._due, self._world.storage, self._steps
-        if outside.pending is not None or (self._interrupted >= 0 and not self._go_on()):
+        if outside.pending is not None or (self._interrupted and not self._go_on()):
             return False
         while True:
             if storage.version != due.storage_version:
@@ -154,17 +154,17 @@ class DecisionPhase:
             bits = due.bits
             if not bits:
                 return True
-            due.bits = rest = bits & (bits - 1)
-            step = (bits ^ rest).bit_length() - 1
+            first = bits & -bits
+            due.bits = bits ^ first
             try:
-                what[step]()
+                what[first]()
             except Awaits as awaits:
-                outside.pending, self._interrupted = awaits.question, step
+                outside.pending, self._interrupted = awaits.question, first
                 return False
 
     def _go_on(self) -> bool:
         """Go on with the step in which the outside was asked; false if it is asked again."""
-        step, self._interrupted = self._interrupted, -1
+        step, self._interrupted = self._interrupted, 0
         try:
             self._finish()
             self._steps[step]()
@@ -172,8 +172,8 @@ class DecisionPhase:
             self.outside.pending, self._interrupted = awaits.question, step
         return self.outside.pending is None
 
-    def _what_is_done(self) -> list[Callable[[], None]]:
-        """Return what each step is, by its number."""
+    def _what_is_done(self) -> dict[int, Callable[[], None]]:
+        """Return what each step is, by its bit."""
         asked = {step: partial(self._ask, problem) for step, problem in steps.PROBLEM_OF.items()}
         done: dict[int, Callable[[], None]] = {
             **asked,
@@ -183,7 +183,7 @@ class DecisionPhase:
             steps.LATE_BINDING: self._late_binding.bind,
             steps.TASKS: self._give_tasks,
         }
-        return [done[step] for step in range(len(done))]
+        return {1 << step: what for step, what in done.items()}
 
     def _ask(self, problem: Problem) -> None:
         """Ask the controller of a problem, or somebody outside."""
@@ -362,7 +362,7 @@ class DecisionPhase:
 
     def end_turn(self, problem: Problem) -> None:
         """End a turn of the outside: whatever was due before its problem has been asked now."""
-        self._interrupted = -1
+        self._interrupted = 0
         self.outside.refused.clear()
         self._alarms.asked(problem)
         if problem is Problem.TA:

@@ -275,7 +275,7 @@ def test_version(capsys):
 
 
 def test_a_stalled_run_ends_with_its_report(calls, capsys, monkeypatch):
-    from rmfs.simulation.kernel import StalledError
+    from rmfs.simulation.loop import StalledError
 
     def simulate(*given, **arguments):
         raise StalledError("nothing has moved since 12 s\nrobot 0: waits")
