@@ -28,7 +28,7 @@ class PickerLog:
         self.staff: Staff | None = None
         self.units = Log(
             **{"picker": "i2", "handling_s": "f8", "layer": "i1", "fatigue": "f8"},
-            **{"error": "?", "noticed": "?"},
+            **{"error": "?", "noticed": "?", "face": "i1", "turned": "?"},
         )
         self.presence = Log(picker="i2", station="i2", begin_s="f8", end_s="f8")
 
@@ -43,7 +43,8 @@ class PickerLog:
 
     def handled(self, one: Handled) -> None:
         """Write a unit down."""
-        self.units.add(one.picker, one.seconds, one.layer, one.fatigue, one.error, one.noticed)
+        how = (one.picker, one.seconds, one.layer, one.fatigue, one.error, one.noticed)
+        self.units.add(*how, one.face, one.turned)
 
     def ended(self, time_s: float) -> None:
         """Write down who is there at the end."""

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rmfs.world.orders import Order
     from rmfs.world.pickers import Handled
     from rmfs.world.stations import PickStation, ReplenishmentStation, Station
+    from rmfs.world.tasks import Pick
 
 
 class Service(Protocol):
@@ -51,6 +52,10 @@ class Hands(Protocol):
 
     def are_at(self, station: int) -> bool:
         """Whether somebody is there; if not, `go_on` is called when somebody comes."""
+        ...
+
+    def first_of(self, station: int, task: PickTask) -> Pick | None:
+        """Choose which unit of a task is picked next; None: the first."""
         ...
 
     def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:
@@ -127,7 +132,8 @@ class PickService:
         index = self._station.index
         if self._finished:
             self._hand_on()  # the unit before has been transferred at this very instant
-        pick = world.pick_unit(task)
+        chosen = None if self.hands is None else self.hands.first_of(index, task)
+        pick = world.pick_unit(task, chosen)
         line, order = pick.line, pick.line.order
         now_s = world.now_s
         transfer_us, pick_us, handled = self._transfer_us, self._pick_us, None

@@ -87,6 +87,10 @@ class Handled(NamedTuple):
         Of the picker when it began.
     error, noticed
         Whether it was the wrong one, and whether that was put right.
+    face
+        Of the pod; -1 where pods have none.
+    turned
+        Whether the pod had to be turned for it; `seconds` and `robot_s` hold the time of it.
     """
 
     picker: int
@@ -96,6 +100,8 @@ class Handled(NamedTuple):
     fatigue: float
     error: bool
     noticed: bool
+    face: int = -1
+    turned: bool = False
 
 
 class Staff:

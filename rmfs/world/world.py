@@ -427,11 +427,19 @@ class World(WorldState):
         robot.pod = -1
         self.storage.set_down(pod, place)
 
-    def pick_unit(self, task: PickTask) -> Pick:
-        """Let the next unit of a task leave its pod whose order is on the station."""
+    def pick_unit(self, task: PickTask, chosen: Pick | None = None) -> Pick:
+        """Let the next unit of a task leave its pod whose order is on the station.
+
+        Parameters
+        ----------
+        chosen
+            Another one of these, to be picked first.
+        """
         picks = task.picks
-        pick = picks[0]
-        if pick.line.order.station < 0:
+        pick = picks[0] if chosen is None else chosen
+        if chosen is not None:
+            picks.remove(chosen)
+        elif pick.line.order.station < 0:
             pick = next(pick for pick in picks if pick.line.order.station >= 0)
             picks.remove(pick)
         else:

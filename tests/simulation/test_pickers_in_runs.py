@@ -47,7 +47,12 @@ def test_pickers_who_are_all_alike_change_nothing():
     """Footprint and motion, bit for bit; also if layers make no difference."""
     runs = [
         rmfs.simulate("small", "small", "default", seed=1, set=keys(given), trace=True)
-        for given in (None, {}, {"layers": {"time_factors": [1.0, 1.0]}, "speeds": [1.0]})
+        for given in (
+            None,
+            {},
+            {"layers": {"time_factors": [1.0, 1.0]}, "speeds": [1.0]},
+            {"faces": {"count": 1}},
+        )
     ]
     without = runs[0]
     for run in runs[1:]:
@@ -178,6 +183,39 @@ def test_every_unit_in_layers_is_one_in_stock():
         assert hands._layers.units(int(pod), int(sku)) == contained[sku, pod]
     used = (contained * run.world.skus.space_per_unit[:, None]).sum(axis=0)
     np.testing.assert_allclose(hands._layers.used.sum(axis=1), used)
+
+
+FACES = {"faces": {"count": 4, "turn_face_s": 6.0}}
+
+
+def test_faces_are_turned_and_turning_takes_its_time():
+    """Visit by visit: the first face is free, every change of the face costs a turn."""
+    run = simulate(FACES)
+    picks, visits = run.table("picks"), run.table("visits")
+    assert picks["handling_s"].to_numpy() == pytest.approx(np.where(picks["turned"], 16.0, 10.0))
+    assert run.footprint["face_turns"] == picks["turned"].sum() > 20
+    assert set(picks["face"]) == {0, 1, 2, 3}
+    several = 0
+    for visit in visits[visits["begin_s"] >= 300].itertuples():
+        end_s = visit.end_s if visit.end_s == visit.end_s else np.inf
+        here = (picks["station"] == visit.station) & picks["time_s"].between(visit.begin_s, end_s)
+        own = picks[here & (picks["robot"] == visit.robot)]
+        changed = own["face"].ne(own["face"].shift())
+        changed.iloc[:1] = False
+        assert (own["turned"] == changed).all()
+        several += own["face"].nunique() > 1
+    assert several > 20
+
+
+def test_every_unit_on_a_face_is_one_in_stock():
+    run = rmfs.Simulation("small", "small", "default", seed=1, set=keys(FACES))
+    run.run()
+    hands = next(one for one in run.events.observers if type(one).__name__ == "Hands")
+    contained = run.world.inventory.contained
+    for sku, pod in np.argwhere(contained > 0)[:300]:
+        assert hands._faces.units(int(pod), int(sku)) == contained[sku, pod]
+    used = (contained * run.world.skus.space_per_unit[:, None]).sum(axis=0)
+    np.testing.assert_allclose(hands._faces.used.sum(axis=1), used)
 
 
 class TestBound:

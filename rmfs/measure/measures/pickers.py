@@ -57,6 +57,13 @@ class Pickers(Measure):
             "Of these, units that nobody noticed",
             better=LESS,
         ),
+        Column(
+            "face_turns",
+            COUNT_OR_EMPTY,
+            "turns",
+            "Times that a pod was turned at a pick station to show another face",
+            better=LESS,
+        ),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
@@ -79,4 +86,5 @@ class Pickers(Measure):
             "picker_fatigue_max": done["fatigue"].max(),
             "pick_errors": int(done["error"].sum()),
             "pick_errors_unnoticed": int((done["error"] & ~done["noticed"]).sum()),
+            "face_turns": int(done["turned"].sum()),
         }

@@ -34,6 +34,8 @@ PICKS = (
     Column("fatigue", REAL, "share", "Of the picker when the pick began"),
     Column("error", FLAG, "", "Whether a wrong unit was picked"),
     Column("noticed", FLAG, "", "Whether that was noticed and put right"),
+    Column("face", INTEGER, "", "Face of the pod; -1 where pods have none"),
+    Column("turned", FLAG, "", "Whether the pod was turned at the station for it"),
 )
 
 BUNDLES = (
@@ -67,8 +69,8 @@ def picks(logs: Logs) -> pd.DataFrame:
     if logs.recorder.pickers.staff is not None:
         frame = frame.join(logs.picks_by_hand)
     else:
-        nothing = {"picker": -1, "handling_s": nan, "layer": -1, "fatigue": nan}
-        frame = frame.assign(**nothing, error=False, noticed=False)
+        nothing = {"picker": -1, "handling_s": nan, "layer": -1, "fatigue": nan, "face": -1}
+        frame = frame.assign(**nothing, error=False, noticed=False, turned=False)
     return tidy("picks", PICKS, frame)
 
 

@@ -121,6 +121,19 @@ class Layers(Block):
     )
 
 
+class Faces(Block):
+    """Pods have faces; the picker sees one, and another is turned to him at a price."""
+
+    count: Annotated[int, Field(ge=1, le=8)] = Field(
+        4, description="faces of a pod, each with an equal part of its capacity; 8 at most"
+    )
+    turn_face_s: NotNegative = Field(
+        5.0,
+        description="s that it keeps picker, station and robot until another face is shown; the "
+        "first face of a visit costs nothing",
+    )
+
+
 class Errors(Block):
     """Units that are picked wrongly."""
 
@@ -199,8 +212,18 @@ class Pickers(Block):
     learning: Learning | None = Field(None, description="default: nobody learns")
     fatigue: Fatigue | None = Field(None, description="default: nobody tires")
     layers: Layers | None = Field(None, description="default: every place of a pod is alike")
+    faces: Faces | None = Field(
+        None, description="not beside layers; default: all of a pod can be reached at once"
+    )
     errors: Errors | None = Field(None, description="default: nothing is picked wrongly")
     roster: Roster | None = Field(None, description="default: one per pick station, always")
+
+    @pydantic.field_validator("faces")
+    @classmethod
+    def _layers_or_faces(cls, value: Faces | None, info: pydantic.ValidationInfo) -> Faces | None:
+        if value is not None and info.data.get("layers") is not None:
+            raise ValueError("must be left out where pods have layers")
+        return value
 
     @pydantic.field_validator("speed_variation")
     @classmethod

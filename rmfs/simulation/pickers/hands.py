@@ -13,7 +13,9 @@ if TYPE_CHECKING:
     from rmfs.world import World
     from rmfs.world.orders import Bundle
     from rmfs.world.pickers import Picker, Staff
+    from rmfs.world.pod_faces import PodFaces
     from rmfs.world.pod_layers import PodLayers
+    from rmfs.world.tasks import Pick, PickTask
 
 TIMES, ERRORS, SPEEDS = range(3)
 """Random streams of each picker: switching one cause on does not change the draws of another."""
@@ -26,20 +28,41 @@ class Hands(Observer):
     ----------
     staff
         The pickers.
-    layers
-        Where units lie in pods, if pods have layers.
+    layers, faces
+        Where units lie in pods, if pods have layers or faces.
     seed
         Of the run.
     """
 
-    def __init__(self, staff: Staff, layers: PodLayers | None, seed: int, world: World) -> None:
-        self._staff, self._layers, self._world = staff, layers, world
+    def __init__(
+        self,
+        staff: Staff,
+        layers: PodLayers | None,
+        faces: PodFaces | None,
+        seed: int,
+        world: World,
+    ) -> None:
+        self._staff, self._layers, self._faces, self._world = staff, layers, faces, world
+        self._seen: dict[int, tuple[int, int]] = {}
+        """Per station, of which of its visits what was seen, and the face."""
         self._times = [generator(seed, Stream.PICKERS, p.index, TIMES) for p in staff.pickers]
         self._errors = [generator(seed, Stream.PICKERS, p.index, ERRORS) for p in staff.pickers]
 
     def are_at(self, station: int) -> bool:
         """Whether somebody is there to pick."""
         return self._staff.at_station[station] is not None
+
+    def first_of(self, station: int, task: PickTask) -> Pick | None:
+        """Choose the first unit on the face that is shown; None if there is none."""
+        faces, shown = self._faces, self._shown(station)
+        if faces is None or shown < 0:
+            return None
+        on_face = (
+            pick
+            for pick in task.picks
+            if pick.line.order.station >= 0 and faces.has(task.pod, pick.line.sku, shown)
+        )
+        return next(on_face, None)
 
     def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:
         """Let the picker of a station begin with a unit.
@@ -60,18 +83,40 @@ class Hands(Observer):
             assert staff.given.layers is not None
             seconds *= staff.given.layers.time_factors[layer]
         robot_s = robot_s * (seconds / station_s) if station_s else robot_s
+        face, turned = self._turn(station, pod, sku)
+        if turned:
+            assert staff.given.faces is not None
+            seconds += staff.given.faces.turn_face_s
+            robot_s += staff.given.faces.turn_face_s
         error, noticed = self._is_wrong(picker, fatigue)
         if noticed:
             assert staff.given.errors is not None
             seconds += staff.given.errors.rework_s
             robot_s += staff.given.errors.rework_s
         staff.begin_unit(picker, now_s, seconds)
-        return Handled(picker.index, seconds, robot_s, layer, fatigue, error, noticed)
+        how = (picker.index, seconds, robot_s, layer, fatigue, error, noticed)
+        return Handled(*how, face, turned)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
         """Lay the units of a bundle into their pod."""
         if self._layers is not None:
             self._layers.put(bundle.pod, bundle.sku, bundle.units)
+        if self._faces is not None:
+            self._faces.put(bundle.pod, bundle.sku, bundle.units)
+
+    def _shown(self, station: int) -> int:
+        """Return the face that the picker sees; -1 if nothing of this visit was picked yet."""
+        visit, face = self._seen.get(station, (-1, -1))
+        return face if visit == self._world.stations[station].visits else -1
+
+    def _turn(self, station: int, pod: int, sku: int) -> tuple[int, bool]:
+        """Take a unit from its face; returns that, and whether the pod had to be turned."""
+        if self._faces is None:
+            return -1, False
+        shown = self._shown(station)
+        face = self._faces.take(pod, sku, shown)
+        self._seen[station] = (self._world.stations[station].visits, face)
+        return face, shown not in (-1, face)
 
     def _is_wrong(self, picker: Picker, fatigue: float) -> tuple[bool, bool]:
         given = self._staff.given.errors

@@ -12,6 +12,7 @@ from rmfs.simulation.pickers.hands import SPEEDS, Hands
 from rmfs.simulation.pickers.roster import RosterClock
 from rmfs.simulation.service import PickService
 from rmfs.world.pickers import Picker, Staff
+from rmfs.world.pod_faces import PodFaces
 from rmfs.world.pod_layers import PodLayers
 
 if TYPE_CHECKING:
@@ -56,7 +57,8 @@ def staffed(
         return [], None
     unit_s = [station.unit_transfer_s for station in layout.pick_stations]
     staff = world.staff = Staff(given, _people(given, len(unit_s), seed), unit_s)
-    hands = Hands(staff, _layers(given, layout, world), seed, world)
+    layers, faces = _layers(given, layout, world), _faces(given, layout, world)
+    hands = Hands(staff, layers, faces, seed, world)
     for service in services:
         if isinstance(service, PickService):
             service.hands = hands
@@ -102,7 +104,20 @@ def _layers(given: Pickers, layout: Layout, world: World) -> PodLayers | None:
         return None
     skus = world.skus
     layers = PodLayers(given.layers, skus.space_per_unit, skus.popularity, layout.pod_capacity)
+    _fill(layers, world)
+    return layers
+
+
+def _faces(given: Pickers, layout: Layout, world: World) -> PodFaces | None:
+    """Lay the stock of time zero onto faces, likewise."""
+    if given.faces is None:
+        return None
+    faces = PodFaces(given.faces, world.skus.space_per_unit, layout.pod_capacity)
+    _fill(faces, world)
+    return faces
+
+
+def _fill(places: PodLayers | PodFaces, world: World) -> None:
     contained = world.inventory.contained.T
     for pod, sku in np.argwhere(contained > 0).tolist():
-        layers.put(pod, sku, int(contained[pod, sku]))
-    return layers
+        places.put(pod, sku, int(contained[pod, sku]))
