@@ -99,13 +99,16 @@ class Travel:
             times = self.tables.to[waypoint, loaded] = self._times.travel_times_to(waypoint, loaded)
         return times
 
-    def away(self, waypoint: int, *, loaded: bool) -> NDArray[np.float64]:
-        """Unhindered times from this waypoint to all, shape (N,), s."""
+    def away(self, waypoint: int, *, loaded: bool, keep: bool = True) -> NDArray[np.float64]:
+        """Unhindered times from this waypoint to all, shape (N,), s.
+
+        Without `keep` they are not remembered: for who remembers what it needs of them.
+        """
         times = self.tables.away.get((waypoint, loaded))
         if times is None:
-            times = self.tables.away[waypoint, loaded] = self._times.travel_times_from(
-                waypoint, loaded
-            )
+            times = self._times.travel_times_from(waypoint, loaded)
+            if keep:
+                self.tables.away[waypoint, loaded] = times
         return times
 
     def distances_to(
@@ -119,11 +122,14 @@ class Travel:
         return self._kept(waypoint, metric, True, self._straight(metric))
 
     def distances_from(
-        self, waypoint: int, metric: Metric, *, loaded: bool = True
+        self, waypoint: int, metric: Metric, *, loaded: bool = True, keep: bool = True
     ) -> NDArray[np.float64]:
-        """How far it is from this waypoint to every other, shape (N,), m or, by time, s."""
+        """How far it is from this waypoint to every other, shape (N,), m or, by time, s.
+
+        Times are not remembered without `keep`.
+        """
         if metric == "time":
-            return self.away(waypoint, loaded=loaded)
+            return self.away(waypoint, loaded=loaded, keep=keep)
         if metric == "path":
             # keys of ways in the other direction are negative
             return self._kept(~waypoint, metric, loaded, self.tables.paths.away)

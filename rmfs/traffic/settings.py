@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from rmfs.traffic.planner import PathPlanner
 
-COST_TABLE_BYTES = 200_000_000
+COST_TABLE_BYTES = 256_000_000
 EXPANSION_BUDGET = 50_000
 """Labels a search for a leg may look at before the robot waits for all planned motion to end."""
 

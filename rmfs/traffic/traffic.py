@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Self
 
+import numpy as np
+
 from rmfs.traffic.core import Options, build, fork, from_bytes, to_bytes
 from rmfs.traffic.settings import COST_TABLE_BYTES, TIME_WINDOWS, PlannerSettings
 from rmfs.traffic.trace import joined_holds
@@ -12,15 +14,13 @@ from rmfs.traffic.vocabulary import CutOff, PlannedMove
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from rmfs.layout.model import Layout
     from rmfs.traffic._core import Core
 
-_BY_PURPOSE = ("visits", "waiting_s")
 
-_OWN = {"_layout", "_core", "_options", "_from_cache", "_to_cache", "advance", "command"}
+_OWN = {"_layout", "_core", "_options", "advance", "command"}
 
 
 class Traffic:
@@ -57,8 +57,6 @@ class Traffic:
     ) -> None:
         options = Options(record_trace, cost_table_bytes, planner, tuple(slow_shares))
         self._layout = layout
-        self._from_cache: dict[tuple[int, int, bool], NDArray[np.float64]] = {}
-        self._to_cache: dict[tuple[int, int, bool], NDArray[np.float64]] = {}
         self._core: Core
         self._options: Options
         # the two calls of the hot path, without a frame in between
@@ -79,8 +77,7 @@ class Traffic:
         """
         copy = type(self).__new__(type(self))
         core, options = fork(self._core, self._options, {} if memo is None else memo)
-        caches = {"_from_cache": dict(self._from_cache), "_to_cache": dict(self._to_cache)}
-        copy.__dict__.update({**self.__dict__, **caches, **_of(core, options)})
+        copy.__dict__.update({**self.__dict__, **_of(core, options)})
         return copy
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
@@ -120,7 +117,6 @@ class Traffic:
     def __setstate__(self, state: tuple[Layout, bytes, dict[str, Any]]) -> None:
         """Go on from a pickle."""
         self._layout, saved, added = state
-        self._from_cache, self._to_cache = {}, {}
         self.__dict__.update({**_of(*from_bytes(self._layout, saved)), **added})
 
     @property
@@ -145,24 +141,20 @@ class Traffic:
 
         Returns
         -------
-        Seconds, shape (N,); infinite where there is no way. Do not write into it.
+        Seconds, shape (N,); infinite where there is no way.
         """
-        key = (waypoint, int(self._layout.robot_kind[robot]), loaded)
-        if key not in self._to_cache:
-            self._to_cache[key] = self._core.travel_times_to(*key)
-        return self._to_cache[key]
+        kind = int(self._layout.robot_kind[robot])
+        return self._core.travel_times_to(waypoint, kind, loaded)
 
     def travel_times_from(self, waypoint: int, loaded: bool, robot: int = 0) -> NDArray[np.float64]:
         """Unhindered times from one waypoint to every other, from rest to rest, any start heading.
 
         Returns
         -------
-        Seconds, shape (N,); infinite where there is no way. Do not write into it.
+        Seconds, shape (N,); infinite where there is no way.
         """
-        key = (waypoint, int(self._layout.robot_kind[robot]), loaded)
-        if key not in self._from_cache:
-            self._from_cache[key] = self._core.travel_times_from(*key)
-        return self._from_cache[key]
+        kind = int(self._layout.robot_kind[robot])
+        return self._core.travel_times_from(waypoint, kind, loaded)
 
     def plan(self, robot: int) -> list[PlannedMove]:
         """Pieces of motion a robot will do, from rest to rest, the present one included."""
@@ -296,9 +288,7 @@ class Traffic:
         ValueError
             If a waypoint does not exist; nothing has changed then.
         """
-        still = self._core.close(list(waypoints))
-        self._forget_times()
-        return still
+        return self._core.close(list(waypoints))
 
     def reopen(self, waypoints: Sequence[int]) -> None:
         """Open closed waypoints again.
@@ -309,15 +299,10 @@ class Traffic:
             If a waypoint does not exist; nothing has changed then.
         """
         self._core.reopen(list(waypoints))
-        self._forget_times()
 
     def cut_off(self) -> CutOff:
         """Say what cannot be served with what is closed: robots bound there would wait."""
         return CutOff(*self._core.cut_off())
-
-    def _forget_times(self) -> None:
-        self._from_cache.clear()
-        self._to_cache.clear()
 
     def motion(self) -> dict[str, NDArray[Any]]:
         """Totals per robot since the last reset, up to now, each of shape (R,).
@@ -397,15 +382,16 @@ class Traffic:
         """Count visits and standing time of robots that are not idle, since the last reset.
 
         Per waypoint, shape (N,): `visits`, `waiting_s`, and of these with a pod `loaded_visits`,
-        `loaded_waiting_s`. Per waypoint and purpose, shape (N, S + 2): `purpose_visits`,
-        `purpose_waiting_s`. The purpose is the station a robot is bound for or stands at (on the
-        way to the pod, too), column S for storing or fetching a pod otherwise, S + 1 for the rest.
+        `loaded_waiting_s`. A row for each waypoint and purpose for which robots were there, shape
+        (M,): `stays_waypoint`, `stays_purpose`, `stays_visits`, `stays_waiting_s`. The purpose is
+        the station a robot is bound for or stands at (on the way to the pod, too), S for storing or
+        fetching a pod otherwise, S + 1 for the rest.
         """
-        counted = self._core.heat()
-        waypoints = len(counted["loaded_visits"])
-        by_purpose = {name: counted.pop(name).reshape(waypoints, -1) for name in _BY_PURPOSE}
-        whole = {name: table.sum(axis=1) for name, table in by_purpose.items()}
-        return {**whole, **counted, **{f"purpose_{name}": by_purpose[name] for name in by_purpose}}
+        counted: dict[str, NDArray[Any]] = self._core.heat()
+        at, waypoints = counted["stays_waypoint"], len(counted["loaded_visits"])
+        visits = np.bincount(at, counted["stays_visits"], waypoints).astype(np.int64)
+        waiting_s = np.bincount(at, counted["stays_waiting_s"], waypoints)
+        return {"visits": visits, "waiting_s": waiting_s, **counted}
 
     def edges(self) -> dict[str, NDArray[Any]]:
         """Edges and elevator rides used since the last reset, by their ends.

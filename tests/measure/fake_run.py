@@ -57,8 +57,10 @@ class FakeTraffic:
             "loaded_visits": np.arange(12) // 2,
             "waiting_s": np.linspace(0, 1, 12),
             "loaded_waiting_s": np.zeros(12),
-            "purpose_visits": np.arange(12)[:, None] * np.array([1, 0, 0, 0, 0]),
-            "purpose_waiting_s": np.linspace(0, 1, 12)[:, None] * np.array([0, 0, 1, 0, 0]),
+            "stays_waypoint": np.arange(24) % 12,
+            "stays_purpose": np.repeat([0, 2], 12),
+            "stays_visits": np.concatenate([np.arange(12), np.zeros(12, int)]),
+            "stays_waiting_s": np.concatenate([np.zeros(12), np.linspace(0, 1, 12)]),
         }
 
     def edges(self) -> dict[str, np.ndarray]:

@@ -32,7 +32,7 @@ class PlaceDistances:
         """Distances from a waypoint to all places, shape (L,)."""
         distances = self._kept.get(waypoint)
         if distances is None:
-            everywhere = self._travel.distances_from(waypoint, self._metric)
+            everywhere = self._travel.distances_from(waypoint, self._metric, keep=False)
             distances = self._kept[waypoint] = everywhere[self._places]
         return distances
 

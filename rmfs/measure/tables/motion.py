@@ -112,22 +112,20 @@ def heat(logs: Logs) -> pd.DataFrame:
             "y_m": layout.y_m,
             **{name: counted[name] for name in ("visits", "loaded_visits")},
             **{name: counted[name] for name in ("waiting_s", "loaded_waiting_s")},
-            **_by_task(layout, counted["purpose_visits"], "visits"),
-            **_by_task(layout, counted["purpose_waiting_s"], "waiting_s"),
+            **_by_task(layout, counted, "visits"),
+            **_by_task(layout, counted, "waiting_s"),
         },
     )
 
 
-def _by_task(layout: Layout, by_purpose: NDArray[Any], what: str) -> dict[str, NDArray[Any]]:
+def _by_task(layout: Layout, counted: dict[str, NDArray[Any]], what: str) -> dict[str, Any]:
     """Add up what was counted per station, which is what traffic knows, per kind of task."""
-    kinds = np.array([station.kind.name for station in layout.stations], str)
-    stations = len(kinds)
-    bound = by_purpose[:, :stations]
-    pick, replenish = kinds == "pick", kinds == "replenishment"
-    other = bound[:, ~(pick | replenish)].sum(axis=1)
-    return {
-        f"pick_{what}": bound[:, pick].sum(axis=1),
-        f"replenish_{what}": bound[:, replenish].sum(axis=1),
-        f"store_{what}": by_purpose[:, stations] + other,
-        f"rest_{what}": by_purpose[:, stations + 1],
-    }
+    tasks = list(_PURPOSES)
+    kind_of = {"pick": tasks.index("pick"), "replenishment": tasks.index("replenish")}
+    store, rest = tasks.index("store"), tasks.index("rest")
+    kinds = [kind_of.get(station.kind.name, store) for station in layout.stations]
+    task = np.array([*kinds, store, rest])[counted["stays_purpose"]]
+    at = counted["stays_waypoint"] * len(tasks) + task
+    cells = layout.waypoints * len(tasks)
+    sums = np.bincount(at, counted[f"stays_{what}"], cells).reshape(-1, len(tasks))
+    return {f"{one}_{what}": sums[:, column] for column, one in enumerate(tasks)}

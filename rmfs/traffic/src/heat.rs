@@ -22,18 +22,17 @@ impl Passages {
 }
 
 /// What robots of one purpose did at a waypoint.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Stay {
-    purpose: u32,
-    visits: u32,
-    waiting: Us,
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stay {
+    pub purpose: u32,
+    pub visits: u32,
+    pub waiting: Us,
 }
 
 /// Counts since the last reset. What robots drive for is one of several *purposes*: the station
 /// they are bound for, storing a pod, or neither.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Heat {
-    purposes: usize,
     /// By waypoint, those purposes that were there, ascending: of hundreds of stations robots pass
     /// a waypoint on their way to few.
     stays: Vec<Vec<Stay>>,
@@ -48,9 +47,7 @@ pub struct Heat {
 impl Heat {
     /// Nothing counted yet.
     pub fn new(network: &Network) -> Self {
-        let purposes = network.stations.len() + 2;
         Self {
-            purposes,
             stays: vec![Vec::new(); network.nodes],
             loaded_visits: vec![0; network.nodes],
             loaded_waiting: vec![0; network.nodes],
@@ -77,24 +74,10 @@ impl Heat {
         &mut stays[at]
     }
 
-    /// Visits by waypoint and purpose, row by row.
-    pub fn visits(&self) -> Vec<u32> {
-        self.table(|stay| stay.visits)
-    }
-
-    /// Time robots stood by waypoint and purpose, row by row, in a unit of your own.
-    pub fn waiting<T: Clone + Default>(&self, unit: impl Fn(Us) -> T) -> Vec<T> {
-        self.table(|stay| unit(stay.waiting))
-    }
-
-    fn table<T: Clone + Default>(&self, of: impl Fn(&Stay) -> T) -> Vec<T> {
-        let mut table = vec![T::default(); self.stays.len() * self.purposes];
-        for (row, stays) in table.chunks_mut(self.purposes).zip(&self.stays) {
-            for stay in stays {
-                row[stay.purpose as usize] = of(stay);
-            }
-        }
-        table
+    /// What has been counted, with its waypoint, by waypoint and purpose.
+    pub fn stays(&self) -> impl Iterator<Item = (u32, &Stay)> {
+        let rows = self.stays.iter().enumerate();
+        rows.flat_map(|(node, stays)| stays.iter().map(move |stay| (node as u32, stay)))
     }
 
     /// A robot passed a waypoint or stopped there.
@@ -144,9 +127,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tables_have_what_was_counted_and_zeros() {
+    fn what_was_counted_is_told_by_waypoint_and_purpose() {
         let mut heat = Heat {
-            purposes: 3,
             stays: vec![Vec::new(); 2],
             loaded_visits: vec![0; 2],
             loaded_waiting: vec![0; 2],
@@ -158,13 +140,13 @@ mod tests {
         heat.visit(1, 2, false);
         heat.wait(0, 1, true, 7);
         heat.wait(1, 2, false, 5);
-        assert_eq!(heat.visits(), [0, 0, 0, 1, 0, 2]);
-        assert_eq!(heat.waiting(|time| 2 * time), [0, 14, 0, 0, 0, 10]);
+        let told: Vec<_> = heat.stays().map(|(v, s)| (v, s.purpose, s.visits, s.waiting)).collect();
+        assert_eq!(told, [(0, 1, 0, 7), (1, 0, 1, 0), (1, 2, 2, 5)]);
         assert_eq!(
             (heat.loaded_visits.clone(), heat.loaded_waiting.clone()),
             (vec![0, 1], vec![7, 0])
         );
         heat.reset();
-        assert_eq!((heat.visits(), heat.waiting(|time| time)), (vec![0; 6], vec![0; 6]));
+        assert_eq!(heat.stays().next(), None);
     }
 }

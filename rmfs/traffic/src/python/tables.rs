@@ -77,11 +77,15 @@ pub(super) fn energy<'py>(py: Python<'py>, energy: &Energy, spent: &[Spent]) -> 
 /// Visits and standing time: per waypoint, and per waypoint and purpose (each station, then storing
 /// pods, then neither), the latter row by row in one dimension.
 pub(super) fn heat<'py>(py: Python<'py>, heat: &Heat) -> Table<'py> {
-    let dict = PyDict::new(py);
+    let rows: Vec<_> = heat.stays().collect();
+    let columns = Columns::of(py, &rows)
+        .column("stays_waypoint", |(waypoint, _)| *waypoint)?
+        .column("stays_purpose", |(_, stay)| stay.purpose)?
+        .column("stays_visits", |(_, stay)| stay.visits)?
+        .column("stays_waiting_s", |(_, stay)| seconds(stay.waiting))?;
+    let dict = columns.dict;
     let in_seconds = |times: &[Us]| times.iter().map(|&t| seconds(t)).collect::<Vec<f64>>();
-    dict.set_item("visits", heat.visits().into_pyarray(py))?;
     dict.set_item("loaded_visits", heat.loaded_visits.clone().into_pyarray(py))?;
-    dict.set_item("waiting_s", heat.waiting(seconds).into_pyarray(py))?;
     dict.set_item("loaded_waiting_s", in_seconds(&heat.loaded_waiting).into_pyarray(py))?;
     Ok(dict)
 }
