@@ -63,7 +63,9 @@ MEANINGS = {
     "place": Meaning("", "waypoint of a storage place"),
     "lines": Meaning("lines", "lines of the order"),
     "units": Meaning("units", "units still wanted, or what the pod can serve of them"),
-    "inbound_units": Meaning("units", "of these, on pods at the station or on their way there"),
+    "inbound_units": Meaning(
+        "units", "of these, to spare on pods at the station or on their way there"
+    ),
     "in_stock": Meaning("", "1 if stock can serve the whole order, 0 if not"),
     "age_s": Meaning("s", "time since it arrived"),
     "due_in_s": Meaning("s", "time until it is due, negative if it is late"),
@@ -80,6 +82,7 @@ MEANINGS = {
     "robots": Meaning("robots", "robots at work for the station, or bound for it"),
     "level_share": Meaning("share", "what is in the robot's battery, of its capacity"),
     "active": Meaning("", "1 if the station takes new work, 0 if not"),
+    "pick": Meaning("", "1 if the station is a pick station, 0 if not"),
     "kind": Meaning("", "0 work for the station, 1 store the pod, 2 move a pod, 3 rest"),
 }
 """What the columns of candidates are."""

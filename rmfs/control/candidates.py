@@ -71,8 +71,8 @@ def _orders(view: View) -> Candidates:
     sku = view.orders.sku[row]
     units: NDArray[np.int32] = view.orders.units[row]
     wanted: NDArray[Any] = np.asarray(units.sum(axis=1))
-    inbound = view.inventory.inbound[target[:, None], sku]
-    here: NDArray[Any] = np.minimum(inbound, units).sum(axis=1)
+    spare = view.inventory.inbound[target[:, None], sku] - view.need[target[:, None], sku]
+    here: NDArray[Any] = np.clip(spare, 0, units).sum(axis=1)
     served: NDArray[np.bool_] = view.inventory.free_stock[sku] >= units
     columns: Columns = {
         "order": np.array([order.index for order in orders], np.int64),

@@ -22,9 +22,22 @@ if TYPE_CHECKING:
 
 Weights = dict[str, float]
 
+ALL = slice(None)
+
+
+STARTS: dict[str, Weights] = {
+    "ta": {
+        **{"work": 10.0, "pick": 1.0, "store": 5.0, "rest": -10.0},
+        **{"away_s": -1.0, "units": 1.0, "robots": -5.0},
+    },
+}
+"""Weights of scaled features that make a rule, where those of the ranking do not."""
+
 
 def default_weights(kind: str) -> Weights:
-    """Return the weights that put candidates into the order of their ranking."""
+    """Return the weights with which a rule begins: those of the ranking, if it has none."""
+    if kind in STARTS:
+        return {name: STARTS[kind].get(name, 0.0) for name in COLUMNS[kind]}
     ranking = RANKINGS[kind]
     return {name: ranking.get(name, 0.0) * SCALES[name] for name in COLUMNS[kind]}
 
@@ -60,10 +73,21 @@ def best_of(
     rows = np.arange(len(candidates)) if among is None else among
     if not len(rows):
         return -1
+    return int(rows[scores(candidates, kind, view, weights, rows).argmax()])
+
+
+def scores(
+    candidates: Candidates,
+    kind: str,
+    view: View,
+    weights: Weights,
+    rows: NDArray[np.intp] | slice = ALL,
+) -> NDArray[np.float64]:
+    """Return the weighted sum of each candidate, or of some rows of them, shape (C,)."""
     columns = {name: values[rows] for name, values in numbers(candidates, kind, view).items()}
     names = list(weights)
     features = matrix(columns, names)
-    score = np.zeros(len(rows))
+    score = np.zeros(len(features))
     for place, name in enumerate(names):
         score += weights[name] * features[:, place]
-    return int(rows[score.argmax()])
+    return score

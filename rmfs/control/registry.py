@@ -81,6 +81,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "random": "rmfs.control.ta.random:RandomTasks",
         "brute-force": "rmfs.control.ta.brute_force:BruteForce",
         "swarm": "rmfs.control.ta.swarm:Swarm",
+        "linear": "rmfs.control.ta.linear:Linear",
         "rollout": "rmfs.control.ta.rollout:Rollout",
         "dummy": "rmfs.control.dummies:DummyTA",
     },

@@ -25,7 +25,9 @@ WORK, STORE, MOVE, REST = range(4)
 _KIND_OF: dict[type, int] = {WorkFor: WORK, Store: STORE, MovePod: MOVE, Rest: REST}
 
 
-def tasks(view: View, refused: Sequence[Any] = ()) -> Candidates:
+def tasks(
+    view: View, refused: Sequence[Any] = (), robots: Sequence[Robot] | None = None
+) -> Candidates:
     """List what each robot that needs a task, or is at rest, could do.
 
     Decisions are made only of the rows that are asked for: most are looked at as numbers.
@@ -34,8 +36,11 @@ def tasks(view: View, refused: Sequence[Any] = ()) -> Candidates:
     ----------
     refused
         Decisions of the same turn that came to nothing.
+    robots
+        Only what these could do.
     """
-    robots = [*view.asking.values(), *view.resting.values()]
+    if robots is None:
+        robots = [*view.asking.values(), *view.resting.values()]
     rows = _rows(view, robots)
     if refused:
         out = {_key(one) for one in refused}
@@ -48,6 +53,7 @@ def tasks(view: View, refused: Sequence[Any] = ()) -> Candidates:
         "robot": index[at],
         "kind": kind,
         "station": station,
+        "pick": works & (station < len(view.pick_stations)),
         "away_s": np.zeros(len(table)),
         "units": np.zeros(len(table), np.int64),
         "robots": np.zeros(len(table), np.int64),
@@ -83,7 +89,6 @@ def _rows(view: View, robots: Sequence[Robot]) -> list[tuple[int, int, int]]:
     """List rows: place among the robots, kind of task, station or -1."""
     rows: list[tuple[int, int, int]] = []
     busy = [station.index for station in view.stations if station.has_open_work]
-    asking = len(view.asking)
     for at, robot in enumerate(robots):
         if robot.pod >= 0:
             rows += [(at, WORK, station) for station in _served(view, robot.pod)]
@@ -91,7 +96,7 @@ def _rows(view: View, robots: Sequence[Robot]) -> list[tuple[int, int, int]]:
         else:
             rows += [(at, WORK, station) for station in busy]
             rows.append((at, MOVE, -1))
-            if at < asking:
+            if robot.index in view.asking:
                 rows.append((at, REST, -1))
     return rows
 

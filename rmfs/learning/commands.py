@@ -19,7 +19,7 @@ def learn(
     layout: Annotated[str, typer.Option(help="Layout.")] = "small",
     scenario: Annotated[str, typer.Option(help="Scenario.")] = "small",
     controllers: Annotated[str, typer.Option(help="Who decides the other problems.")] = "default",
-    problems: Annotated[str, typer.Option(help="Of poa, pps, psa; with commas.")] = "poa,pps",
+    problems: Annotated[str, typer.Option(help="Of poa, pps, psa, ta; with commas.")] = "poa,pps",
     objective: Annotated[
         str, typer.Option(help="Columns of the footprint with weights, COLUMN=W,...; maximised.")
     ] = "units_picked=1",

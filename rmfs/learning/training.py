@@ -37,6 +37,7 @@ TRAINED: dict[Problem, dict[str, str]] = {
     Problem.POA: {"weights": "poa"},
     Problem.PPS: {"pick_pod": "pick pod", "replenishment_pod": "replenishment pod"},
     Problem.PSA: {"weights": "place"},
+    Problem.TA: {"weights": "ta"},
 }
 """Per problem, the parameters of its linear rule that are trained, and their kind of question."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import rmfs
@@ -24,7 +25,7 @@ def units(*, seed: int = 1, **rules: Any) -> int:
 
 
 def test_linear_rules_decide_everything() -> None:
-    keys = KEYS | {f"controllers.{problem}": "linear" for problem in ("poa", "pps", "psa")}
+    keys = KEYS | {f"controllers.{problem}": "linear" for problem in ("poa", "pps", "psa", "ta")}
     run = rmfs.simulate("small", "small", seed=1, set=keys, trace=True)
     assert run.footprint["units_picked"] > 20
     assert run.check().ok
@@ -36,6 +37,34 @@ def test_weights_matter() -> None:
     assert units(psa=near) > units(psa=far)
     nearest = rmfs.simulate("small", "small", seed=1, set=KEYS | {"controllers.psa": "nearest"})
     assert units(psa=near) == nearest.footprint["units_picked"]
+
+
+@pytest.mark.parametrize("lane", [True, False])
+def test_linear_order_assignment_can_be_pod_match(lane: bool) -> None:
+    """Spare units on inbound pods, then due times: the same orders to the same stations."""
+    weights = {"inbound_units": 1.0, "due_in_s": -1e-5}
+    linear = {"name": "linear", "weights": weights, "fast_lane": lane}
+    match = {"name": "pod-match", "fast_lane": lane}
+    found = [
+        rmfs.simulate("small", "small", seed=3, set=KEYS | {"controllers.poa": rule}, trace=True)
+        for rule in (linear, match)
+    ]
+    assert found[0].footprint["orders_completed"] > 5
+    for name, table in found[0].trace.items():
+        np.testing.assert_array_equal(table, found[1].trace[name], name)
+
+
+def test_linear_tasks_follow_their_weights() -> None:
+    """Stations that are valued get robots, and others none."""
+    given = KEYS | {"scenario.duration_s": 600}
+    stored = []
+    for pick in (20.0, -20.0):
+        rule = {"name": "linear", "weights": {"work": 10.0, "store": 5.0, "pick": pick}}
+        rule["weights"]["rest"] = 0.0 if pick < 0 else -20.0
+        run = rmfs.simulate("small", "small", seed=1, set=given | {"controllers.ta": rule})
+        stored.append(run.footprint["units_picked"])
+    assert stored[0] > 30
+    assert stored[1] == 0
 
 
 def test_training_repeats_and_improves_what_it_was_trained_on() -> None:
@@ -73,7 +102,7 @@ def test_the_command_writes_a_file_that_runs(
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        ({"problems": ["ta"]}, "problem ta: valid: poa, pps, psa"),
+        ({"problems": ["sa"]}, "problem sa: valid: poa, pps, psa, ta"),
         ({"objective": {"profit": 1.0}}, "objective profit: no column"),
         ({"seeds": ()}, "needs a problem, an objective and a seed"),
     ],

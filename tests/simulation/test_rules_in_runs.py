@@ -103,7 +103,7 @@ RUNS: dict[str, dict[str, Any]] = {
         }
     },
     "mm random": {"mm": {"name": "random", "period_s": 40.0}},
-    "linear": {"poa": "linear", "pps": "linear", "psa": "linear"},
+    "linear": {"poa": "linear", "pps": "linear", "psa": "linear", "ta": "linear"},
     "joint controller": {"poa": "joint:Joint", "pps": DUMMY, "psa": DUMMY},
 }
 

@@ -7,22 +7,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pydantic
 
-from rmfs.control.base import Parameters
 from rmfs.control.candidates import candidates_for
 from rmfs.control.linear import Weights, best_of, checked, default_weights
-from rmfs.control.poa import PickOrderAssignment
+from rmfs.control.poa.filling import FastLaneParameters, Filling
 from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rmfs.control.decisions import AssignOrder
+    from rmfs.world.stations import PickStation
 
 
-class LinearParameters(Parameters):
+class LinearParameters(FastLaneParameters):
     """Parameters of POA linear."""
 
+    fast_lane: bool = True
+    """Whether one slot of each station is kept for orders that the pod being served there can
+    complete."""
     weights: Weights = pydantic.Field(default_factory=lambda: default_weights("poa"))
     """Of the features of a pair of order and station, scaled (docs: learning)."""
 
@@ -32,21 +33,19 @@ class LinearParameters(Parameters):
         return checked("poa", weights)
 
 
-class Linear(PickOrderAssignment[LinearParameters]):
+class Linear(Filling[LinearParameters]):
     """Fills free slots, each time with the best pair of a station and an order in stock.
 
-    Full ties: the order that came first, then the station with the lowest number.
+    The fast lane, unless it is switched off, comes first. Full ties: the order that came first,
+    then the station with the lowest number.
     """
 
     parameters_model = LinearParameters
 
-    def decide(self) -> Iterator[AssignOrder]:
-        """Yield the best pair until no slot is free or no order can be served."""
-        question, weights = Question(Problem.POA, "turn"), self.parameters.weights
-        while True:
-            found = candidates_for(self.view, question)
-            served = np.flatnonzero(found.columns["in_stock"])
-            row = best_of(found, "poa", self.view, weights, served)
-            if row < 0:
-                return
-            yield found[row]
+    def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
+        """Choose the pair with the greatest weighted sum."""
+        found = candidates_for(self.view, Question(Problem.POA, "turn"))
+        numbers = [station.index for station in stations]
+        served = (found.columns["in_stock"] > 0) & np.isin(found.columns["station"], numbers)
+        row = best_of(found, "poa", self.view, self.parameters.weights, np.flatnonzero(served))
+        return found[row] if row >= 0 else None

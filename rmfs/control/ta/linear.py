@@ -1,0 +1,93 @@
+"""TA linear: what a robot does is the task whose features have the greatest weighted sum."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pydantic
+
+from rmfs.control.decisions import Prepare, Reposition, TaskDecision
+from rmfs.control.linear import Weights, checked, default_weights, scores
+from rmfs.control.ta.solo import Solo, SoloParameters
+from rmfs.control.ta.stations import bring, keeper_of
+from rmfs.control.task_candidates import MOVE, STORE, WORK, tasks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.control.ta import Consult
+    from rmfs.world.robots import Robot
+
+
+class LinearParameters(SoloParameters):
+    """Parameters of TA linear."""
+
+    weights: Weights = pydantic.Field(default_factory=lambda: default_weights("ta"))
+    """Of the features of what a robot could do, scaled (docs: learning)."""
+
+    @pydantic.field_validator("weights")
+    @classmethod
+    def _check(cls, weights: Weights) -> Weights:
+        return checked("ta", weights)
+
+
+class Linear(Solo[LinearParameters]):
+    """Lets each robot work for the station, store its pod, move one or rest, by a weighted sum.
+
+    PPS, PSA and repositioning say which pod and which place; where they find none, the next best is
+    taken. If another robot without work stands beneath the pod, that one gets the job. Robots at
+    rest are given work that is worth more than rest. Ties: the station with the lowest number, then
+    store, move, rest.
+    """
+
+    parameters_model = LinearParameters
+
+    def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
+        """Yield the best task that is possible."""
+        for kind, station in self._best_first(robot):
+            if kind == WORK:
+                task = self._work(robot, station, consult)
+            elif kind == STORE:
+                task = next(self.park(robot, consult), None)
+            elif kind == MOVE:
+                task = self._move(robot, consult)
+            else:
+                task = self.to_rest(robot)
+            if task is not None:
+                yield task
+                return
+
+    def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
+        """Find the best work for a robot at rest, if it is better than rest."""
+        for kind, station in self._best_first(robot, self.parameters.weights["rest"]):
+            task = self._work(robot, station, consult) if kind == WORK else None
+            if task is not None:
+                return task
+        return None
+
+    def _best_first(self, robot: Robot, least: float = -inf) -> list[tuple[int, int]]:
+        """Sort what a robot could do, if it is worth enough: kind of task, and station or -1."""
+        found = tasks(self.view, robots=[robot])
+        worth = scores(found, "ta", self.view, self.parameters.weights)
+        order = np.argsort(-worth, kind="stable")[: np.count_nonzero(worth >= least)]
+        kinds, stations = found.columns["kind"][order], found.columns["station"][order]
+        return list(zip(kinds.tolist(), stations.tolist(), strict=True))
+
+    def _work(self, robot: Robot, station: int, consult: Consult) -> TaskDecision | None:
+        if robot.pod >= 0:
+            serves = consult.serves(robot.pod, station)
+            return bring(self.view, robot, robot.pod, station) if serves else None
+        if not self.view.has_open_work(station):
+            return None
+        pod = consult.pod_for(robot, station)
+        if pod < 0:
+            return None
+        return bring(self.view, keeper_of(self.view, robot, pod), pod, station)
+
+    def _move(self, robot: Robot, consult: Consult) -> TaskDecision | None:
+        move = consult.move_for(robot) if consult.may_move() else None
+        if move is None:
+            return None
+        return Reposition(keeper_of(self.view, robot, move.pod), move.pod, move.place)
