@@ -106,4 +106,4 @@ def test_a_read_only_folder(bench: Bench) -> None:
 def test_many_changes(bench: Bench, kind: str) -> None:
     """All of the changes of two runs fail once; one in nine does in the other ways."""
     outcomes = disturbed(bench, kind, every=1 if kind == "fails" else 9)
-    assert {"0 kept", "1 kept", "2 kept"} <= set(outcomes)
+    assert {"0 kept", "1 kept"} <= set(outcomes)  # the last change is what stores the second run
