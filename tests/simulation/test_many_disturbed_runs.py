@@ -7,6 +7,7 @@ from ledger import Ledger
 
 from rmfs import simulate
 from rmfs.world import verify
+from tests.tools.proof import proven
 
 CLOSURES = {"closures": {"every_s": 60.0, "lasting_s": 60.0}}
 
@@ -76,3 +77,11 @@ def test_short_runs(number):
 def test_long_runs(number):
     names, wrong, rules = drawn(number)
     assert driven(*names, number, 1800.0, wrong, **rules).footprint["distance_m"] > 100
+
+
+@pytest.mark.slow
+def test_delays_that_come_back_to_who_is_late() -> None:
+    """Four runs around a block wait for each other's ends: the delay is refused, and not endless."""
+    row = proven(285)
+    assert row.problem == ""
+    assert row.disturbances > 150

@@ -2,11 +2,12 @@
 //!
 //! Every plan says when its robot enters and leaves each waypoint; all plans together give each
 //! waypoint its users in order. If a robot leaves one later than planned, the next user enters it
-//! later, and so on. The planned order has no cycle (it comes from times), so this ends, and
-//! whoever keeps the order meets nobody and waits for nobody who waits for him.
+//! later, and so on. Whoever keeps the order meets nobody. The order itself has no cycle (it comes
+//! from times), but a run is shifted as a whole: four runs around a block may each have to wait for
+//! the next one's end. Who would have to wait for himself cannot be late; that is told.
 
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::collections::{BTreeMap, BinaryHeap, HashMap, VecDeque};
 
 use crate::network::NONE;
 use crate::robot::{Held, Robot};
@@ -33,17 +34,30 @@ pub(super) struct Delays<'a> {
     kinds: Vec<u8>,
     /// What each robot occupies by the plan it has.
     held: Vec<Vec<Held>>,
+    /// The same of robots whose plans have changed, by the plan they will have.
+    shifted: HashMap<u32, Vec<Held>>,
     /// The next user of each of these: robot and index into its `held`.
     next: Vec<Vec<Option<(u32, usize)>>>,
     /// Plans that have changed.
     plans: BTreeMap<u32, VecDeque<Move>>,
+    /// What has been shifted, each with what made it necessary.
+    causes: Vec<Cause>,
+    /// The last of them, per robot and move.
+    cause_of: HashMap<(u32, usize), usize>,
+}
+
+/// A move that was shifted, because of another one.
+struct Cause {
+    robot: u32,
+    step: usize,
+    before: Option<usize>,
 }
 
 impl Fleet {
     /// Lets a robot do what is left of its plan later by `by`, and others behind it.
     ///
     /// Nothing changes, and the result is false, if a motion had to be shifted that `shift` leaves
-    /// alone.
+    /// alone, or one by its own delay.
     pub fn delay(&mut self, robot: u32, by: Us, shift: Shift) -> bool {
         self.settle_all();
         let state = &self.robots[robot as usize];
@@ -56,7 +70,7 @@ impl Fleet {
             return true;
         }
         let mut delays = Delays::new(self, shift);
-        if !(delays.push(robot, first, by) && delays.spread(robot)) {
+        if !(delays.push(robot, first, by, None) && delays.spread(robot)) {
             return false;
         }
         let plans = delays.plans;
@@ -132,7 +146,17 @@ impl<'a> Delays<'a> {
             }
         }
         let kinds = fleet.robots.iter().map(|state| state.kind).collect();
-        Self { fleet, shift, kinds, held, next, plans: BTreeMap::new() }
+        Self {
+            fleet,
+            shift,
+            kinds,
+            held,
+            shifted: HashMap::new(),
+            next,
+            plans: BTreeMap::new(),
+            causes: Vec::new(),
+            cause_of: HashMap::new(),
+        }
     }
 
     fn plan(&mut self, robot: u32) -> &mut VecDeque<Move> {
@@ -141,7 +165,7 @@ impl<'a> Delays<'a> {
     }
 
     /// Shifts one move of a robot, and those after it as far as they have to.
-    fn push(&mut self, robot: u32, index: usize, by: Us) -> bool {
+    fn push(&mut self, robot: u32, index: usize, by: Us, before: Option<usize>) -> bool {
         let fleet = self.fleet;
         let state = &fleet.robots[robot as usize];
         let kind = &fleet.kinds[self.kinds[robot as usize] as usize];
@@ -149,6 +173,7 @@ impl<'a> Delays<'a> {
         if index < begun && self.shift == Shift::Planned {
             return false;
         }
+        let Some(cause) = self.cause(robot, index, before) else { return false };
         let uses = &self.held[robot as usize];
         let entered = |held: &&Held| held.entered_by == index as u32 && held.start <= fleet.now;
         let entered = uses.iter().filter(entered).count() as u32;
@@ -160,6 +185,7 @@ impl<'a> Delays<'a> {
             moves[index].start += by;
         }
         moves[index].end += by;
+        let mut last = index;
         for later in index + 1..moves.len() {
             let step = &moves[later];
             let turn = kind.turn(
@@ -167,42 +193,74 @@ impl<'a> Delays<'a> {
                 fleet.network.headings[step.heading as usize],
             );
             let wait = (moves[later - 1].end + turn - step.start).max(0);
+            if wait == 0 {
+                break;
+            }
             moves[later].start += wait;
             moves[later].end += wait;
+            last = later;
         }
+        self.cause_of.extend((index..=last).map(|step| ((robot, step), cause)));
+        self.look_again(robot);
         true
     }
 
+    /// Takes note of why a move is shifted; none if its own shift is the reason.
+    fn cause(&mut self, robot: u32, step: usize, before: Option<usize>) -> Option<usize> {
+        let mut earlier = before;
+        while let Some(number) = earlier {
+            let one = &self.causes[number];
+            if one.robot == robot && one.step == step {
+                return None;
+            }
+            earlier = one.before;
+        }
+        self.causes.push(Cause { robot, step, before });
+        Some(self.causes.len() - 1)
+    }
+
     /// Shifts whoever would enter a waypoint before the robot in front of him has left it.
+    ///
+    /// In the order in which they were to enter, so that most are shifted once.
     fn spread(&mut self, robot: u32) -> bool {
-        let mut changed = vec![robot];
-        while let Some(robot) = changed.pop() {
-            for (index, one) in self.uses(robot).into_iter().enumerate() {
+        let mut changed = BinaryHeap::from([Reverse((Us::MIN, robot))]);
+        while let Some(Reverse((_, robot))) = changed.pop() {
+            for index in 0..self.next[robot as usize].len() {
                 let Some((follower, at)) = self.next[robot as usize][index] else { continue };
-                let entry = self.uses(follower)[at];
+                let (one, entry) = (self.uses(robot)[index], self.uses(follower)[at]);
                 if one.end <= entry.start || one.end == FOREVER {
                     continue;
                 }
-                let passed = entry.entered_by == NONE;
-                if passed || !self.push(follower, entry.entered_by as usize, one.end - entry.start)
-                {
+                let step = entry.entered_by;
+                let by = one.end - entry.start;
+                let cause = self.cause_of.get(&(robot, self.left_by(robot, index))).copied();
+                if step == NONE || !self.push(follower, step as usize, by, cause) {
                     return false;
                 }
-                changed.push(follower);
+                changed.push(Reverse((self.held[follower as usize][at].start, follower)));
             }
         }
         true
     }
 
     /// What a robot occupies by the plan it will have.
-    fn uses(&self, robot: u32) -> Vec<Held> {
-        let Some(moves) = self.plans.get(&robot) else {
-            return self.held[robot as usize].clone();
-        };
+    fn uses(&self, robot: u32) -> &[Held] {
+        self.shifted.get(&robot).unwrap_or(&self.held[robot as usize])
+    }
+
+    /// By which of its moves a robot leaves what it occupies.
+    fn left_by(&self, robot: u32, index: usize) -> usize {
+        self.held[robot as usize].get(index + 1).map_or(usize::MAX, |held| held.entered_by as usize)
+    }
+
+    /// Works out what a robot occupies, after its plan has changed.
+    fn look_again(&mut self, robot: u32) {
         let state = &self.fleet.robots[robot as usize];
-        let shifted = Robot { moves: moves.clone(), ..state.clone() };
+        let moves = self.plans.get(&robot).unwrap_or(&state.moves).clone();
+        let later = Robot { moves, ..state.clone() };
         let kind = self.kinds[robot as usize] as usize;
-        shifted.occupation(&self.fleet.network, &self.fleet.kinds[kind])
+        let uses = later.occupation(&self.fleet.network, &self.fleet.kinds[kind]);
+        self.shifted.insert(robot, uses);
     }
 
     /// Makes a robot at rest one of another kind. Returns whether everybody else can wait for it.
@@ -214,7 +272,11 @@ impl<'a> Delays<'a> {
             return true;
         }
         let longer = stretched(&fleet.network, &fleet.kinds[kind as usize], moves);
+        let count = moves.len();
         self.plans.insert(robot, longer.into());
+        self.causes.push(Cause { robot, step: usize::MAX, before: None });
+        self.cause_of.extend((0..count).map(|step| ((robot, step), 0)));
+        self.look_again(robot);
         self.spread(robot)
     }
 
