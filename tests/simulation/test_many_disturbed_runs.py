@@ -81,7 +81,7 @@ def test_long_runs(number):
 
 @pytest.mark.slow
 def test_delays_that_come_back_to_who_is_late() -> None:
-    """Four runs around a block wait for each other's ends: the delay is refused, and not endless."""
+    """Four runs around a block each wait for the next: the delay is refused, not endless."""
     row = proven(285)
     assert row.problem == ""
     assert row.disturbances > 150
