@@ -7,6 +7,7 @@ times, and what fits into pods. So one number holds for all runs of a layout wit
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,7 +24,7 @@ from rmfs.solvers.models.run_bound import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection
 
     from numpy.typing import NDArray
 
@@ -49,6 +50,39 @@ def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration
     """
     data = run_bound(layout, skus, times, duration_s)
     return math.inf if data is None else solve(data).bound
+
+
+def units_per_h_keeping_stock(
+    layout: Layout,
+    skus: SkuSet,
+    times: TravelTimes,
+    duration_s: float,
+    fleets: Collection[int],
+) -> dict[int, float]:
+    """Return, per fleet, the units per hour that no run exceeds that stores what it picks.
+
+    Whoever knew all orders to come could not do more either, nor choose better orders, pods or
+    places: the bound holds for any. A bundle has the units that its SKU says.
+
+    Parameters
+    ----------
+    layout, skus, times, duration_s
+        As for `units_per_h_bound`; the robots of the layout do not matter, but for their kinds.
+    fleets
+        Numbers of robots.
+    """
+    data = run_bound(layout, skus, times, duration_s)
+    if data is None:
+        return dict.fromkeys(fleets, math.inf)
+    refill = data.refill
+    most, least = int(skus.bundle_units.max()), max(int(skus.bundle_units.min()), 1)
+    refill = replace(
+        refill,
+        bundle_units=min(refill.bundle_units, most),
+        bundles_per_visit=max(refill.bundles_per_visit // least, 1),
+    )
+    kept = replace(data, refill=refill).keeping_stock()
+    return {robots: solve(replace(kept, robots=robots)).bound for robots in fleets}
 
 
 def run_bound(

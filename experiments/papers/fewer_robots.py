@@ -11,6 +11,8 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
+import pandas as pd
+
 from rmfs.experiments.figures.lines import lines
 from rmfs.experiments.figures.style import saving
 from rmfs.experiments.papers.benefit import CONTROLLERS, completed, overview, require_optimised
@@ -19,10 +21,8 @@ from rmfs.experiments.statistics import interval
 from rmfs.experiments.tables import HALF, Table, rows_frame
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
-
-    import pandas as pd
 
     from rmfs.experiments.papers.study import Study
 
@@ -75,15 +75,27 @@ def needed(frame: pd.DataFrame, groups: Sequence[str], enough: float = ENOUGH) -
 
 
 def picture(
-    study: Study, frame: pd.DataFrame, limit: float, name: str = "fewer-robots.png"
+    study: Study,
+    frame: pd.DataFrame,
+    limit: float,
+    name: str = "fewer-robots.png",
+    clairvoyant: Mapping[int, float] | None = None,
 ) -> Path:
-    """Draw units per hour over the fleet, with the bounds."""
+    """Draw units per hour over the fleet, with the bounds.
+
+    Parameters
+    ----------
+    clairvoyant
+        A bound per fleet to be drawn in the place of that of the runs.
+    """
     path = study.place(name)
     with saving(path, 6.0, 4.0) as figure:
         ax = figure.subplots()
         lines(frame, ROBOTS, "units_per_h", "controllers", ax)
-        bound = frame.groupby(ROBOTS)["units_per_h_bound"].max()
-        ax.plot(bound.index, bound, color="black", linestyle=":", label="proven bound")
+        bound, label = frame.groupby(ROBOTS)["units_per_h_bound"].max(), "proven bound"
+        if clairvoyant is not None:
+            bound, label = pd.Series(clairvoyant), "clairvoyant bound"
+        ax.plot(bound.index, bound, color="black", linestyle=":", label=label)
         ax.axhline(
             ENOUGH * limit, color="0.5", linewidth=0.8, label=f"{ENOUGH:.0%} of the stations"
         )

@@ -1,15 +1,20 @@
 """How many robots the large site needs: rules, visits planned by search, and its start rule.
 
-Units per hour over the size of the fleet, the stock kept at its level, with the proven bound in the
-picture; the smallest fleet that reaches 95 % of what the stations can do; and what the
-search adds to the start rule of the same controller, seed by seed. With `--later` the same in the
-third hour, answers paced by their work.
+Units per hour over the size of the fleet, the stock kept at its level, with a bound that holds for
+whoever knows all orders to come as well (docs: bounds); the smallest fleet that reaches 95 % of
+what the stations can do; and what the search adds to the start rule of the same controller, seed by
+seed. With `--later` the same in the third hour, answers paced by their work. `--bound` prints the
+bound alone and runs nothing.
 """
 
 from __future__ import annotations
 
 import sys
+from typing import TYPE_CHECKING
 
+from rmfs import layout as layouts
+from rmfs import scenario
+from rmfs.experiments.design.planning import plan
 from rmfs.experiments.papers.benefit import (
     CONTROLLERS,
     completed,
@@ -20,19 +25,71 @@ from rmfs.experiments.papers.benefit import (
 from rmfs.experiments.papers.fewer_robots import COLUMNS, ENOUGH, ROBOTS, needed, picture
 from rmfs.experiments.papers.planning import GAINED, START_RULE
 from rmfs.experiments.papers.study import command, done, parser, station_units_per_h
+from rmfs.experiments.tables import Table, rows_frame
+from rmfs.scenario.sources import sku_set
+from rmfs.solvers.run_bound import units_per_h_keeping_stock
+from rmfs.traffic import Traffic
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rmfs.experiments.design.planning import Plan
 
 RULES = "default rules"
+
+
+def clairvoyant(design: Plan) -> tuple[dict[int, float], float]:
+    """Return the units per hour that no fleet can pick that stores what it picks, per fleet.
+
+    Also returned is what the stations can do.
+    """
+    arm = design.arms[0]
+    own = {
+        kind: [(keys[1:], value) for keys, value in arm.overrides if keys[0] == kind]
+        for kind in ("layout", "scenario")
+    }
+    layout = layouts.load(arm.inputs["layout"], own["layout"])
+    work = scenario.load(arm.inputs["scenario"], own["scenario"])
+    fleets = range(1, max(arm.levels[ROBOTS] for arm in design.arms) + 1)
+    found = units_per_h_keeping_stock(
+        layout, sku_set(work.skus), Traffic(layout), work.duration_s, fleets
+    )
+    return found, sum(3600.0 / station.unit_transfer_s for station in layout.pick_stations)
+
+
+def bounds(found: Mapping[int, float], limit: float) -> Table:
+    """Return the bound of each fleet that the stations do not bind, and of the first they do."""
+    highest = max(found.values())
+    fleets = [robots for robots, bound in found.items() if bound < highest * (1 - 1e-6)]
+    fleets.append(min(set(found) - set(fleets)))
+    rows = {
+        str(robots): {
+            ("units_per_h", ""): found[robots],
+            ("station_share", ""): found[robots] / limit,
+        }
+        for robots in fleets
+    }
+    caption = (
+        "Units per hour that no controller exceeds that stores what it picks, whatever it knows "
+        "(docs: bounds). With more robots the bound stays what it is in the last row."
+    )
+    decimals = {("units_per_h", ""): 0, ("station_share", ""): 3}
+    return Table(rows_frame(rows, "robots"), decimals, caption)
 
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("fleet-large", __doc__)
     options.add_argument("--later", action="store_true", help="the third hour instead")
+    options.add_argument("--bound", action="store_true", help="print the bound; no runs")
     given = options.parse_args(arguments)
     name = "fleet-large"
     if given.later:
         name += "-later"
         given.design = name
+    if given.bound:
+        print(bounds(*clairvoyant(plan(given.design))).markdown())
+        return
     study = done(given)
     each = station_units_per_h(study)
     frame = completed(study.frame, each).drop(columns=CONTROLLERS)
@@ -41,7 +98,9 @@ def main(arguments: list[str] | None = None) -> None:
     study.publish(overview(frame, (CONTROLLERS, ROBOTS), COLUMNS), name, COLUMNS)
     study.publish(needed(frame, (CONTROLLERS,)), f"{name}-needed", ("station_share",))
     study.publish(gains(planned, (ROBOTS,), START_RULE, GAINED), f"{name}-gains", GAINED)
-    print(picture(study, frame, each * frame["pick_stations"].iloc[0], f"{name}.png"))
+    known, limit = clairvoyant(study.plan)
+    study.publish(bounds(known, limit), f"{name}-bound", ())
+    print(picture(study, frame, limit, f"{name}.png", known))
     require_optimised(study, planned[planned["station_share"] >= ENOUGH])
 
 

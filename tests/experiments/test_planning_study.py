@@ -39,7 +39,7 @@ def test_the_study_is_run_and_published(design, tmp_path, monkeypatch):
     )
 
 
-def test_fleets_are_compared_and_drawn(design, tmp_path, monkeypatch):
+def test_fleets_are_compared_and_drawn(design, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     path = design(
         seeds=[1, 2],
@@ -64,3 +64,10 @@ def test_fleets_are_compared_and_drawn(design, tmp_path, monkeypatch):
     gained = pd.read_csv("out/fleet-large-gains.csv", index_col=0)
     assert list(gained.index) == ["5, planning", "10, planning"]
     assert (tmp_path / "out" / "fleet-large.png").is_file()
+    bound = pd.read_csv("out/fleet-large-bound.csv", index_col=0)
+    assert bound["units_per_h"].is_monotonic_increasing
+    assert bound["station_share"].iloc[0] < 0.95
+    assert bound["units_per_h"].iloc[-1] >= rows["units_per_h mean"].max()
+    capsys.readouterr()
+    assert command(fleet_large.main, [*given, "--bound"]) == 0
+    assert capsys.readouterr().out.splitlines()[2].split()[1] == "1"

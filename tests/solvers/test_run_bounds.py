@@ -14,7 +14,7 @@ from rmfs import layout as layouts
 from rmfs.measure.bound import BoundExceededWarning, units_per_h_bound, warn_if_exceeded
 from rmfs.simulation.kernel import Kernel
 from rmfs.solvers.models.run_bound import Throughput, solve, violations
-from rmfs.solvers.run_bound import run_bound
+from rmfs.solvers.run_bound import run_bound, units_per_h_keeping_stock
 from rmfs.traffic import Traffic
 
 HOUR_S = 3600.0
@@ -64,6 +64,19 @@ def test_rmfs_finds_the_bound_without_importing_solvers():
     assert found == solve(run_bound(layout, small_skus(), FreeTraffic(layout), HOUR_S)).bound
     # the station alone: a pick every 10 s, and one that ends later
     assert found == pytest.approx(361.0)
+
+
+def test_the_bound_of_fleets_that_keep_their_stock_knows_bundles():
+    layout, skus = small_layout(robots=5), small_skus(bundle_units=4)
+    times = FreeTraffic(layout)
+    found = units_per_h_keeping_stock(layout, skus, times, HOUR_S, [1, 2, 3])
+    assert list(found) == [1, 2, 3]
+    # least for a unit: a visit of its own, 5 s of ways and 3 s, not 10 s at the head; a quarter of
+    # the 10 s of a bundle; and a hundredth of a visit that fills a pod
+    assert found[1] == pytest.approx(3600 / (8 + 10 / 4 + 5 / 100), rel=0.01)
+    assert found[1] < found[2] == found[3] == units_per_h_bound(layout, skus, times, HOUR_S)
+    larger = units_per_h_keeping_stock(layout, small_skus(bundle_units=8), times, HOUR_S, [1])
+    assert larger[1] > found[1]
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ changeover, infinity for the demand).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -200,6 +200,14 @@ class RunBound:
     def __post_init__(self) -> None:
         require(number("duration_s", self.duration_s) > 0, "duration_s", "must be positive")
         integers("robots", self.robots, (), low=0)
+
+    def keeping_stock(self) -> RunBound:
+        """Return the same for runs that put in at least as many units as they pick.
+
+        What the pods hold at the start is then of no help: units picked are at most those stored.
+        """
+        stock = Stock(np.zeros_like(self.stock.pod_units), self.stock.largest_pod_units)
+        return replace(self, stock=stock)
 
     @property
     def hours(self) -> float:

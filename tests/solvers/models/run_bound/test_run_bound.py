@@ -103,6 +103,49 @@ def test_the_bound_is_reached_where_robots_are_scarce_and_where_stations_are() -
         assert 0.97 < reached <= 1.0
 
 
+def test_no_run_that_stores_what_it_picks_passes_the_bound_for_such_runs() -> None:
+    shares = []
+    for seed in range(150):
+        plant, rng = random_plant(seed), np.random.default_rng(seed)
+        robots = int(rng.integers(1, 7))
+        log, owner = operate(plant, robots, 900.0, rng, eager=bool(seed % 2))
+        for begin in range(0, 900, 50):
+            for end in range(begin + 100, 901, 100):
+                before, after = (
+                    log.contents(time, plant, owner).sum() for time in (begin, end + 1e-6)
+                )
+                if after < before or len(shares) > 400:
+                    continue
+                counts = log.counted(begin, end, plant)
+                data = bound_of(plant, robots, end - begin, log.contents(begin, plant, owner))
+                kept = data.keeping_stock()
+                assert not violations(kept, counts), (seed, begin, end)
+                assert objective(data, counts) <= solve(kept).bound <= solve(data).bound + 1e-6
+                if counts.units.sum():
+                    shares.append(objective(data, counts) / solve(kept).bound)
+    assert len(shares) > 100
+    assert max(shares) > 0.9
+
+
+def test_the_bound_for_runs_that_keep_their_stock_is_reached() -> None:
+    """Pods empty at first, filled with six bundles of eight at a time, and emptied again."""
+    plant = Plant(
+        1, np.full(2, 10.0), np.array([3.0, 10.0]), np.zeros(2), np.full(2, 20.0),
+        np.full(2, 20.0), np.full((2, 2), inf), 2.0, np.zeros(400, int), 48, 8, 6,
+    )  # fmt: skip
+    log, owner = operate(plant, 1, 40_000.0, np.random.default_rng(0), eager=True)
+    full = np.full(400, 48)
+    data = bound_of(plant, 1, 40_000.0, full)
+    counts = log.counted(0.0, 40_000.0, plant)
+    assert log.contents(40_000.0, plant, owner).sum() >= 0
+    kept = solve(data.keeping_stock()).bound
+    # two visits of 44 s of ways, 47 gaps of 10 s, the last unit's 3 s, and six bundles of 10 s
+    by_hand = 3600.0 * 48 / (2 * 44 + 47 * 10 + 3 + 6 * 10)
+    assert kept == pytest.approx(by_hand, rel=0.005)
+    assert 0.97 < objective(data, counts) / kept <= 1.0
+    assert kept < 0.9 * solve(data).bound
+
+
 def one(**changes: object) -> RunBound:
     """One hour, one station of 10 s and 3 s, ample of everything else."""
     arrays = {name: np.array([value]) for name, value in {
