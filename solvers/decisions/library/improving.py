@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 METHODS = {
     "pile_on": ("greedy", "hadgs", "joint", "neighbourhood", "cp_sat"),
-    "planning": ("greedy", "lns", "cp_sat"),
+    "planning": ("greedy", "lns", "highs", "cp_sat"),
     "sequencing": ("beam", "cp_sat"),
     "rack_allocation": ("greedy", "cp_sat"),
     "placement": ("assignment",),
@@ -41,8 +41,8 @@ METHODS = {
 STEPS = {"lns": 20_000.0, "beam": 400.0, "hadgs": 400.0, "highs": 100.0}
 """Limit of the first round of those who count steps or nodes; the others get `work` seconds."""
 
-STEPS_OF = {"planning": {"lns": 40_000.0}}
-"""The same where a step of a family takes 25 µs, and not milliseconds."""
+STEPS_OF = {"planning": {"lns": 40_000.0, "highs": 10.0}}
+"""The same where a step of a family takes microseconds, or a node seconds."""
 
 LARGEST_EXACT = {"planning": 60_000}
 """Entries (pods times lines times stations) beyond which nobody searches in the exact programme."""
@@ -167,7 +167,7 @@ def _searches(
     for method in METHODS[decision.family]:
         if method in UNLIMITED and number:
             continue
-        if method == "cp_sat" and not _is_searched(decision):
+        if method in ("cp_sat", "highs") and not _is_searched(decision):
             continue
         first = STEPS | STEPS_OF.get(decision.family, {})
         yield method, first.get(method, effort.work) * 4**number

@@ -5,7 +5,7 @@
 """
 
 from rmfs.solvers.models.methods import Methods
-from rmfs.solvers.models.planning import cp_sat, greedy, lns
+from rmfs.solvers.models.planning import cp_sat, greedy, highs, lns
 from rmfs.solvers.models.planning.data import Planning as Planning
 from rmfs.solvers.models.planning.values import Plan as Plan
 from rmfs.solvers.models.planning.values import nothing as nothing
@@ -13,7 +13,7 @@ from rmfs.solvers.models.planning.values import objective as objective
 from rmfs.solvers.models.planning.values import violations as violations
 
 solve = Methods[Planning, Plan](
-    {"cp_sat": cp_sat.solve, "greedy": greedy.solve, "lns": lns.solve},
+    {"cp_sat": cp_sat.solve, "highs": highs.solve, "greedy": greedy.solve, "lns": lns.solve},
     default="lns",
     rule="greedy",
 )

@@ -55,12 +55,13 @@ def hand_made(**changes: Any) -> Planning:
 @pytest.mark.parametrize("sizes", TINY)
 @pytest.mark.parametrize("seed", range(8))
 def test_exact_is_what_enumeration_finds(sizes: dict[str, int], seed: int) -> None:
-    """CP-SAT proves the least objective; the others and the prices keep to their side of it."""
+    """Both solvers prove the least objective; others and prices keep to their side of it."""
     data = planning(**sizes, seed=seed)
     least = best(data)
-    exact = solve(data, "cp_sat")
-    assert exact.status is Status.OPTIMAL
-    assert exact.objective == pytest.approx(least, abs=1e-6)
+    for method in ("cp_sat", "highs"):
+        exact = solve(data, method)
+        assert exact.status is Status.OPTIMAL
+        assert exact.objective == pytest.approx(least, abs=1e-6)
     for method in ("greedy", "lns"):
         found = solve(data, method, bound_steps=30)
         assert found.objective >= least - 1e-6
