@@ -27,22 +27,23 @@ from rmfs.experiments.options import (
     Made,
     Out,
 )
+from rmfs.experiments.showing import (
+    anovas,
+    chosen_table,
+    require_columns,
+    tell_lacking,
+    write_table,
+)
+from rmfs.experiments.showing import goals as goals_of
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from rmfs.experiments.design.planning import Plan
-    from rmfs.experiments.figures.pareto import Goal
-    from rmfs.experiments.tables import Table
 
 app = typer.Typer(help="Experiments: many arms, many seeds, one table.", no_args_is_help=True)
 app.command()(calibrate)
 
 FAILED = 1
 """Exit code where runs failed."""
-
-INCOMPLETE = 3
-"""Exit code where a table or picture shows an experiment that lacks runs."""
 
 
 @app.command("list")
@@ -224,11 +225,11 @@ def table(
     one = opened(design, out)
     made, (frame, note) = one.plan, one.rows()
     chosen = list(columns or tables.COLUMNS)
-    _require_columns(frame, chosen)
+    require_columns(frame, chosen)
     if anova:
-        shown = _anovas(made, frame, chosen, interactions=interactions)
+        shown = anovas(made, frame, chosen, interactions=interactions)
     else:
-        shown = [_table(made, frame, chosen, baseline, confidence, bootstrap=bootstrap)]
+        shown = [chosen_table(made, frame, chosen, baseline, confidence, bootstrap=bootstrap)]
         if across is not None:
             shown = [arranging.across(shown[0], made, across)]
         elif by_factor:
@@ -240,62 +241,12 @@ def table(
         to_csv(frame, rows)
         typer.echo(f"{rows}: {len(frame)} rows written")
     if file is not None:
-        _write_table(shown[0], file, made, frame, chosen)
+        write_table(shown[0], file, made, frame, chosen)
     elif rows is None:
         console = open_console()
         for shown_table in shown:
             console.print(shown_table.rich())
-    _tell_lacking(note, allowed=allow_incomplete)
-
-
-def _write_table(
-    shown: Table, file: Path, made: Plan, frame: pd.DataFrame, columns: list[str]
-) -> None:
-    from rmfs.experiments.provenance import write
-
-    shown.write(file)
-    beside = write(
-        file,
-        frame,
-        design=made.design.name,
-        design_hash=made.hash,
-        columns=columns,
-        caption=shown.caption,
-    )
-    typer.echo(f"{file}: written, with {beside.name}")
-
-
-def _anovas(
-    made: Plan, frame: pd.DataFrame, columns: list[str], *, interactions: bool
-) -> list[Table]:
-    from rmfs.experiments import tables
-    from rmfs.experiments.statistics import anova
-
-    named, factors = made.short_names, made.factors
-    return [
-        tables.effects(
-            anova(frame, column, factors, interactions=interactions, names=named), column
-        )
-        for column in columns
-    ]
-
-
-def _table(
-    made: Plan,
-    frame: pd.DataFrame,
-    columns: list[str],
-    baseline: str | None,
-    confidence: float,
-    *,
-    bootstrap: bool,
-) -> Table:
-    from rmfs.experiments import tables
-
-    method: Any = "bootstrap" if bootstrap else "t"
-    if baseline is not None:
-        made.arm(baseline)
-        return tables.differences(frame, columns, baseline, confidence=confidence, method=method)
-    return tables.means(frame, columns, confidence=confidence, method=method)
+    tell_lacking(note, allowed=allow_incomplete)
 
 
 @app.command()
@@ -344,10 +295,10 @@ def plot(
     made, (frame, note) = one.plan, one.rows()
     chosen = list(columns or KINDS[kind])
     if kind != "progression":
-        _require_columns(frame, chosen)
+        require_columns(frame, chosen)
     folder = one.store.folder
     target = file if file is not None else folder / f"{kind}-{'-'.join(chosen)}.png"
-    wish = Wish(confidence, interactions, tuple(factors or ()), _goals(goals or []), note)
+    wish = Wish(confidence, interactions, tuple(factors or ()), goals_of(goals or []), note)
     draw(kind, made, frame, folder, chosen, target, wish)
     beside = write(
         target,
@@ -360,7 +311,7 @@ def plot(
         **({"note": note} if note else {}),
     )
     typer.echo(f"{target}: written, with {beside.name}")
-    _tell_lacking(note, allowed=allow_incomplete)
+    tell_lacking(note, allowed=allow_incomplete)
 
 
 @app.command()
@@ -392,47 +343,13 @@ def report(
 
     one = opened(design, out)
     chosen = list(columns or tables.COLUMNS)
-    _require_columns(one.rows()[0], chosen)
+    require_columns(one.rows()[0], chosen)
     target = file if file is not None else one.store.folder / "report.html"
     note = write_report(one, target, chosen, baseline=baseline, confidence=confidence)
     typer.echo(f"{target}: written")
-    _tell_lacking(note, allowed=allow_incomplete)
-
-
-def _goals(given: list[str]) -> dict[str, Goal]:
-    """Read the goals of columns."""
-    found: dict[str, Goal] = {}
-    for text in given:
-        column, _, goal = text.partition("=")
-        if goal not in ("more", "less"):
-            raise InputError(f"--goal {text}: expected COLUMN=more or COLUMN=less")
-        found[column] = "more" if goal == "more" else "less"
-    return found
-
-
-def _tell_lacking(note: str, *, allowed: bool) -> None:
-    """Say on the terminal what an experiment lacks, and end with code 3 unless that is allowed."""
-    if note:
-        typer.echo(f"rmfs: {note}", err=True)
-        if not allowed:
-            raise typer.Exit(INCOMPLETE)
+    tell_lacking(note, allowed=allow_incomplete)
 
 
 def _keys(made: Plan, runs: Any) -> list[str]:
     arms = {arm.name: arm for arm in made.arms}
     return [made.job(arms[run.arm], run.replication).key for run in runs]
-
-
-def _require_columns(frame: pd.DataFrame, columns: list[str]) -> None:
-    from rmfs.experiments.statistics.intervals import require
-
-    require(frame, *columns)
-    words = [c for c in columns if not _is_number(frame[c])]
-    if words:
-        raise InputError(f"column {', '.join(words)}: holds no numbers")
-
-
-def _is_number(values: pd.Series) -> bool:
-    from pandas.api.types import is_numeric_dtype
-
-    return bool(is_numeric_dtype(values))

@@ -120,9 +120,9 @@ def compare(
 
     Exit code 3 if runs of an experiment are lacking: a note says how many.
     """
-    from rmfs.experiments.commands import INCOMPLETE
     from rmfs.experiments.compare import compare as compared
     from rmfs.experiments.compare_print import print_comparisons
+    from rmfs.experiments.showing import INCOMPLETE
 
     found = compared(sources, confidence=confidence)
     print_comparisons(found, columns or [], everything=everything)

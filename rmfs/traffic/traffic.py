@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
-
 from rmfs.traffic.core import Options, build, fork, from_bytes, to_bytes
+from rmfs.traffic.readings import Readings
 from rmfs.traffic.settings import COST_TABLE_BYTES, TIME_WINDOWS, PlannerSettings
-from rmfs.traffic.trace import joined_holds
 from rmfs.traffic.vocabulary import CutOff, PlannedMove
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from rmfs.layout.model import Layout
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
 _OWN = {"_layout", "_core", "_options", "advance", "command"}
 
 
-class Traffic:
+class Traffic(Readings):
     """The robots of one layout.
 
     Parameters
@@ -304,16 +303,6 @@ class Traffic:
         """Say what cannot be served with what is closed: robots bound there would wait."""
         return CutOff(*self._core.cut_off())
 
-    def motion(self) -> dict[str, NDArray[Any]]:
-        """Totals per robot since the last reset, up to now, each of shape (R,).
-
-        `distance_m`, `loaded_distance_m`; the times `moving_s`, `turning_s`, `waiting_s` (standing
-        with a way to go), `served_s` (standing at a station), `idle_s`, `transfer_s` (lifting,
-        setting down) and `riding_s` (elevators) add up to the time passed; `queueing_s` counts from
-        entering a queue zone to reaching the station and overlaps with the others.
-        """
-        return self._core.motion()
-
     def count_energy(
         self,
         model: Sequence[float],
@@ -344,28 +333,6 @@ class Traffic:
         level = [0.0] * self._layout.robots if initial_j is None else list(initial_j)
         self._core.count_energy(list(model), list(pods_kg), battery, list(power_w), level)
 
-    def energy(self) -> dict[str, NDArray[Any]]:
-        """Energy per robot, up to now, each of shape (R,).
-
-        Since the last reset, in J: `drive_j`, `turn_j`, `lift_j`, `standby_j`, less
-        `recuperated_j` make `used_j`; `charged_j`, and `charging_s`. Since time zero: `initial_j`
-        + `ever_charged_j` - `ever_used_j` = `level_j`.
-
-        Raises
-        ------
-        ValueError
-            If energy is not counted.
-        """
-        return self._core.energy()
-
-    def used_j(self, robot: int) -> float:
-        """Energy drawn by a robot since time zero, J."""
-        return self._core.used(robot)
-
-    def level_j(self, robot: int) -> float:
-        """Energy in the battery of a robot, J."""
-        return self._core.level(robot)
-
     def set_pod_mass(self, pod: int, kg: float) -> None:
         """Say what a pod weighs with its stock from now on."""
         self._core.set_pod_mass(pod, kg)
@@ -377,101 +344,6 @@ class Traffic:
     def exchange_battery(self, robot: int, level_j: float) -> None:
         """Give a robot that stands still another battery; the difference counts as charged."""
         self._core.exchange_battery(robot, level_j)
-
-    def heat(self) -> dict[str, NDArray[Any]]:
-        """Count visits and standing time of robots that are not idle, since the last reset.
-
-        Per waypoint, shape (N,): `visits`, `waiting_s`, and of these with a pod `loaded_visits`,
-        `loaded_waiting_s`. A row for each waypoint and purpose for which robots were there, shape
-        (M,): `stays_waypoint`, `stays_purpose`, `stays_visits`, `stays_waiting_s`. The purpose is
-        the station a robot is bound for or stands at (on the way to the pod, too), S for storing or
-        fetching a pod otherwise, S + 1 for the rest.
-        """
-        counted: dict[str, NDArray[Any]] = self._core.heat()
-        at, waypoints = counted["stays_waypoint"], len(counted["loaded_visits"])
-        visits = np.bincount(at, counted["stays_visits"], waypoints).astype(np.int64)
-        waiting_s = np.bincount(at, counted["stays_waiting_s"], waypoints)
-        return {"visits": visits, "waiting_s": waiting_s, **counted}
-
-    def edges(self) -> dict[str, NDArray[Any]]:
-        """Edges and elevator rides used since the last reset, by their ends.
-
-        `from_wp`, `to_wp`, `passages`, and of these `loaded_passages` with a pod.
-        """
-        return self._core.edges()
-
-    def trips(self) -> dict[str, NDArray[Any]]:
-        """Trips finished since the last reset, in order of their end.
-
-        `robot`, `kind` (`TripKind`), `t0_us`, `t1_us` (a trip to a station ends at its queue
-        zone), `from_wp`, `to_wp`, `loaded`, `distance_m`, `unhindered_s` (lower bound of the
-        time from rest to rest), `energy_j` (0 if energy is not counted).
-        """
-        return self._core.trips()
-
-    def trace(self) -> dict[str, NDArray[Any]]:
-        """Every piece of motion so far, sorted by robot and time.
-
-        `robot`, `t0_us`, `t1_us`, `kind` (`Piece`), `from_wp`, `to_wp`, `heading0_rad`,
-        `heading1_rad`, `pod` (carried, -1 without).
-
-        Raises
-        ------
-        ValueError
-            If the trace is not recorded.
-        """
-        return joined_holds(self._core.trace(0)[0])
-
-    def trace_after(self, known: int) -> tuple[dict[str, NDArray[Any]], int]:
-        """The trace without what is known of it already: for who follows a run as it goes.
-
-        The motion each robot is in the middle of is among the rows, and comes again as long as it
-        lasts: a row takes the place of what was known of its robot from `t0_us` on. Where a robot
-        stood while this was called, several rows follow each other (`joined_holds`).
-
-        Parameters
-        ----------
-        known
-            The number returned by the call before; 0 at first.
-
-        Returns
-        -------
-        tuple
-            The columns of `trace`, and the number to give next time.
-
-        Raises
-        ------
-        ValueError
-            If the trace is not recorded.
-        """
-        return self._core.trace(known)
-
-    def counters(self) -> dict[str, float]:
-        """Count the work of planning.
-
-        `plans` (legs), `plan_failures`, `replans`, `refusals` (runs a rolling planner wanted that
-        were not free), `improvements`, `expansions`, `cost_tables`, and wall time, `planning_s`.
-        Where motions can be late: `motions`, `late_motions`, `lateness_s` in all, and `repairs`.
-        """
-        counts: dict[str, float] = dict(self._core.counters())
-        counts["planning_s"] = counts.pop("planning_ns") / 1e9
-        counts["lateness_s"] = counts.pop("lateness_us") / 1e6
-        return counts
-
-    def call_times_s(self) -> NDArray[np.float64]:
-        """Wall time of each call of the planner since the last reset, in seconds.
-
-        A planner per leg is called for one robot, a rolling one for all that drive.
-        """
-        return self._core.call_times() / 1e9
-
-    def reset_statistics(self) -> None:
-        """Forget totals, heat, trips and counters; the trace stays whole."""
-        self._core.reset_statistics()
-
-    def state_report(self) -> str:
-        """One line per robot, for a report when nothing can move any more."""
-        return self._core.state_report()
 
 
 def _of(core: Core, options: Options) -> dict[str, Any]:

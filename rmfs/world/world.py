@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from math import isnan
 from typing import TYPE_CHECKING
 
+from rmfs.world.order_operations import OrderOperations
 from rmfs.world.orders import Order
-from rmfs.world.state import WorldState
 from rmfs.world.tasks import ParkTask, Pick, PickTask, ReplenishTask, RepositionTask, RestTask
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
-
     from rmfs.world.charging import ChargeTask
-    from rmfs.world.orders import Bundle, OrderLine
+    from rmfs.world.orders import Bundle
     from rmfs.world.robots import Robot
-    from rmfs.world.stations import PickStation
     from rmfs.world.tasks import Task, VisitTask
 
 
-class World(WorldState):
+class World(OrderOperations):
     """A warehouse and the operations that change it.
 
     Operations raise ValueError where they would break a rule (a pod claimed twice, a unit bound
@@ -34,200 +30,12 @@ class World(WorldState):
             self.inventory.stock(pod, sku, count)
         self.units_initial += sum(units)
 
-    def add_order(self, order: Order) -> None:
-        """Let an order join the backlog."""
-        for line in order.lines:
-            self.inventory.demand(line.sku, line.units)
-        self.orders.add(order)
-        self.orders_created += 1
-
-    def cut_order(self, order: Order, keep: Mapping[int, int]) -> None:
-        """Let units of an order of the backlog go; without any left, the order is given up.
-
-        Parameters
-        ----------
-        keep
-            Units left of each SKU.
-
-        Raises
-        ------
-        ValueError
-            If it is not in the backlog, is in a pool, or has been split.
-        """
-        if order not in self.orders or order.queued_at >= 0 or order.parts:
-            raise ValueError(f"order {order.index} cannot lose units")
-        for line in order.lines:
-            self.inventory.undemand(line.sku, line.units - keep.get(line.sku, 0))
-        if any(keep.values()):
-            order.cut(keep)
-            self.orders.lines_changed(order)
-        else:
-            self.orders.remove(order)
-            order.cut(keep)
-            order.cancelled_s = self.now_s
-
     def add_bundle(self, bundle: Bundle) -> None:
         """Let a bundle join the backlog."""
         self.bundles.add(bundle)
         self.bundles_created += 1
         self.unstored_space += bundle.space
         self._incoming[bundle.sku] += bundle.units
-
-    # --- orders ---------------------------------------------------------------------------------
-
-    def queue_order(self, order: Order, station: int) -> None:
-        """Let an order of the backlog join the pool of a pick station.
-
-        It needs no slot and keeps its place in the backlog, but pods can be bound to it.
-        """
-        if order.queued_at >= 0:
-            raise ValueError(f"order {order.index} is queued at station {order.queued_at} already")
-        if order not in self.orders:
-            raise ValueError(f"order {order.index} is not in the backlog")
-        target = self.pick_stations[station]
-        target.queued[order.index] = order
-        target.queued_requests.add(order)
-        order.queued_at = station
-        order.queued_s = self.now_s
-        self.orders.queue_changed(order)
-
-    def unqueue_all(self) -> None:
-        """Empty all pools."""
-        for station in self.pick_stations:
-            for order in list(station.queued.values()):
-                self.unqueue_order(order)
-
-    def unqueue_order(self, order: Order) -> None:
-        """Take an order out of its pool; requests bound to pods are open again."""
-        station = self.pick_stations[order.queued_at]
-        for task in station.tasks.values():
-            self._give_back(task, [pick for pick in task.picks if pick.line.order is order])
-        self._leave_pool(order)
-        self.orders.queue_changed(order)
-
-    def assign_order(self, order: Order, station: int) -> Order:
-        """Put an order of the backlog on a pick station and open its extract requests.
-
-        Requests of a queued order to which pods were bound meanwhile stay bound. What is left of a
-        split order joins its part at the station, if there is one.
-
-        Returns
-        -------
-        Order
-            What has the slot: the order, or its part.
-
-        Raises
-        ------
-        ValueError
-            If the order is queued at another station, or needs a slot and the station is inactive
-            or has none free.
-        """
-        target = self.pick_stations[station]
-        joins = order.index in target.orders
-        if not joins and (not target.active or target.free_slots <= 0):
-            raise ValueError(f"station {station} takes no order now")
-        if order.queued_at >= 0:
-            if order.queued_at != station:
-                raise ValueError(f"order {order.index} is queued at station {order.queued_at}")
-            self._leave_pool(order)
-        if joins:
-            return self.assign_lines(order, station, [line.sku for line in order.lines])
-        self.orders.remove(order)
-        order.station = station
-        if isnan(order.assigned_s):
-            order.assigned_s = self.now_s
-        order.slots_taken += 1
-        target.orders[order.index] = order
-        target.changed()
-        self._open(target, order.lines)
-        return order
-
-    def assign_lines(self, order: Order, station: int, skus: Collection[int]) -> Order:
-        """Put some lines of an order of the backlog on a pick station: the order is split.
-
-        They join the part of the order that is there, or become a part of their own, which takes
-        a slot. If they are all that is left and there is no such part, the order takes the slot.
-
-        Returns
-        -------
-        Order
-            What now is at the station: the part, or the order itself.
-
-        Raises
-        ------
-        ValueError
-            If these are no lines of an order of the backlog that is in no pool, or they need a slot
-            and the station is inactive or has none free.
-        """
-        target = self.pick_stations[station]
-        lines = tuple(line for line in order.lines if line.sku in skus)
-        if not lines or order not in self.orders or order.queued_at >= 0:
-            raise ValueError(f"order {order.index} cannot give these lines")
-        part = target.orders.get(order.index)
-        if part is None:
-            if len(lines) == len(order.lines):
-                return self.assign_order(order, station)
-            if not target.active or target.free_slots <= 0:
-                raise ValueError(f"station {station} takes no order now")
-            now_s = self.now_s
-            part = Order(
-                order.index, order.created_s, order.due_s, (), 0, 0, station, now_s, whole=order
-            )
-            part.priority, part.weight = order.priority, order.weight
-            order.parts.append(part)
-            order.slots_taken += 1
-            self.split_orders[order.index] = order
-            target.orders[order.index] = part
-            target.changed()
-        if isnan(order.assigned_s):
-            order.assigned_s = self.now_s
-        part.take_over(lines)
-        if order.lines:
-            self.orders.lines_changed(order)
-        else:
-            self.orders.remove(order)
-            order.station = station
-        self._open(target, lines)
-        return part
-
-    def _open(self, station: PickStation, lines: tuple[OrderLine, ...]) -> None:
-        """Open the extract requests of lines that have just come to a station with their order."""
-        station.requests.add_lines(lines)
-        for line in lines:
-            self._lines[station.index, line.sku] += 1
-            self.inventory.commit(line.sku, line.open_units)
-
-    def _leave_pool(self, order: Order) -> None:
-        station = self.pick_stations[order.queued_at]
-        del station.queued[order.index]
-        station.queued_requests.remove(order)
-        order.queued_at = -1
-
-    def complete_order(self, order: Order) -> Order | None:
-        """Take an order, or a part of one, whose units are all picked off its station.
-
-        Returns
-        -------
-        Order or None
-            The order that is complete now as the customer wants it; None if other lines of it are
-            still open.
-        """
-        if order.unpicked_units:
-            raise ValueError(f"order {order.index} lacks {order.unpicked_units} units")
-        station = self.pick_stations[order.station]
-        del station.orders[order.index]
-        station.changed()
-        for line in order.lines:
-            self._lines[order.station, line.sku] -= 1
-        order.completed_s = self.now_s
-        whole = order if order.whole is None else order.whole
-        whole.slots_taken -= 1
-        if whole.slots_taken or whole in self.orders:
-            return None
-        whole.completed_s = self.now_s
-        self.orders_completed += 1
-        self.split_orders.pop(whole.index, None)
-        return whole
 
     # --- bundles --------------------------------------------------------------------------------
 
@@ -326,16 +134,6 @@ class World(WorldState):
         picks = [pick for pick in task.picks if pick.line.order.station < 0]
         self._give_back(task, picks)
         return len(picks)
-
-    def _give_back(self, task: PickTask, picks: list[Pick]) -> None:
-        pool = self.pick_stations[task.station].queued_requests
-        for pick in reversed(picks):
-            line = pick.line
-            task.picks.remove(pick)
-            pool.reopen(line)
-            self.inventory.unbind(task.pod, line.sku, 1)
-            self.inventory.commit(line.sku, -1)
-            self.orders.changed(line)
 
     def start_replenish(self, robot: Robot, pod: int, station: int) -> ReplenishTask:
         """Make the task to bring a pod to a replenishment station for all its bundles there."""

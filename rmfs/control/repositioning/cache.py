@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
     from rmfs.world.robots import Robot
 
+    Indices = NDArray[np.intp]
 
 _EQUALS = 32
 """Of so many equal pods at most, those with the lowest numbers, the moves are measured."""
@@ -90,11 +91,7 @@ class Cache(Pausing[CacheMoveParameters]):
         )
 
     def _move_in(
-        self,
-        robot: Robot,
-        pods: NDArray[np.intp],
-        places: NDArray[np.intp],
-        stations: NDArray[np.intp],
+        self, robot: Robot, pods: Indices, places: Indices, stations: Indices
     ) -> Move | None:
         pods = self._on_tier(robot, pods[self._zones.cache_of[places] < 0])
         if not len(pods) or not len(stations):
@@ -118,11 +115,7 @@ class Cache(Pausing[CacheMoveParameters]):
         return length, int(pod), Move(int(pod), place)
 
     def _move_out(
-        self,
-        robot: Robot,
-        pods: NDArray[np.intp],
-        places: NDArray[np.intp],
-        stations: NDArray[np.intp],
+        self, robot: Robot, pods: Indices, places: Indices, stations: Indices
     ) -> Move | None:
         empty = self.view.storage.is_empty & self._outside
         inside = np.isin(self._zones.cache_of[places], stations)

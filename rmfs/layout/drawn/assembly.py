@@ -8,9 +8,10 @@ import numpy as np
 
 from rmfs.errors import InputError
 from rmfs.layout.drawn.drawing import Ground
+from rmfs.layout.equipping import pick_stations, replenishment_stations
 from rmfs.layout.generator.placement import draw_pods, draw_robots
 from rmfs.layout.graph import compressed
-from rmfs.layout.model import Layout, PickStation, ReplenishmentStation, RobotKind, Tier
+from rmfs.layout.model import Layout, RobotKind, Tier
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -48,6 +49,10 @@ def assembled(drawing: Drawing, given: Equipment, name: str) -> Layout:
     pods = _pods(drawing, given, number)
     robots = _robots(drawing, given, number)
     height, width = drawing.ground.shape
+
+    def stands(kind: str) -> list[tuple[tuple[int, ...], int]]:
+        return _ranked([stand for stand in drawing.stands if stand.kind == kind], number)
+
     return Layout(
         name=given.name or name,
         tiers=(Tier(width * given.cell_m, height * given.cell_m),),
@@ -58,8 +63,8 @@ def assembled(drawing: Drawing, given: Equipment, name: str) -> Layout:
         edge_target=edge_target,
         is_storage=ground == Ground.STORAGE,
         is_queue=ground == Ground.QUEUE,
-        pick_stations=_pick_stations(drawing, given, number),
-        replenishment_stations=_replenishment_stations(drawing, given, number),
+        pick_stations=pick_stations(stands("pick"), given),
+        replenishment_stations=replenishment_stations(stands("replenishment"), given),
         elevators=(),
         pod_waypoint=pods,
         pod_capacity=np.full(len(pods), given.pod_capacity),
@@ -113,41 +118,6 @@ def _robots(drawing: Drawing, given: Equipment, number: NDArray[np.int32]) -> ND
             f"{len(there) + len(room)}, as many as there is room for on aisles (given: {wanted})"
         )
     return np.concatenate([there, draw_robots(room, wanted - len(there), given.seed, 0)])
-
-
-def _pick_stations(
-    drawing: Drawing, given: Equipment, number: NDArray[np.int32]
-) -> tuple[PickStation, ...]:
-    stands = [stand for stand in drawing.stands if stand.kind == "pick"]
-    return tuple(
-        PickStation(
-            waypoint=queue[0],
-            queue=queue,
-            radius_m=given.station_radius_m,
-            order_slots=given.order_slots,
-            unit_transfer_s=given.unit_transfer_s,
-            unit_pick_s=given.unit_pick_s,
-            activation=rank,
-        )
-        for queue, rank in _ranked(stands, number)
-    )
-
-
-def _replenishment_stations(
-    drawing: Drawing, given: Equipment, number: NDArray[np.int32]
-) -> tuple[ReplenishmentStation, ...]:
-    stands = [stand for stand in drawing.stands if stand.kind == "replenishment"]
-    return tuple(
-        ReplenishmentStation(
-            waypoint=queue[0],
-            queue=queue,
-            radius_m=given.station_radius_m,
-            capacity=given.replenishment_station_capacity,
-            bundle_transfer_s=given.bundle_transfer_s,
-            activation=rank,
-        )
-        for queue, rank in _ranked(stands, number)
-    )
 
 
 def _ranked(stands: list[Stand], number: NDArray[np.int32]) -> list[tuple[tuple[int, ...], int]]:

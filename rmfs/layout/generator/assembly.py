@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rmfs.layout.equipping import pick_stations, replenishment_stations
 from rmfs.layout.generator.buffers import Buffer, buffer
 from rmfs.layout.generator.compass import SIDES
 from rmfs.layout.generator.placement import draw_pods, draw_robots
@@ -23,8 +24,6 @@ from rmfs.layout.model import (
     Elevator,
     Layout,
     OtherStation,
-    PickStation,
-    ReplenishmentStation,
     RobotKind,
     Tier,
 )
@@ -92,8 +91,10 @@ class Assembly:
             edge_target=edge_target,
             is_storage=np.tile(kinds == Kind.STORAGE, len(tiers)),
             is_queue=np.tile(kinds == Kind.BUFFER, len(tiers)),
-            pick_stations=self._pick_stations(),
-            replenishment_stations=self._replenishment_stations(),
+            pick_stations=pick_stations(self._ranked("pick"), self._parameters),
+            replenishment_stations=replenishment_stations(
+                self._ranked("replenishment"), self._parameters
+            ),
             other_stations=self._other_stations(),
             elevators=self._elevators(),
             pod_waypoint=pod_waypoint,
@@ -127,36 +128,10 @@ class Assembly:
         offsets = [self._offset(tier) for tier in range(self._parameters.tiers)]
         return [(tail + offset, head + offset) for offset in offsets for tail, head in edges]
 
-    def _pick_stations(self) -> tuple[PickStation, ...]:
-        parameters = self._parameters
-        found = self._stations("pick")
-        return tuple(
-            PickStation(
-                waypoint=queue[0],
-                queue=queue,
-                radius_m=parameters.station_radius_m,
-                order_slots=parameters.order_slots,
-                unit_transfer_s=parameters.unit_transfer_s,
-                unit_pick_s=parameters.unit_pick_s,
-                activation=rank,
-            )
-            for queue, rank in zip(found, self._activation(found), strict=True)
-        )
-
-    def _replenishment_stations(self) -> tuple[ReplenishmentStation, ...]:
-        parameters = self._parameters
-        found = self._stations("replenishment")
-        return tuple(
-            ReplenishmentStation(
-                waypoint=queue[0],
-                queue=queue,
-                radius_m=parameters.station_radius_m,
-                capacity=parameters.replenishment_station_capacity,
-                bundle_transfer_s=parameters.bundle_transfer_s,
-                activation=rank,
-            )
-            for queue, rank in zip(found, self._activation(found), strict=True)
-        )
+    def _ranked(self, kind: str) -> list[tuple[tuple[int, ...], int]]:
+        """Return the queue of each station of a kind, and when it is switched on."""
+        found = self._stations(kind)
+        return [*zip(found, self._activation(found), strict=True)]
 
     def _other_stations(self) -> tuple[OtherStation, ...]:
         parameters = self._parameters

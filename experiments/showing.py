@@ -1,0 +1,115 @@
+"""What `rmfs experiment` shows: tables as they were asked for, and what they lack."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pandas as pd
+
+    from rmfs.experiments.design.planning import Plan
+    from rmfs.experiments.figures.pareto import Goal
+    from rmfs.experiments.tables import Table
+
+INCOMPLETE = 3
+"""Exit code where a table or picture shows an experiment that lacks runs."""
+
+
+def write_table(
+    shown: Table, file: Path, made: Plan, frame: pd.DataFrame, columns: list[str]
+) -> None:
+    """Write a table into a file, and beside it where its numbers come from."""
+    from rmfs.experiments.provenance import write
+
+    shown.write(file)
+    beside = write(
+        file,
+        frame,
+        design=made.design.name,
+        design_hash=made.hash,
+        columns=columns,
+        caption=shown.caption,
+    )
+    typer.echo(f"{file}: written, with {beside.name}")
+
+
+def anovas(
+    made: Plan, frame: pd.DataFrame, columns: list[str], *, interactions: bool
+) -> list[Table]:
+    """Analyse the variance of each column."""
+    from rmfs.experiments import tables
+    from rmfs.experiments.statistics import anova
+
+    named, factors = made.short_names, made.factors
+    return [
+        tables.effects(
+            anova(frame, column, factors, interactions=interactions, names=named), column
+        )
+        for column in columns
+    ]
+
+
+def chosen_table(
+    made: Plan,
+    frame: pd.DataFrame,
+    columns: list[str],
+    baseline: str | None,
+    confidence: float,
+    *,
+    bootstrap: bool,
+) -> Table:
+    """Make the table of means, or of differences to a baseline."""
+    from rmfs.experiments import tables
+
+    method: Any = "bootstrap" if bootstrap else "t"
+    if baseline is not None:
+        made.arm(baseline)
+        return tables.differences(frame, columns, baseline, confidence=confidence, method=method)
+    return tables.means(frame, columns, confidence=confidence, method=method)
+
+
+def goals(given: list[str]) -> dict[str, Goal]:
+    """Read the goals of columns."""
+    found: dict[str, Goal] = {}
+    for text in given:
+        column, _, goal = text.partition("=")
+        if goal not in ("more", "less"):
+            raise InputError(f"--goal {text}: expected COLUMN=more or COLUMN=less")
+        found[column] = "more" if goal == "more" else "less"
+    return found
+
+
+def tell_lacking(note: str, *, allowed: bool) -> None:
+    """Say on the terminal what an experiment lacks, and end with code 3 unless that is allowed."""
+    if note:
+        typer.echo(f"rmfs: {note}", err=True)
+        if not allowed:
+            raise typer.Exit(INCOMPLETE)
+
+
+def require_columns(frame: pd.DataFrame, columns: list[str]) -> None:
+    """Refuse columns that the rows do not have, or that hold no numbers.
+
+    Raises
+    ------
+    InputError
+        If there is one.
+    """
+    from rmfs.experiments.statistics.intervals import require
+
+    require(frame, *columns)
+    words = [c for c in columns if not _is_number(frame[c])]
+    if words:
+        raise InputError(f"column {', '.join(words)}: holds no numbers")
+
+
+def _is_number(values: pd.Series) -> bool:
+    from pandas.api.types import is_numeric_dtype
+
+    return bool(is_numeric_dtype(values))
