@@ -77,6 +77,9 @@ def main(arguments: list[str] | None = None) -> None:
         sizes = given.size or ["small", "real"]
         families = given.family or list(TIMED)
         timed = pd.DataFrame(_timed(library, families, sizes, given.questions, given.seeds))
+        if rows.exists():  # what is not timed now stays
+            before = pd.read_csv(rows)
+            timed = pd.concat([before[~before["family"].isin(families)], timed])
         _publish(rows, timed.to_csv(index=False), machine=platform.processor() or "unknown")
     known = library.frame()
     publish_table(given.published / "decision-library.md", state(known))
