@@ -12,6 +12,7 @@ from rmfs.control.trackers import Tracker
 from rmfs.control.travel import Travel
 from rmfs.control.view import View
 from rmfs.simulation.arrays import ArrayPickler
+from rmfs.world.news import Follower
 
 if TYPE_CHECKING:
     from rmfs.control.base import Controller
@@ -52,6 +53,9 @@ class RuleState:
         remembered: dict[str, Any] = _Restorer(io.BytesIO(kept.content), kept.shared).load()
         vars(controller).clear()
         vars(controller).update(remembered)
+        for thing in kept.shared:
+            if isinstance(thing, Follower):
+                thing.begin_anew()
         for call, stale, done in kept.counted:
             call.stale, call.done = stale, dict(done)
 

@@ -54,11 +54,15 @@ class Follower:
         self.changed = set(range(news.count))
         news.keep(self)
 
+    def begin_anew(self) -> None:
+        """Let everything count as changed: who follows has forgotten what it knew."""
+        self.changed = set(range(self._news.count))
+
     def take(self) -> set[int]:
         """Hand over the numbers of what has changed since the last time."""
         if not self._news.keeps(self):
             self._news.keep(self)
-            self.changed = set(range(self._news.count))
+            self.begin_anew()
         changed = self.changed
         if changed:
             self.changed = set()

@@ -38,6 +38,13 @@ def test_who_had_to_go_is_told_of_everything() -> None:
     assert others[-1].take() == {0, 1}
 
 
+def test_who_has_forgotten_is_told_of_everything() -> None:
+    follower = Follower(News(2))
+    follower.take()
+    follower.begin_anew()
+    assert follower.take() == {0, 1}
+
+
 def test_a_copy_follows_the_copy_of_its_news() -> None:
     news = News(2)
     follower = Follower(news)
