@@ -229,7 +229,7 @@ streams, remark, allow_not_well_formed, traffic_maker
         """
         return forking.fork(self)
 
-    def save(self, path: Path) -> None:
+    def save(self, path: str | Path) -> None:
         """Write the simulation as it is into a file, from which `load` goes on.
 
         Raises
@@ -237,10 +237,10 @@ streams, remark, allow_not_well_formed, traffic_maker
         InputError
             If the file cannot be written, or the pacing is `wall`.
         """
-        saving.save(self, path)
+        saving.save(self, Path(path))
 
     @classmethod
-    def load(cls, path: Path) -> Self:
+    def load(cls, path: str | Path) -> Self:
         """Go on from a file that `save` has written, to the same end, bit for bit.
 
         The file holds pickled objects, which can run any code: load only what you trust.
@@ -250,7 +250,7 @@ streams, remark, allow_not_well_formed, traffic_maker
         InputError
             If it is no such file, is damaged, or was written by another version of the code.
         """
-        return saving.load(cls, path)
+        return saving.load(cls, Path(path))
 
     def result(self) -> Run:
         """Return the run: its footprint, its tables, its trace.

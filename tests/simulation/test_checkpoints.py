@@ -45,8 +45,8 @@ def test_a_decision_that_waits_is_saved(tmp_path: Path) -> None:
     for _ in range(8):
         take(run.step())
     pending = run.step()
-    run.save(tmp_path / "file")
-    again = rmfs.Simulation.load(tmp_path / "file")
+    run.save(str(tmp_path / "file"))
+    again = rmfs.Simulation.load(str(tmp_path / "file"))
     assert repr(again.decision) == repr(pending)
     for one in (run, again):
         while (decision := one.step()) is not None:
@@ -72,7 +72,7 @@ def test_checkpoints_are_left_on_the_way_and_removed_at_the_end(tmp_path: Path) 
 def test_other_inputs_are_refused(tmp_path: Path) -> None:
     run = small()
     run.run_until(100.0)
-    run.save(tmp_path / "file")
+    run.save(str(tmp_path / "file"))
     with pytest.raises(InputError, match="its run had another seed: begin anew"):
         resumed(tmp_path / "file", small(seed=3))
     with pytest.raises(InputError, match="its run had another controllers: begin anew"):
