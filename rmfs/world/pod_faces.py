@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
+from rmfs.world.pod_parts import PodParts
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
     from rmfs.scenario.parameters.pickers import Faces
 
-_HAIR = 1e-9
-"""Rounding of sums of space, as a share."""
 
-
-class PodFaces:
+class PodFaces(PodParts):
     """On which face of its pod every unit lies.
 
-    Each face has an equal part of the pod's capacity. A bundle goes to the face with most room, and
-    what does not fit there to the next; what fits on none to the face with most room all the same.
+    A bundle goes to the face with most room, and what does not fit there to the next.
 
     Parameters
     ----------
@@ -29,36 +26,16 @@ class PodFaces:
         Of each SKU, shape (K,).
     capacity
         Of each pod, shape (P,).
-
-    Attributes
-    ----------
-    used
-        Space in use per pod and face, shape (P, F).
     """
 
     def __init__(
         self, given: Faces, space_per_unit: NDArray[np.float64], capacity: NDArray[np.float64]
     ) -> None:
-        self._space = space_per_unit.tolist()
-        self._capacity = (capacity / given.count).tolist()
-        self.used = np.zeros((len(capacity), given.count))
-        self._units: dict[tuple[int, int], list[int]] = {}
+        super().__init__(given.count, space_per_unit, capacity)
 
-    def put(self, pod: int, sku: int, units: int) -> None:
-        """Store units of a SKU."""
-        space, used = self._space[sku], self.used[pod]
-        lying = self._units.setdefault((pod, sku), [0] * len(used))
-        for face in np.argsort(used, kind="stable").tolist():
-            room = self._capacity[pod] * (1.0 + _HAIR) - float(used[face])
-            fits = min(units, max(int(room / space), 0))
-            lying[face] += fits
-            used[face] += fits * space
-            units -= fits
-            if not units:
-                return
-        face = int(used.argmin())
-        lying[face] += units
-        used[face] += units * space
+    def filled(self, pod: int, sku: int) -> list[int]:
+        """Return the faces, that with most room first."""
+        return self.roomiest_first(pod)
 
     def take(self, pod: int, sku: int, shown: int) -> int:
         """Take a unit from the face that is shown, else from that with most; returns the face.
@@ -70,20 +47,10 @@ class PodFaces:
         """
         lying = self._units[pod, sku]
         face = shown if self.has(pod, sku, shown) else lying.index(max(lying))
-        lying[face] -= 1
-        self.used[pod, face] -= self._space[sku]  # multiples of 2**-20: the sums are exact
-        if not any(lying):
-            del self._units[pod, sku]
+        self._take_from(pod, sku, face)
         return face
 
     def has(self, pod: int, sku: int, face: int) -> bool:
         """Whether a face has a unit of a SKU."""
-        return face >= 0 and self._units.get((pod, sku), self._nothing)[face] > 0
-
-    def units(self, pod: int, sku: int) -> int:
-        """Return how many units of a SKU lie on a pod."""
-        return sum(self._units.get((pod, sku), ()))
-
-    @property
-    def _nothing(self) -> list[int]:
-        return [0] * self.used.shape[1]
+        lying = self._units.get((pod, sku))
+        return face >= 0 and lying is not None and lying[face] > 0

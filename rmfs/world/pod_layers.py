@@ -6,22 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable
+from rmfs.world.pod_parts import PodParts
 
+if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rmfs.scenario.parameters.pickers import Layers
 
-_HAIR = 1e-9
-"""Rounding of sums of space, as a share."""
 
-
-class PodLayers:
+class PodLayers(PodParts):
     """Where in its pod every unit lies.
-
-    Each layer has an equal part of the pod's capacity. What fits into no layer, though the pod has
-    room for it in all, goes to the layer with most room.
 
     Parameters
     ----------
@@ -33,11 +27,6 @@ class PodLayers:
         Of each SKU, shape (K,).
     capacity
         Of each pod, shape (P,).
-
-    Attributes
-    ----------
-    used
-        Space in use per pod and layer, shape (P, L).
     """
 
     def __init__(
@@ -47,46 +36,20 @@ class PodLayers:
         popularity: NDArray[np.float64],
         capacity: NDArray[np.float64],
     ) -> None:
-        self._given = given
-        self._space = space_per_unit.tolist()
         layers = len(given.time_factors)
+        super().__init__(layers, space_per_unit, capacity)
+        self._given = given
         self._by_time = sorted(range(layers), key=lambda layer: given.time_factors[layer])
         self._class = _classes(popularity, layers).tolist()
-        self._capacity = (capacity / layers).tolist()
-        self.used = np.zeros((len(capacity), layers))
-        self._units: dict[tuple[int, int], list[int]] = {}
-
-    def put(self, pod: int, sku: int, units: int) -> None:
-        """Store units of a SKU."""
-        space, used = self._space[sku], self.used[pod]
-        lying = self._units.setdefault((pod, sku), [0] * len(used))
-        for layer in self._order(pod, sku):
-            room = self._capacity[pod] * (1.0 + _HAIR) - float(used[layer])
-            fits = min(units, max(int(room / space), 0))
-            lying[layer] += fits
-            used[layer] += fits * space
-            units -= fits
-            if not units:
-                return
-        layer = int(used.argmin())
-        lying[layer] += units
-        used[layer] += units * space
 
     def take(self, pod: int, sku: int) -> int:
         """Take a unit from the fastest layer that has one; returns the layer."""
         lying = self._units[pod, sku]
         layer = next(layer for layer in self._by_time if lying[layer])
-        lying[layer] -= 1
-        self.used[pod, layer] -= self._space[sku]  # multiples of 2**-20: the sums are exact
-        if not any(lying):
-            del self._units[pod, sku]
+        self._take_from(pod, sku, layer)
         return layer
 
-    def units(self, pod: int, sku: int) -> int:
-        """Return how many units of a SKU lie in a pod."""
-        return sum(self._units.get((pod, sku), ()))
-
-    def _order(self, pod: int, sku: int) -> Iterable[int]:
+    def filled(self, pod: int, sku: int) -> list[int]:
         """Return the layers in the order in which they are filled."""
         if self._given.storing == "golden":
             return self._by_time
@@ -94,7 +57,7 @@ class PodLayers:
             own = self._class[sku]
             ranks = sorted(range(len(self._by_time)), key=lambda rank: (abs(rank - own), rank))
             return [self._by_time[rank] for rank in ranks]
-        return [int(layer) for layer in np.argsort(self.used[pod], kind="stable")]
+        return self.roomiest_first(pod)
 
 
 def _classes(popularity: NDArray[np.float64], layers: int) -> NDArray[np.int64]:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING
 
 from rmfs.solvers.models.backends import highs
-from rmfs.solvers.models.planning import greedy
-from rmfs.solvers.models.planning.outcome import better
-from rmfs.solvers.models.planning.program import Programme
-from rmfs.solvers.models.planning.values import objective
-from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
+from rmfs.solvers.models.planning.exact import by_programme
+from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,20 +39,4 @@ def solve(
     bound_steps
         Not needed.
     """
-    began = time.perf_counter()
-    first = greedy.solve(data, start=start, pods=pods).required
-    programme = Programme(data)
-    build_s = time.perf_counter() - began
-    found = highs.solve(programme.linear, limits, seed=seed, start=programme.columns(first))
-    plan = first if found.x is None else better(data, programme.plan(found.x), first)
-    value = objective(data, plan)
-    return Solution(
-        values=plan,
-        objective=value,
-        bound=min(found.bound, value),
-        status=Status.OPTIMAL if found.status is Status.OPTIMAL else Status.FEASIBLE,
-        backend=found.backend,
-        wall_s=time.perf_counter() - began,
-        build_s=build_s + found.build_s,
-        work=found.work,
-    )
+    return by_programme(highs, data, limits, seed=seed, start=start, pods=pods)

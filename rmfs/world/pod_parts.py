@@ -1,0 +1,81 @@
+"""Parts of pods, such as layers or faces: which of them the units of each SKU lie in."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+_HAIR = 1e-9
+"""Rounding of sums of space, as a share."""
+
+
+class PodParts:
+    """In which part of its pod every unit lies.
+
+    Each part has an equal share of the pod's capacity. What fits into no part, though the pod has
+    room for it in all, goes to the part with most room.
+
+    Parameters
+    ----------
+    parts
+        How many there are.
+    space_per_unit
+        Of each SKU, shape (K,).
+    capacity
+        Of each pod, shape (P,).
+
+    Attributes
+    ----------
+    used
+        Space in use per pod and part, shape (P, parts).
+    """
+
+    def __init__(
+        self, parts: int, space_per_unit: NDArray[np.float64], capacity: NDArray[np.float64]
+    ) -> None:
+        self._space = space_per_unit.tolist()
+        self._capacity = (capacity / parts).tolist()
+        self.used = np.zeros((len(capacity), parts))
+        self._units: dict[tuple[int, int], list[int]] = {}
+
+    @abstractmethod
+    def filled(self, pod: int, sku: int) -> Iterable[int]:
+        """Return the parts in the order in which they are filled with a SKU."""
+
+    def put(self, pod: int, sku: int, units: int) -> None:
+        """Store units of a SKU."""
+        space, used = self._space[sku], self.used[pod]
+        lying = self._units.setdefault((pod, sku), [0] * len(used))
+        for part in self.filled(pod, sku):
+            room = self._capacity[pod] * (1.0 + _HAIR) - float(used[part])
+            fits = min(units, max(int(room / space), 0))
+            lying[part] += fits
+            used[part] += fits * space
+            units -= fits
+            if not units:
+                return
+        part = int(used.argmin())
+        lying[part] += units
+        used[part] += units * space
+
+    def units(self, pod: int, sku: int) -> int:
+        """Return how many units of a SKU lie in a pod."""
+        return sum(self._units.get((pod, sku), ()))
+
+    def roomiest_first(self, pod: int) -> list[int]:
+        """Sort the parts of a pod, that with most room first."""
+        return [int(part) for part in np.argsort(self.used[pod], kind="stable")]
+
+    def _take_from(self, pod: int, sku: int, part: int) -> None:
+        lying = self._units[pod, sku]
+        lying[part] -= 1
+        self.used[pod, part] -= self._space[sku]  # multiples of 2**-20: the sums are exact
+        if not any(lying):
+            del self._units[pod, sku]
