@@ -195,8 +195,9 @@ class OrderOperations(WorldState):
         station.changed()
         for line in order.lines:
             self._lines[order.station, line.sku] -= 1
-        order.completed_s = self.now_s
-        whole = order if order.whole is None else order.whole
+        whole = order
+        if order.whole is not None:
+            whole, order.completed_s = order.whole, self.now_s
         whole.slots_taken -= 1
         if whole.slots_taken or whole in self.orders:
             return None

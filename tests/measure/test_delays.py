@@ -90,3 +90,20 @@ def test_a_run_in_which_nothing_was_completed() -> None:
     assert not len(run.table("delays"))
     assert np.isnan(run.footprint["queue_share"])
     run.plot("delays")
+
+
+@pytest.mark.parametrize("duration_s", [120.0, 300.0])
+def test_an_order_of_which_a_part_is_open_is_not_complete(duration_s: float) -> None:
+    """At the end of the run some split orders have been served at one of their stations only."""
+    keys = {
+        "layout.robots": 10,
+        "scenario.warmup_s": 0,
+        "scenario.duration_s": duration_s,
+    }
+    run = rmfs.simulate("small", "small", "pile-on-split", seed=2, set=keys)
+    check_delays(run)
+    orders = run.table("orders").set_index("order")
+    completed = orders[orders["completed_s"].notna()]
+    picked = run.table("picks").groupby("order").size()
+    assert len(completed) == run.footprint["orders_completed"]
+    assert (picked.loc[completed.index] == completed["units"]).all()
