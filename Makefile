@@ -10,6 +10,7 @@ BIN := $(VENV)/bin
 CRATE := rmfs/traffic
 CRATE_FILES := $(CRATE)/Cargo.toml $(CRATE)/Cargo.lock $(shell find $(CRATE)/src -name '*.rs')
 UV := uv==0.13.8
+WHEEL_TOOLS := ziglang==0.17.1 auditwheel==6.8.2
 
 # What is below .rust goes first; PyO3 is built for the Python of .venv.
 IN_VENV := PATH="$(CURDIR)/.rust/bin:$(CURDIR)/$(BIN):$$PATH" VIRTUAL_ENV="$(CURDIR)/$(VENV)" \
@@ -57,6 +58,11 @@ browse: setup ## Test the viewer in Chromium and build its page again, where Chr
 .PHONY: wheel
 wheel: setup ## Build the wheel and try it in a project with folders of the same names
 	$(BIN)/python -m pytest -m slow tests/project/test_hostile_folder.py
+
+.PHONY: manylinux
+manylinux: setup ## Build the wheel for Linux machines of all kinds and try it without Rust
+	$(PIP) install $(WHEEL_TOOLS)
+	$(IN_VENV) $(BIN)/python -m pytest -m slow tests/project/test_manylinux.py
 
 .PHONY: bench
 bench: setup ## Measure speed

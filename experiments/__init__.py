@@ -26,7 +26,7 @@ _PLACES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import what is asked for: the command line shall answer at once."""
+    """Import an exported name on first use, so that the command line responds at once."""
     if name in _PLACES:
         import importlib
 

@@ -1,7 +1,6 @@
 """`rmfs experiment`: plan, run, status, table, plot.
 
-The command line prints an `InputError` as one line and exits with code 2; these functions just
-raise it.
+These functions raise `InputError`; the command line prints it as one line and exits with code 2.
 """
 
 from __future__ import annotations
@@ -39,18 +38,18 @@ from rmfs.experiments.showing import goals as goals_of
 if TYPE_CHECKING:
     from rmfs.experiments.design.planning import Plan
 
-app = typer.Typer(help="Experiments: many arms, many seeds, one table.", no_args_is_help=True)
+app = typer.Typer(help="Run experiments of many arms and seeds.", no_args_is_help=True)
 app.command()(calibrate)
 
 FAILED = 1
-"""Exit code where runs failed."""
+"""Exit code if runs failed."""
 
 
 @app.command("list")
 def list_experiments(
-    folder: Annotated[Path, typer.Argument(help="Where results lie.", show_default=True)] = RESULTS,
+    folder: Annotated[Path, typer.Argument(help="Folder of results.", show_default=True)] = RESULTS,
 ) -> None:
-    """List the shipped designs, and the experiments that have results."""
+    """List the shipped designs, and the experiments with results."""
     from rich import box
     from rich.table import Table as RichTable
 
@@ -78,9 +77,9 @@ def plan(
     out: Out = None,
     jobs: Jobs = None,
     arms: Annotated[bool, typer.Option("--arms", help="List all arms.")] = False,
-    pilot: Annotated[bool, typer.Option(help="Try out short runs to estimate the time.")] = True,
+    pilot: Annotated[bool, typer.Option(help="Make short runs to estimate the time.")] = True,
 ) -> None:
-    """Check a design: number of runs, time, and everything that is wrong with it."""
+    """Check a design: print the number of runs, the time, and everything that is wrong with it."""
     from rmfs.experiments.complete import may_grow
     from rmfs.experiments.design.stages import schedule
     from rmfs.experiments.results import assigned, failed_pairs
@@ -132,14 +131,14 @@ def run(
         str | None,
         typer.Option(
             metavar="ADDRESS",
-            help="Scheduler of a Dask cluster, or a cluster profile (.toml), instead of this "
+            help="Address of a Dask scheduler, or a cluster profile (.toml), instead of this "
             "machine.",
         ),
     ] = None,
 ) -> None:
-    """Do all runs of a design that are not finished yet; may be interrupted and called again.
+    """Make all runs of a design that are not finished yet; can be interrupted and repeated.
 
-    Exit code 1 if runs failed: the others are done all the same.
+    Exits with code 1 if runs failed; all others are completed nevertheless.
     """
     from rmfs.experiments.running import run as run_plan
     from rmfs.experiments.running.progress import watching
@@ -158,7 +157,7 @@ def run(
 
 @app.command()
 def status(design: Made, out: Out = None) -> None:
-    """Say how far an experiment has come, and what failed."""
+    """Show the progress of an experiment, and its failures."""
     from rmfs.experiments.results import assigned, failed
     from rmfs.experiments.running.driver import progress_of
 
@@ -191,7 +190,8 @@ def table(
     out: Out = None,
     columns: Columns = None,
     baseline: Annotated[
-        str | None, typer.Option(help="Arm that all others are compared with, seed by seed.")
+        str | None,
+        typer.Option(help="Baseline arm to which all others are compared, seed by seed."),
     ] = None,
     anova: Annotated[
         bool, typer.Option("--anova", help="Analysis of variance of the factors instead.")
@@ -200,12 +200,13 @@ def table(
     confidence: Confidence = 0.95,
     bootstrap: Bootstrap = False,
     by_factor: Annotated[
-        bool, typer.Option("--by-factor", help="A column per factor instead of the arms' names.")
+        bool,
+        typer.Option("--by-factor", help="Show a column per factor instead of the names of arms."),
     ] = False,
     across: Annotated[
         str | None,
         typer.Option(
-            metavar="FACTOR", help="The levels of this factor as columns, the others as rows."
+            metavar="FACTOR", help="Show the levels of this factor as columns, all others as rows."
         ),
     ] = None,
     file: FileOption = None,
@@ -217,7 +218,7 @@ def table(
 ) -> None:
     """Show means with confidence intervals, paired differences, or an analysis of variance.
 
-    Exit code 3 if runs of the design are lacking: a note on the table says how many.
+    Exits with code 3 if runs of the design are missing; a note on the table says how many.
     """
     from rmfs.experiments import arranging, tables
     from rmfs.experiments.results import to_csv
@@ -256,15 +257,15 @@ def plot(
     kind: Annotated[
         str,
         typer.Option(
-            help="intervals (each seed of each arm), effects (of factors, and of pairs of them), "
-            "interaction (of pairs of factors), pareto (two columns), progression (over time; the "
-            "design must keep series)."
+            help="Kind of plot: intervals (each seed of each arm), effects (of factors and "
+            "pairs of them), interaction (of pairs of factors), pareto (two columns), "
+            "progression (over time; the design must keep series)."
         ),
     ] = "intervals",
     columns: Columns = None,
     factors: Annotated[
         list[str] | None,
-        typer.Option("--factor", help="interaction: a factor, at least two. [default: all]"),
+        typer.Option("--factor", help="interaction: a factor; at least two. [default: all]"),
     ] = None,
     interactions: Interactions = True,
     goals: Annotated[
@@ -272,7 +273,8 @@ def plot(
         typer.Option(
             "--goal",
             metavar="COLUMN=more|less",
-            help="pareto: what is better of a column. [default: as the data dictionary says]",
+            help="pareto: which direction of a column is better. [default: from the data "
+            "dictionary]",
         ),
     ] = None,
     confidence: Confidence = 0.95,
@@ -282,9 +284,9 @@ def plot(
     ] = None,
     allow_incomplete: Lacking = False,
 ) -> None:
-    """Draw a picture of the results.
+    """Plot the results.
 
-    Exit code 3 if runs of the design are lacking: a note on the picture says how many.
+    Exits with code 3 if runs of the design are missing; a note on the plot says how many.
     """
     from rmfs.experiments.plotting import KINDS, Wish, draw
     from rmfs.experiments.provenance import write
@@ -322,7 +324,8 @@ def report(
     baseline: Annotated[
         str | None,
         typer.Option(
-            help="Arm that all others are compared with. [default: the first]", show_default=False
+            help="Baseline arm to which all others are compared. [default: the first]",
+            show_default=False,
         ),
     ] = None,
     confidence: Confidence = 0.95,
@@ -334,9 +337,9 @@ def report(
     ] = None,
     allow_incomplete: Lacking = False,
 ) -> None:
-    """Write everything into one HTML file: means, differences, analyses of variance, pictures.
+    """Write a report as one HTML file: means, differences, analyses of variance, plots.
 
-    Exit code 3 if runs of the design are lacking: a note says how many.
+    Exits with code 3 if runs of the design are missing; a note says how many.
     """
     from rmfs.experiments import tables
     from rmfs.experiments.report import write_report

@@ -1,4 +1,4 @@
-"""Two runs, arms or tables: what differs in the input, and what in the output."""
+"""Comparison of runs, arms or tables: differences of inputs and outputs."""
 
 from __future__ import annotations
 
@@ -23,33 +23,33 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 ARM_SIGN = "#"
-"""Between a folder and the name of one of its arms."""
+"""Separates a folder from the name of one of its arms."""
 
 
 def numbers() -> list[str]:
-    """Columns that are compared: those of every footprint, and of the measures of users met."""
+    """Return the columns to compare: those of every footprint, and of known users' measures."""
     columns = (*FOOTPRINT, *learnt())
     return [column.name for column in columns if column.is_number and column.name != "seed"]
 
 
 NOT_INPUT = ("written", "machine", "check")
-"""Parts of run.json that say nothing about what was simulated."""
+"""Keys of run.json that do not describe what was simulated."""
 
 
 @dataclass(frozen=True)
 class Side:
-    """One thing to compare.
+    """One of the things compared.
 
     Attributes
     ----------
     name
-        As the user named it.
+        Name as specified by the user.
     rows
         Footprints, one row per seed.
     inputs
-        What is known of its input: dotted key and value.
+        Known inputs as dotted keys and values.
     note
-        What runs its experiment lacks; empty if it is complete, or no experiment.
+        Missing runs of its experiment; empty if there are none, or it is not an experiment.
     """
 
     name: str
@@ -60,19 +60,19 @@ class Side:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A side against the first one.
+    """Comparison of one side with the first one.
 
     Attributes
     ----------
     inputs
-        What differs: `key`, `baseline`, `other`.
+        Differing inputs: `key`, `baseline`, `other`.
     outputs
         Per column of the footprint `baseline`, `other` (means), `difference`, `low`, `high`,
         `relative`, `p`; an interval only where there are several seeds.
     pairs
-        Seeds that both have; 0 if the samples were taken as independent.
+        Number of seeds in common; 0 if the samples were treated as independent.
     identical
-        Whether all reproducible columns are the same.
+        Whether all reproducible columns are equal.
     """
 
     baseline: Side
@@ -84,7 +84,7 @@ class Comparison:
 
     @property
     def notes(self) -> list[str]:
-        """What the experiments of both sides lack, each told once."""
+        """Missing runs of the experiments of both sides, without duplicates."""
         return list(dict.fromkeys(one.note for one in (self.baseline, self.other) if one.note))
 
 
@@ -95,8 +95,8 @@ def compare(sources: Sequence[str | Path], *, confidence: float = 0.95) -> list[
     ----------
     sources
         Run folders, folders of experiments, arms of these (`FOLDER#ARM`), or .csv and .parquet
-        tables of footprints. If one source alone has several arms, these are compared with the
-        first of them; if all have several, arms of the same name are compared.
+        tables of footprints. A single source with several arms is compared arm by arm with its
+        first arm; several sources with several arms are compared by the names of arms.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Whether all runs of an experiment have come in, or what is lacking."""
+"""Missing runs of an experiment."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 def lacking(plan: Plan, store: Store, only: Collection[str] = ()) -> str:
-    """Say what an experiment lacks, with the counts; nothing if all of its runs are finished.
+    """Describe the missing runs of an experiment, with counts; empty if all are finished.
 
     Parameters
     ----------
     only
-        Arms that are looked at. Default: all.
+        Arms to check. Default: all.
     """
     lost = failed_pairs(plan, store)
     rows = assigned(plan, store)
@@ -50,5 +50,5 @@ def lacking(plan: Plan, store: Store, only: Collection[str] = ()) -> str:
 
 
 def may_grow(plan: Plan) -> bool:
-    """Whether stages decide on the way what is run."""
+    """Whether stages may add further runs."""
     return any(stage.until or stage.select or stage.arms for stage in plan.design.stages)

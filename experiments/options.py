@@ -1,4 +1,4 @@
-"""Options and arguments that several commands of `rmfs experiment` have."""
+"""Options and arguments shared by several commands of `rmfs experiment`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,11 @@ Out = Annotated[
 Jobs = Annotated[
     int | None,
     typer.Option(
-        "--jobs", "-j", min=1, help="Runs at a time. [default: one per core]", show_default=False
+        "--jobs",
+        "-j",
+        min=1,
+        help="Number of parallel runs. [default: one per core]",
+        show_default=False,
     ),
 ]
 Columns = Annotated[
@@ -32,19 +36,20 @@ Columns = Annotated[
     typer.Option(
         "--column",
         "-c",
-        help="Column of the footprint; may be repeated. [default: the main ones]",
+        help="Column of the footprint; may be repeated. [default: the main columns]",
         show_default=False,
     ),
 ]
-Confidence = Annotated[float, typer.Option(min=0.5, max=0.999, help="Of the intervals.")]
+Confidence = Annotated[float, typer.Option(min=0.5, max=0.999, help="Confidence of intervals.")]
 Interactions = Annotated[
     bool,
-    typer.Option("--interactions/--no-interactions", help="Show interactions of two factors, too."),
+    typer.Option("--interactions/--no-interactions", help="Also show interactions of two factors."),
 ]
 Lacking = Annotated[
     bool,
     typer.Option(
-        "--allow-incomplete", help="Exit with code 0 although runs are lacking; the note stays."
+        "--allow-incomplete",
+        help="Exit with code 0 even if runs are missing; the note is still printed.",
     ),
 ]
 Bootstrap = Annotated[
@@ -52,5 +57,5 @@ Bootstrap = Annotated[
 ]
 FileOption = Annotated[
     Path | None,
-    typer.Option("--file", "-f", help="Write a .tex, .md, .csv or .html file."),
+    typer.Option("--file", "-f", help="Write the table to a .tex, .md, .csv or .html file."),
 ]

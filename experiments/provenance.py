@@ -1,4 +1,4 @@
-"""A file beside every table and picture that says where its numbers come from."""
+"""Provenance files of tables and plots, which say where their numbers come from."""
 
 from __future__ import annotations
 
@@ -31,24 +31,24 @@ def write(
     columns: Sequence[str],
     **more: Any,
 ) -> Path:
-    """Write the provenance file of a table or picture.
+    """Write the provenance file of a table or plot.
 
     Parameters
     ----------
     path
-        The table or picture; its file gets the suffix `.provenance.json`.
+        The table or plot; its provenance file gets the suffix `.provenance.json`.
     frame
-        The rows it was made of, as `experiments.load` returns them.
+        The rows from which it was made, as returned by `experiments.load`.
     design, design_hash
         Name and hash of the design.
     columns
-        Columns it shows.
+        Columns that it shows.
     more
-        Whatever else decides about it, such as the confidence.
+        Anything else that determines it, such as the confidence.
 
     Returns
     -------
-    The file written.
+    The provenance file.
     """
     made_by = sorted({(row.code, row.git_commit) for row in frame.itertuples()})
     told = {
@@ -75,7 +75,7 @@ def write(
 
 
 def command() -> str:
-    """Return the present command, without the places of a machine: `/a/b/c` becomes `.../c`."""
+    """Return the current command without machine-specific paths: `/a/b/c` becomes `.../c`."""
     module = getattr(sys.modules["__main__"], "__spec__", None)
     name = Path(sys.argv[0]).name if module is None else f"python -m {module.name}"
     given = [f".../{Path(one).name}" if Path(one).is_absolute() else one for one in sys.argv[1:]]
@@ -83,7 +83,7 @@ def command() -> str:
 
 
 def rows_hash(frame: pd.DataFrame, columns: Sequence[str]) -> str:
-    """Return a hash of the values shown: equal for equal results, whatever computed them."""
+    """Return a hash of the values shown, which is equal for equal results on any machine."""
     chosen = [*dict.fromkeys(["arm", "replication", *(c for c in columns if c in frame)])]
     text = frame.sort_values(["arm", "replication"], kind="stable")[chosen].to_csv(index=False)
     return hashlib.sha256(text.encode()).hexdigest()

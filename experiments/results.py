@@ -1,4 +1,4 @@
-"""Reading the results of an experiment."""
+"""Loads the results of an experiment."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ if TYPE_CHECKING:
 
 
 def load(folder: str | Path, *, table: str = "footprint") -> pd.DataFrame:
-    """Read the results of an experiment, finished or running.
+    """Load the results of an experiment, finished or running.
 
     Parameters
     ----------
     folder
-        Where the experiment wrote its results.
+        Folder of the experiment's results.
     table
         `footprint`, or a table that the design keeps.
 
     Returns
     -------
-    For `footprint` one row per finished run, sorted by arm (in the order of the design) and seed:
-    `arm`, a column per factor, `stage`, `replication`, the footprint, `run` and the columns that
-    say how the run was made. Other tables begin with `arm`, the factors, `replication` and `seed`.
+    For `footprint`, one row per finished run, sorted by arm (in design order) and seed: `arm`, a
+    column per factor, `stage`, `replication`, the footprint, `run`, and the columns on how the run
+    was made. Other tables start with `arm`, the factors, `replication` and `seed`.
 
     Raises
     ------
     InputError
-        If the folder holds no experiment, or not this table.
+        If the folder contains no experiment, or the table is not kept.
     """
     path = Path(folder)
     plan = plans.load(path)
@@ -60,13 +60,13 @@ def load(folder: str | Path, *, table: str = "footprint") -> pd.DataFrame:
 
 
 def failures(folder: str | Path) -> pd.DataFrame:
-    """Return the failed runs of an experiment, a row each, with `error` and `traceback`."""
+    """Return the failed runs of an experiment, one row each, with `error` and `traceback`."""
     path = Path(folder)
     return failed(plans.load(path), Store(path))
 
 
 def failed(plan: Plan, store: Store) -> pd.DataFrame:
-    """Return the stored failures that belong to a plan and have not been made good since."""
+    """Return the failures of a plan that no later run has replaced."""
     found = store.failures()
     replications = [int(r) for r in found["replication"].unique()]
     names = {
@@ -77,15 +77,15 @@ def failed(plan: Plan, store: Store) -> pd.DataFrame:
 
 
 def failed_pairs(plan: Plan, store: Store) -> set[tuple[str, int]]:
-    """Return the same as arm and replication."""
+    """Return the same as pairs of arm and replication."""
     lost = failed(plan, store)
     return set(zip(lost["arm"], lost["replication"].astype(int), strict=True))
 
 
 def assigned(plan: Plan, store: Store) -> pd.DataFrame:
-    """Return the finished runs that belong to a plan, with its arms and factors, in its order.
+    """Return the finished runs of a plan, with its arms and factors, in its order.
 
-    Rows of outdated inputs and of seeds that are no longer asked for are left out.
+    Rows with outdated inputs, and of seeds that are no longer part of the plan, are excluded.
     """
     rows = store.rows()
     by_digest = {arm.digest: arm for arm in plan.arms}
@@ -109,10 +109,10 @@ def assigned(plan: Plan, store: Store) -> pd.DataFrame:
 
 
 def reproducible_table(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return what is the same whenever an experiment is repeated, sorted by arm and seed.
+    """Return the columns that are equal whenever an experiment is repeated, sorted by arm and seed.
 
-    Measured columns (wall times and the like) and the columns on how a run was made are left out.
-    Two experiments are identical if this, written as CSV, is the same byte for byte.
+    Measured columns (such as wall times) and the columns on how a run was made are excluded. Two
+    experiments are identical if these tables, written as CSV, are equal byte for byte.
     """
     gone = {*names("footprint")} - {*reproducible("footprint")}
     gone |= {column.name for column in learnt() if column.measured}

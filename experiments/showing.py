@@ -1,4 +1,4 @@
-"""What `rmfs experiment` shows: tables as they were asked for, and what they lack."""
+"""What `rmfs experiment` shows: the tables requested, and a note on runs they lack."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from rmfs.experiments.tables import Table
 
 INCOMPLETE = 3
-"""Exit code where a table or picture shows an experiment that lacks runs."""
+"""Exit code if a table or picture shows an experiment with runs missing."""
 
 
 def write_table(
     shown: Table, file: Path, made: Plan, frame: pd.DataFrame, columns: list[str]
 ) -> None:
-    """Write a table into a file, and beside it where its numbers come from."""
+    """Write a table to a file, with the provenance of its numbers beside it."""
     from rmfs.experiments.provenance import write
 
     shown.write(file)

@@ -5,9 +5,10 @@
     <table>/        a Parquet file a run for each table that is kept
     failures/       a JSON file with the traceback for each run that failed
 
-Every file is written whole or not at all, so the dataset can be read at any time. Runs are stored
-under their key: what decides about them. Nothing is ever thrown away but doubles: rows of an
-outdated input stay until the folder is removed, and count again if the input is restored.
+Every file is written completely or not at all, so the dataset can be read at any time. Runs are
+stored under their key, a hash of everything that determines them. Only duplicates are ever deleted:
+rows with outdated inputs stay until the folder is removed, and count again if the input is
+restored.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ class Store:
     Parameters
     ----------
     folder
-        Made when something is written.
+        Created when something is written.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -71,7 +72,7 @@ class Store:
 
     @contextmanager
     def locked(self) -> Iterator[None]:
-        """Keep other drivers away; also clears away what an interrupted one left half-written.
+        """Lock the folder against other drivers, and remove half-written files of interrupted ones.
 
         Raises
         ------
@@ -93,7 +94,7 @@ class Store:
             yield
 
     def add(self, job: Job, outcome: Outcome, code: Mapping[str, Any]) -> None:
-        """Write what came of a run.
+        """Store the outcome of a run.
 
         Parameters
         ----------
@@ -156,7 +157,7 @@ class Store:
         Parameters
         ----------
         columns
-            What to read beside `run`. Default everything.
+            Columns to read in addition to `run`. Default: all.
 
         Raises
         ------

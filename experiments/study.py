@@ -33,14 +33,14 @@ COLUMN = "units_per_h"
 
 @dataclass(frozen=True, repr=False)
 class Study:
-    """An experiment that has been run.
+    """A finished experiment.
 
     Attributes
     ----------
     plan
         Its arms, seeds and inputs.
     folder
-        Where its results are.
+        Folder of its results.
     """
 
     plan: Plan
@@ -48,12 +48,12 @@ class Study:
 
     @cached_property
     def frame(self) -> pd.DataFrame:
-        """Every run a row: `arm`, the factors, `replication`, the footprint."""
+        """One row per run: `arm`, the factors, `replication`, the footprint."""
         return load(self.folder)
 
     @property
     def lacking(self) -> str:
-        """What runs are lacking, with the counts; tables say so, too. Empty if all are in."""
+        """Description of missing runs, also noted in tables; empty if there are none."""
         return lacking(self.plan, Store(self.folder))
 
     def table(self, *columns: str, by: str | None = None, confidence: float = 0.95) -> Table:
@@ -62,10 +62,10 @@ class Study:
         Parameters
         ----------
         columns
-            Of the footprint. Default `units_per_h`.
+            Columns of the footprint. Default `units_per_h`.
         by
-            A factor, whose levels get a row each: the mean over all other factors, seed by seed.
-            Default: a row for every arm.
+            A factor whose levels get one row each: the mean over all other factors, seed by seed.
+            Default: one row per arm.
 
         Raises
         ------
@@ -88,11 +88,11 @@ class Study:
         Parameters
         ----------
         columns
-            Of the footprint. Default `units_per_h`.
+            Columns of the footprint. Default `units_per_h`.
         baseline
-            An arm, or a level of the factor `by`. Default the first.
+            An arm, or a level of the factor `by`. Default: the first.
         by
-            As in `table`.
+            As for `table`.
 
         Raises
         ------
@@ -117,28 +117,28 @@ class Study:
         goals: Mapping[str, Goal] | None = None,
         confidence: float = 0.95,
     ) -> Figure:
-        """Draw a picture.
+        """Plot the results.
 
         Parameters
         ----------
         columns
-            Of the footprint. Default: those of the kind of picture.
+            Columns of the footprint. Default: those of the kind of plot.
         kind
             `intervals` (a dot for every seed, means with their intervals), `effects` (of factors
             and pairs of them), `interaction` (of pairs of factors), `pareto` (two columns),
             `progression` (over time; needs `keep=["series"]`).
         by
-            Of `intervals`: as in `table`.
+            For `intervals`: as for `table`.
         factors
-            Of `interaction`: two or more factors. Default all.
+            For `interaction`: two or more factors. Default: all.
         goals
-            Of `pareto`: whether "more" or "less" of a column is better. Default as the data
-            dictionary says.
+            For `pareto`: whether "more" or "less" of a column is better. Default: from the data
+            dictionary.
 
         Raises
         ------
         InputError
-            If there is no such picture, column or factor, or it cannot be drawn of these results.
+            If there is no such plot, column or factor, or the results do not allow it.
         """
         from rmfs.experiments.plotting import KINDS, Wish, draw
 
@@ -170,7 +170,7 @@ class Study:
         return list(given) or [COLUMN]
 
     def _rows(self, by: str | None, columns: list[str]) -> pd.DataFrame:
-        """Return a row per run, or per seed and level of a factor."""
+        """Return one row per run, or per seed and level of a factor."""
         if by is None:
             return self.frame
         if by not in self.plan.factors:
@@ -195,33 +195,34 @@ def experiment(
 ) -> Study:
     """Run an experiment: every combination of the factors' levels with every seed.
 
-    What is there already is not run again; a design file can say more (see `rmfs.experiments`).
+    Existing runs are not repeated. A design file offers more options (see `rmfs.experiments`).
 
     Parameters
     ----------
     factors
-        Levels by parameter, as `set` of `rmfs.simulate` names it: `{"layout.robots": [8, 16]}`.
-        Where a rule is named, its class will do.
+        Levels by parameter, as in `set` of `rmfs.simulate`: `{"layout.robots": [8, 16]}`. A rule
+        can
+        also be given as a class.
     seeds
-        The same for every arm, so that arms can be compared seed by seed.
+        Seeds, the same for every arm, so that arms can be compared seed by seed.
     base
-        What all arms share: `layout`, `scenario`, `controllers`, all by default `default`, and
-        parameters.
+        Inputs of all arms: `layout`, `scenario`, `controllers`, all `default` by default, and
+        further parameters.
     measures
-        Measures of your own, as in `rmfs.simulate`.
+        Additional measures, as for `rmfs.simulate`.
     keep
-        Tables kept of every run besides its footprint.
+        Tables to keep of every run besides its footprint.
     out
-        The folder of the results. Default: below `results`, named by what is run.
+        Folder for the results. Default: below `results`, with a name derived from the inputs.
     processes
-        Runs at a time. Default: one per core.
+        Number of parallel runs. Default: one per core.
     watcher
-        Told of progress.
+        Notified of progress.
 
     Raises
     ------
     InputError
-        If something given is wrong; names what and says what would be valid.
+        If an argument is wrong; names it and the valid values.
     RuntimeError
         If a run failed.
     """
@@ -253,7 +254,7 @@ def experiment(
 
 
 def _level(value: Any) -> Any:
-    """Return a level as a design has it; a class is shown by its name."""
+    """Return a level as a design contains it; a class is shown by its name."""
     if isinstance(value, type):
         return {"label": value.__name__, "value": reference_of(value)}
     return plain(value, reference_of)

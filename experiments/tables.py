@@ -1,4 +1,4 @@
-"""Tables of results: means with intervals per arm, for papers and for people."""
+"""Tables of results: means with intervals per arm, for papers and for reading."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ SUFFIXES: dict[str, Format] = {
 }
 
 COLUMNS = ("units_per_h", "orders_per_h", "units_per_visit", "distance_per_unit_m")
-"""What is shown if nothing else is asked for."""
+"""Columns shown by default."""
 
 ROUNDING = 1e-12
-"""What is less is nothing."""
+"""Smaller absolute values count as 0."""
 
 HALF = "±"
 UNITS = {column.name: column.unit for column in FOOTPRINT}
@@ -43,16 +43,16 @@ UNITS = {column.name: column.unit for column in FOOTPRINT}
 
 @dataclass(frozen=True, repr=False)
 class Table:
-    """A table of numbers that knows how to be written.
+    """A table of numbers that can be written in several formats.
 
     Attributes
     ----------
     frame
-        Full precision; the columns are pairs of measure and statistic.
+        Values in full precision; the columns are pairs of measure and statistic.
     decimals
-        Digits after the point, per column.
+        Number of decimal places per column.
     caption
-        One sentence.
+        The caption, one sentence.
     """
 
     frame: pd.DataFrame
@@ -66,7 +66,7 @@ class Table:
         return self.html()
 
     def noted(self, note: str) -> Table:
-        """Return the table with a note at the end of its caption; as it is if there is none."""
+        """Return the table with a note added to its caption; unchanged if the note is empty."""
         return replace(self, caption=f"{self.caption} Note: {note}.") if note else self
 
     def to(self, form: Format) -> str:
@@ -163,12 +163,12 @@ class Table:
         return made
 
     def write(self, path: Path) -> None:
-        """Write it in the format that the file's name asks for.
+        """Write the table in the format given by the file's suffix.
 
         Raises
         ------
         InputError
-            If there is no such format.
+            If the format is not supported.
         """
         form = SUFFIXES.get(path.suffix.lower())
         if form is None:
@@ -176,7 +176,7 @@ class Table:
         write_text(path, self.to(form))
 
     def _shown(self) -> pd.DataFrame:
-        """Return the cells as text, mean and half width in one."""
+        """Return the cells as text, with mean and half width combined."""
         made: dict[str, list[str]] = {}
         for measure, statistic in columns_of(self.frame):
             if statistic == HALF:
@@ -253,7 +253,7 @@ def differences(
     method: Method = "t",
     by: str = "arm",
 ) -> Table:
-    """Return paired differences to a baseline, with p values corrected for all arms and columns."""
+    """Return paired differences to a baseline, with p values corrected for multiple comparisons."""
     from rmfs.experiments.statistics.paired import holm
 
     found = {
@@ -300,14 +300,14 @@ def effects(found: pd.DataFrame, column: str) -> Table:
 
 
 def rows_frame(rows: Mapping[str, Mapping[tuple[str, str], float]], name: str) -> pd.DataFrame:
-    """Return rows as the frame of a table.
+    """Return rows as the data frame of a table.
 
     Parameters
     ----------
     rows
-        By the name of the row: cells by measure and statistic; the first row has all columns.
+        For each row name, its cells by measure and statistic; the first row has all columns.
     name
-        What the rows are.
+        Heading of the row names.
     """
     columns = pd.MultiIndex.from_tuples(list(next(iter(rows.values()))))
     cells = [[row.get(column, float("nan")) for column in columns] for row in rows.values()]
@@ -324,12 +324,12 @@ def _called(method: str) -> str:
 
 
 def digits(halves: pd.Series, values: pd.Series) -> int:
-    """Return digits after the point that show the half widths with two figures."""
+    """Return the number of decimal places that shows the half widths with two digits."""
     known = [h for h in halves.dropna() if h > ROUNDING and isfinite(h)]
     if not known:
         if ((values.dropna() - values.dropna().round()).abs() < ROUNDING).all():
             return 0
-        # no spread is known: four figures of the biggest value
+        # without half widths: four significant digits of the largest value
         known = [float(values.abs().max()) / 100]
     return int(min(6, max(0, 1 - floor(log10(sorted(known)[len(known) // 2])))))
 
@@ -344,7 +344,7 @@ def _p_value(value: object) -> str:
 
 @dataclass(frozen=True)
 class _Fixed:
-    """Formats a cell: numbers with a fixed number of digits, words as they are."""
+    """Formats a cell: numbers with a fixed number of decimal places, strings unchanged."""
 
     decimals: int
 
@@ -352,7 +352,7 @@ class _Fixed:
         if isinstance(value, str):
             return value
         number = round(float(value), self.decimals)  # type: ignore[arg-type]
-        # no sign before nothing: -0.0 + 0.0 is 0.0
+        # avoids a negative zero: -0.0 + 0.0 is 0.0
         return "-" if number != number else f"{number + 0.0:.{self.decimals}f}"
 
 

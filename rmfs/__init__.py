@@ -41,7 +41,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Load what is exported when it is first used: parts of the package need less than all."""
+    """Import an exported name when it is first used, so that unused parts are never loaded."""
     if name == "__version__":
         from importlib.metadata import version
 

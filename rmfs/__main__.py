@@ -1,4 +1,4 @@
-"""`python -m rmfs` is the command `rmfs`."""
+"""Entry point of `python -m rmfs`, which is the command `rmfs`."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Which code is running: a hash of what simulates and decides."""
+"""A hash of the code that simulates and decides."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 NOT_SIMULATED = ("experiments",)
-"""Parts of the package that make no result: what is changed there needs no new run."""
+"""Parts of the package that produce no results: changes in them require no new runs."""
 
 SUFFIXES = (".py", ".so", ".pyd")
 
@@ -21,7 +21,7 @@ SUFFIXES = (".py", ".so", ".pyd")
 def code_hash() -> str:
     """Return a hash of the Python files and the compiled core, 16 hexadecimal digits.
 
-    Runs of a checkout with changes can be told apart by it, too.
+    It also distinguishes runs of a checkout with uncommitted changes.
     """
     root = Path(__file__).resolve().parent
     state = hashlib.sha256()
@@ -32,7 +32,7 @@ def code_hash() -> str:
 
 
 def _sources(root: Path) -> Iterator[Path]:
-    """Find the files of the code; in a checkout some folders of the package are links."""
+    """Find the source files; in a checkout, some folders of the package are links."""
     for folder, below, files in os.walk(root, followlinks=True):
         if Path(folder) == root:
             below[:] = [name for name in below if name not in NOT_SIMULATED]

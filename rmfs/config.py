@@ -17,22 +17,22 @@ from rmfs.errors import InputError
 from rmfs.files import read_bounded
 
 LARGEST_MIB = 4
-"""Most that a TOML file may have: they are written by hand."""
+"""Size limit of a TOML file; such files are written by hand."""
 
 
 LARGEST = 1e9
-"""No parameter is larger: 1e9 s are 31 years; times are kept in microseconds of 64 bits."""
+"""Largest value of any parameter: 1e9 s are 31 years; times are 64-bit microseconds."""
 SMALLEST = 1e-9
-"""No parameter but 0 is smaller in size: one over it would be beyond the largest."""
+"""Smallest size of any parameter other than 0, so that its reciprocal stays within bounds."""
 LARGEST_SEED = 2**63 - 1
-"""Seeds may be as large as an integer of 64 bits."""
+"""Largest seed: a signed 64-bit integer."""
 
 
 class Model(pydantic.BaseModel):
-    """Base of every configuration block: unknown keys are errors, values cannot change.
+    """Base class of all configuration blocks: unknown keys are errors, and values are immutable.
 
-    Numbers are 0, or between `SMALLEST` and `LARGEST` in size; a field may be narrower. True and
-    false are written as such.
+    A number is 0, or its absolute value is between `SMALLEST` and `LARGEST`; a field may be
+    narrower. Booleans must be written as `true` or `false`.
     """
 
     model_config = pydantic.ConfigDict(extra="forbid", frozen=True, validate_default=True)
@@ -53,14 +53,14 @@ class Model(pydantic.BaseModel):
         for number in _numbers(value):
             size = abs(number)
             if most < size < inf:
-                raise ValueError(f"must be at most {most:g} in size")
+                raise ValueError(f"must be at most {most:g} in absolute value")
             if 0 < size < SMALLEST:
-                raise ValueError(f"must be 0, or at least {SMALLEST:g} in size")
+                raise ValueError(f"must be 0, or at least {SMALLEST:g} in absolute value")
         return value
 
 
 def _numbers(value: Any) -> Iterator[float]:
-    """Yield a number, or those of a tuple or list."""
+    """Yield a number, or the numbers of a tuple or list."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         yield value
     elif isinstance(value, tuple | list):
@@ -78,24 +78,24 @@ def read_toml(path: Path) -> Table:
     Raises
     ------
     InputError
-        If the file is missing, unreadable, larger than `LARGEST_MIB` or not TOML.
+        If the file is missing, unreadable, larger than `LARGEST_MIB`, or not valid TOML.
     """
     content = read_bounded(path, LARGEST_MIB)
     try:
         return tomllib.loads(content.decode("utf-8"))
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: cannot be read ({error})") from None
-    except (ValueError, RecursionError) as error:  # also of integers with thousands of digits
+    except (ValueError, RecursionError) as error:  # ValueError also for integers of 1000s of digits
         raise InputError(f"{path}: not valid TOML: {error!s:.200}") from None
 
 
 def parse_override(text: str) -> tuple[list[str], Any]:
-    """Split one `--set a.b=value`; the value is TOML, and a bare word is a string.
+    """Parse one `--set a.b=value`; the value is TOML, or a string if it is a bare word.
 
     Raises
     ------
     InputError
-        If there is no `=` or no key.
+        If there is no `=` or the key is empty.
     """
     key, separator, value = text.partition("=")
     if not separator or not key.strip():
@@ -110,7 +110,7 @@ def parse_override(text: str) -> tuple[list[str], Any]:
 
 
 def apply_overrides(table: Table, overrides: list[tuple[list[str], Any]]) -> Table:
-    """Return a copy of `table` with each (path, value) set; tables on the way are created."""
+    """Return a copy of `table` with each (path, value) set; missing tables are created."""
     result = _copied(table)
     for path, value in overrides:
         node = result
@@ -124,17 +124,17 @@ def apply_overrides(table: Table, overrides: list[tuple[list[str], Any]]) -> Tab
 
 
 def validate(model: type[M], table: Table, source: str) -> M:
-    """Turn a table into a model.
+    """Validate a table as a model.
 
     Parameters
     ----------
     source
-        Name of the file the table came from, for messages.
+        Name of the file that the table came from, for error messages.
 
     Raises
     ------
     InputError
-        One line that lists every problem with its key; an unknown key comes with the nearest
+        All problems on one line, each with its key; an unknown key is reported with the nearest
         valid one.
     """
     try:
@@ -159,7 +159,7 @@ def _explain(model: type[pydantic.BaseModel], detail: Any) -> str:
         return f"unknown key {'.'.join([*shown, location[-1]])}; {hint}"
     message, given = detail["msg"].removeprefix("Value error, "), detail.get("input")
     if detail["type"] in ("union_tag_invalid", "union_tag_not_found"):
-        # the key that tells the alternatives apart is wrong or missing
+        # the key that selects the alternative is wrong or missing
         context = detail["ctx"]
         key = context["discriminator"].strip("'")
         shown, given = [*shown, key], context.get("tag", {})
@@ -173,15 +173,15 @@ def _explain(model: type[pydantic.BaseModel], detail: Any) -> str:
 def _walk(
     model: type[pydantic.BaseModel], location: list[str]
 ) -> tuple[list[str], list[type[pydantic.BaseModel]]]:
-    """Follow pydantic's path of an error.
+    """Follow the path that pydantic reports for an error.
 
     Returns
     -------
     list of str
-        The keys on the way as in the file. Where a key holds one of several models, pydantic's path
-        also names the one it took: that is left out.
+        The keys of the path as in the file. Where a key holds one of several models, pydantic also
+        includes the model that it chose; that part is left out.
     list of type
-        The models that the path may have reached.
+        The models that the path may lead to.
     """
     shown: list[str] = []
     current: list[type[pydantic.BaseModel]] = [model]
@@ -198,7 +198,7 @@ def _walk(
 
 
 def _tags(model: type[pydantic.BaseModel]) -> set[Any]:
-    """What pydantic may call a model among alternatives: its name or the value of a `Literal`."""
+    """Return what pydantic may call a model in a union: its name or the value of a `Literal`."""
     values = {model.__name__}
     for field in model.model_fields.values():
         if typing.get_origin(field.annotation) is typing.Literal:

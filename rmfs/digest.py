@@ -1,4 +1,4 @@
-"""A hash of a value: of its content, not of how it lies in memory."""
+"""A hash of a value, computed from its content and not from its layout in memory."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 
 OMITTED = "omitted"
-"""Set in the metadata of a field that is left out if empty: a new one, for which hashes stay."""
+"""Marks, in a field's metadata, a field left out if empty: adding it changes no older hash."""
 
 
 def digest(value: object) -> str:
-    """Return a hash of a dataclass of arrays, numbers, texts and their collections.
+    """Return a hash of a dataclass of arrays, numbers, strings and collections of them.
 
-    An object with a method `digested` is told by what this returns.
+    An object with a method `digested` is hashed by what that method returns.
     """
     state = hashlib.sha256()
     _feed(state, value)

@@ -1,17 +1,17 @@
-"""The errors a user can cause, kept apart from programming errors.
+"""The errors that a user can cause, kept apart from programming errors.
 
-An `InputError` carries one line for the user: which file, which key, what would be valid. The
-command line prints it and exits with code 2; everything else is a defect and keeps its traceback.
-A `RuleError` carries one line, too: what a controller of the user did wrong in a run. An
-`InternalError` is a defect that the program has noticed itself; the command line writes a file
-that tells how to come to it again, and exits with code 1.
+An `InputError` carries one line for the user: which file, which key, and what would be valid. The
+command line prints it and exits with code 2. A `RuleError` also carries one line: what a user's
+controller did wrong in a run. An `InternalError` is a defect that the program has detected itself;
+the command line writes a file that helps to reproduce it, and exits with code 1. Every other
+exception is a defect and keeps its traceback.
 """
 
 from __future__ import annotations
 
 
 class InputError(ValueError):
-    """Something the user gave us is wrong: a file, a key, a value, a folder.
+    """Input from the user is wrong: a file, a key, a value or a folder.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class LayoutError(InputError):
 
 
 class RuleError(RuntimeError):
-    """A controller of the user decided what is impossible; the run cannot go on.
+    """A user's controller made an impossible decision; the run cannot continue.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class RuleError(RuntimeError):
 
 
 class InternalError(RuntimeError):
-    """A defect of rmfs itself, not of what it was given; what it happened in is of no more use.
+    """A defect of rmfs itself, not of its input; the run in which it occurred is unusable.
 
     Parameters
     ----------

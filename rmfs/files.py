@@ -1,4 +1,4 @@
-"""Reading what anybody gives us, and writing so that nothing half-written is ever seen."""
+"""Reading of untrusted files, and writing that never leaves a partial file behind."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG)
 LARGEST_MIB = 64
-"""Most that is read of a file that is read whole; the largest published layout takes 4."""
+"""Size limit of files that are read at once; the largest published layout has 4 MiB."""
 
 
 def read_bounded(path: Path, largest_mib: int = LARGEST_MIB) -> bytes:
-    """Read a file whole, unless it is so large that it would take the memory.
+    """Read a whole file, unless it is too large.
 
     Parameters
     ----------
     largest_mib
-        Most mebibytes it may have.
+        Size limit in mebibytes.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def replacing(path: Path) -> Iterator[Path]:
         yield temporary
         temporary.chmod(0o644)
         with temporary.open("rb") as file:
-            os.fsync(file.fileno())  # or a machine that stops may know the name of an empty file
+            os.fsync(file.fileno())  # otherwise a system crash could leave an empty file
         temporary.replace(path)
     except OSError as error:
         if error.errno in _FULL:
@@ -81,43 +81,46 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file whole or not at all (UTF-8)."""
+    """Write a text file (UTF-8), completely or not at all."""
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 
 @contextmanager
 def replacing_folder(target: Path, mark: str, what: str, *, replace: bool = True) -> Iterator[Path]:
-    """Yield a temporary folder beside `target`, which takes that name if all goes well.
+    """Yield a temporary folder beside `target`, which is renamed to `target` on success.
 
-    The folder is made at once, so that a target that cannot be written is noticed before any work
-    is done. On an error or an interruption it is removed again, with the folders made on the way.
-    Nobody else can write the same target meanwhile.
+    The folder is created at once, so that a target that cannot be written is noticed before any
+    work is done. On an error or an interruption it is removed, together with any parents created
+    for it. The target is locked against other processes meanwhile.
 
     Parameters
     ----------
     mark
-        A file that every such folder holds: only these, and empty ones, are replaced.
+        A file that every such folder contains: only these folders, and empty ones, are replaced.
     what
-        What such a folder is called.
+        What to call such a folder in messages.
     replace
-        Whether a folder of the kind may be replaced. Default yes.
+        Whether an existing folder of this kind may be replaced. Default True.
 
     Raises
     ------
     InputError
-        If the target cannot be written, somebody else writes it, or it exists and is not such a
+        If the target cannot be written, is locked by another process, or exists and is not such a
         folder or must not be replaced.
     """
     target = target.absolute()
+    here = Path.cwd()
+    if target.resolve() in (here, *here.parents):
+        raise InputError(f"{target}: is the working directory or contains it; name another folder")
     _refuse_strangers(target, mark, what)
     made = _missing_parents(target)
     try:
         with _locked(target):
             if not replace and (target / mark).exists():
                 raise InputError(
-                    f"{target}: there is a {what} of this name already; --force replaces it, --out "
-                    "names another"
+                    f"{target}: a {what} of this name exists already; --force replaces it, --out "
+                    "chooses another name"
                 )
             temporary = _temporary_beside(target)
             try:
@@ -133,7 +136,7 @@ def replacing_folder(target: Path, mark: str, what: str, *, replace: bool = True
 
 @contextmanager
 def _locked(target: Path) -> Iterator[None]:
-    """Keep others from writing the same target; the lock ends with the process in any case."""
+    """Lock the target against other processes; the lock ends with the process in any case."""
     lock = target.with_name(f".{target.name}.lock")
     while True:
         try:
@@ -148,7 +151,7 @@ def _locked(target: Path) -> Iterator[None]:
             raise InputError(f"{target}: is being written by another process") from None
         if _is_at(lock, file.fileno()):
             break
-        file.close()  # removed by its owner between opening and locking
+        file.close()  # the owner removed it between opening and locking
     try:
         yield
     finally:
@@ -157,7 +160,7 @@ def _locked(target: Path) -> Iterator[None]:
 
 
 def _is_at(path: Path, descriptor: int) -> bool:
-    """Whether an open file still has its name."""
+    """Whether an open file is still found under its name."""
     try:
         return path.stat().st_ino == os.fstat(descriptor).st_ino
     except FileNotFoundError:
@@ -165,12 +168,12 @@ def _is_at(path: Path, descriptor: int) -> bool:
 
 
 def _refuse_strangers(target: Path, mark: str, what: str) -> None:
-    """Refuse to replace anything but an empty folder or one of the kind."""
+    """Refuse to replace anything but an empty folder or one of the same kind."""
     try:
         if target.exists() and not target.is_dir():
             raise InputError(f"{target}: is not a folder")
         if target.is_dir() and any(target.iterdir()) and not (target / mark).is_file():
-            raise InputError(f"{target}: exists and is not a {what}; it is left alone")
+            raise InputError(f"{target}: exists and is not a {what}; it is not replaced")
     except OSError as error:
         raise InputError(f"{target}: cannot be written ({error.strerror})") from None
 
@@ -183,14 +186,14 @@ def _allow_all_to_read(folder: Path) -> None:
 
 
 def _missing_parents(target: Path) -> list[Path]:
-    """Return the folders above `target` that do not exist, innermost first."""
+    """Return the parent folders of `target` that do not exist, innermost first."""
     return [parent for parent in target.parents if not parent.exists()]
 
 
 def _temporary_beside(target: Path) -> Path:
-    """Make a folder to write in; one that a killed process has left is removed.
+    """Create the temporary folder, after removing one left behind by a killed process.
 
-    The target is locked, so that nobody else writes in such a folder.
+    The target is locked, so no other process writes to such a folder.
     """
     prefix = f".{target.name}.partial-"
     try:
@@ -204,9 +207,9 @@ def _temporary_beside(target: Path) -> Path:
 
 
 def _put_in_place(temporary: Path, target: Path) -> None:
-    """Rename the finished folder; an older one of that name takes its place until it is removed.
+    """Rename the finished folder; an older one of that name is exchanged with it and removed.
 
-    The two are exchanged at once, so that whoever is killed leaves one of them under the name.
+    The exchange is atomic, so that a killed process leaves one of the two under the name.
     """
     try:
         if not target.exists():
@@ -222,7 +225,7 @@ _HERE = -100
 
 
 def _exchanged(one: Path, other: Path) -> bool:
-    """Exchange two folders at once (Linux); False where the system cannot."""
+    """Exchange two folders atomically (Linux); return False where the system cannot."""
     try:
         rename = ctypes.CDLL(None, use_errno=True).renameat2
     except (OSError, AttributeError):  # another system

@@ -1,7 +1,7 @@
-"""Files of other systems: which reader makes ours of a file, by its ending.
+"""Files of other systems: chooses the reader by the file's suffix.
 
-Readers are named here and imported when a file of theirs is loaded: nothing else of the simulator
-knows what other systems write.
+Readers are named here and imported only when one of their files is loaded; nothing else in the
+simulator knows the formats of other systems.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ _READERS = {
 
 
 def read(path: Path) -> Any:
-    """Read a file of another system with the reader of its ending.
+    """Read a file of another system with the reader for its suffix.
 
     Returns
     -------
-    What that reader returns; each says so itself.
+    Whatever that reader returns; see its documentation.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Where the shipped instances are, and how a name on the command line becomes a file."""
+"""The shipped instances: where they are, and how a name on the command line becomes a file."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from rmfs.errors import InputError
 Kind = Literal["layouts", "scenarios", "controllers"]
 
 ROOT = (Path(__file__).parent / "shipped").resolve()
-"""The folder of shipped instances: part of a wheel, and a link to `instances` in a checkout."""
+"""Folder of the shipped instances: part of a wheel, or a link to `instances` in a checkout."""
 
 
 def names(kind: Kind) -> list[str]:
-    """Names of the shipped instances of one kind, sorted."""
+    """Return the sorted names of the shipped instances of one kind."""
     files = (ROOT / kind).glob("*")
     return sorted({path.stem for path in files if path.suffix in (".toml", ".json")})
 
 
 def locate(kind: Kind, name_or_path: str) -> Path:
-    """Find the file for a path or for a name of a shipped instance.
+    """Find the file for a path or the name of a shipped instance.
 
     Raises
     ------
@@ -36,7 +36,7 @@ def locate(kind: Kind, name_or_path: str) -> Path:
             shipped = ROOT / kind / f"{name_or_path}{suffix}"
             if shipped.is_file():
                 return shipped
-    except (OSError, ValueError) as error:  # too long for a file, or not to be had
+    except (OSError, ValueError) as error:  # the name is too long, or the file is inaccessible
         raise InputError(f"{name_or_path:.80}: {error.args[-1]}") from None
     known = names(kind)
     near = difflib.get_close_matches(name_or_path, known, n=1)

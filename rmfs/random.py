@@ -1,7 +1,7 @@
-"""One seed, a tree of named random streams.
+"""A tree of named random streams, grown from one seed.
 
-Each stream is a child of the run's seed with a fixed number, so that adding a stream never changes
-another, and two arms of an experiment with the same seed meet the same demand.
+Each stream is a child of the run's seed with a fixed number. Adding a stream therefore never
+changes another, and two arms of an experiment with the same seed face the same demand.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 
 class Stream(IntEnum):
-    """The named streams; numbers are part of the file format and never reused."""
+    """The named streams; their numbers are part of the file format and are never reused."""
 
     LAYOUT = 0
     SKUS = 1
@@ -36,15 +36,15 @@ class Stream(IntEnum):
 
 
 def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:
-    """Return the generator of one stream.
+    """Return the random generator of one stream.
 
     Parameters
     ----------
     seed
         The run's (or layout's) seed, 0 or greater.
     path
-        Further numbers below the stream, for example the ordinal of an order: each gets a stream
-        of its own.
+        Further numbers below the stream, for example the ordinal of an order; each path has a
+        stream of its own.
     """
     sequence = np.random.SeedSequence(seed, spawn_key=(int(stream), *path))
     return np.random.Generator(np.random.PCG64(sequence))

@@ -1,8 +1,8 @@
-"""Classes that users write: named by `module:Class` or `path/to/file.py:Class`, or given as such.
+"""User-defined classes, referenced as `module:Class` or `path/to/file.py:Class`, or given directly.
 
-Modules are looked for where Python looks, and then in the working directory. A file is imported
-under a name of its own that holds its path (`file:/mine/rules%2Epy`), so that two files of one
-name do not meet, and what is pickled finds its class again in another process.
+Modules are searched on the Python path and then in the working directory. A file is imported under
+a module name that encodes its path (`file:/mine/rules%2Epy`), so that files of the same name do not
+clash and pickled objects find their class in another process.
 """
 
 from __future__ import annotations
@@ -12,6 +12,8 @@ import importlib.util
 import inspect
 import sys
 from collections.abc import Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 from urllib.parse import quote, unquote
@@ -21,7 +23,7 @@ import numpy as np
 from rmfs.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from importlib.machinery import ModuleSpec
     from types import ModuleType
 
@@ -31,52 +33,77 @@ _FILE = "file:"
 _SUFFIX = ".py"
 
 _GIVEN: dict[str, type] = {}
-"""Classes that were given as such, of notebooks and functions: nothing else finds them."""
+"""Classes given directly, as in notebooks and functions, which cannot be found by name."""
 
 
 def resolve(reference: str | type, base: type[T], what: str) -> type[T]:
-    """Return the class that a user means.
+    """Return the class that a reference denotes.
 
     Parameters
     ----------
     reference
         The class itself, `module:Class`, or `path/to/file.py:Class`.
     base
-        What it must be derived from.
+        Required base class.
     what
-        What it is, in words, for errors: "measure".
+        What it is, for error messages, such as "measure".
 
     Raises
     ------
     InputError
-        If it cannot be found or imported, or is something else.
+        If it cannot be found or imported, or is not derived from `base`.
     """
     found = reference if isinstance(reference, type) else _imported(reference, what)
     if isinstance(found, type) and issubclass(found, base):
         return found
     told = reference if isinstance(reference, str) else reference.__qualname__
-    raise InputError(
-        f"{told}: is no {what} (a class derived from {base.__module__}.{base.__qualname__})"
-    )
+    article = "an" if what[0] in "aeiou" else "a"
+    kind = f"{base.__module__}.{base.__qualname__}"
+    raise InputError(f"{told}: is not {article} {what} (a class derived from {kind})")
+
+
+_INSTALLED_ONLY: ContextVar[bool] = ContextVar("_INSTALLED_ONLY", default=False)
+
+
+@contextmanager
+def installed_only() -> Iterator[None]:
+    """Let nothing be named meanwhile but what is installed: for those who may run no code."""
+    token = _INSTALLED_ONLY.set(True)
+    try:
+        yield
+    finally:
+        _INSTALLED_ONLY.reset(token)
+
+
+def require_allowed(reference: str) -> None:
+    """Refuse a reference before anything of it is imported, where only names are allowed.
+
+    Raises
+    ------
+    InputError
+        Within `installed_only`.
+    """
+    if _INSTALLED_ONLY.get():
+        raise InputError(f"{reference}: must be the name of something installed, not of code")
 
 
 def is_reference(text: str) -> bool:
-    """Whether a text is `module:Class` or `file.py:Class`, and not a plain name."""
+    """Whether a text is `module:Class` or `file.py:Class` and not a plain name."""
     return ":" in text
 
 
 def anchored(reference: str, folder: Path | None = None) -> str:
-    """Return a reference that is understood in every working directory.
+    """Return a reference that is valid in any working directory.
 
     Parameters
     ----------
     folder
-        Where a file is looked for first. Default: the working directory.
+        Folder where a file is looked for first. Default: the working directory.
 
     Returns
     -------
     str
-        `/absolute/file.py:Class` for a file; anything else as it was.
+        `/absolute/file.py:Class` for a file; any other reference unchanged.
     """
     place, _, name = reference.rpartition(":")
     if not place.endswith(_SUFFIX):
@@ -87,32 +114,32 @@ def anchored(reference: str, folder: Path | None = None) -> str:
 
 
 def reference_of(found: type) -> str:
-    """Return the reference under which another process finds a class.
+    """Return a reference by which another process finds a class.
 
     Raises
     ------
     InputError
-        If it was defined where nothing can be imported from: in a notebook, at a prompt, or within
-        a function.
+        If the class cannot be imported because it was defined in a notebook, at a prompt or in a
+        function.
     """
     module = found.__module__
     if module.startswith(_FILE):
         return f"{_path_of(module)}:{found.__qualname__}"
     if "." in found.__qualname__:
-        raise InputError(f"{found.__qualname__}: must be a class of a module, not of a function")
+        raise InputError(f"{found.__qualname__}: must be defined in a module, not in a function")
     if module != "__main__":
         return f"{module}:{found.__qualname__}"
     file = getattr(sys.modules[module], "__file__", None)
     if file is None:
         raise InputError(
             f"{found.__qualname__}: was defined in a notebook or at a prompt, where worker "
-            "processes do not find it; write it into a file and import it from there"
+            "processes cannot find it; write it to a file and import it from there"
         )
     return f"{Path(file).absolute()}:{found.__qualname__}"
 
 
 def name_of(found: type) -> str:
-    """Return the name under which this process finds a class, wherever it was defined."""
+    """Return the name by which this process finds a class, wherever it was defined."""
     try:
         return reference_of(found) if found.__module__ != "__main__" else _remembered(found)
     except InputError:
@@ -120,12 +147,12 @@ def name_of(found: type) -> str:
 
 
 def plain(value: Any, name: Callable[[type], str]) -> Any:
-    """Return a value as a file would hold it.
+    """Return a value as it would be written to a file.
 
     Parameters
     ----------
     name
-        What stands for a class: `name_of` within this process, `reference_of` for others.
+        How to write a class: `name_of` within this process, `reference_of` for other processes.
     """
     if isinstance(value, type):
         return name(value)
@@ -145,7 +172,7 @@ def _remembered(found: type) -> str:
 
 
 def source_file(found: type) -> Path | None:
-    """Return the file in which a class was written; nothing for one typed at a prompt."""
+    """Return the file that defines a class; None for a class typed at a prompt."""
     try:
         return Path(inspect.getfile(found))
     except (OSError, TypeError):
@@ -184,7 +211,7 @@ def _file(place: str, reference: str) -> ModuleType:
 def _module(name: str, reference: str) -> ModuleType:
     here = str(Path.cwd())
     if not _exists(name) and here not in sys.path:
-        # last: what is installed is not to be hidden by a file of the same name
+        # last, so that a file cannot hide an installed module of the same name
         sys.path.append(here)
         importlib.invalidate_caches()
     if not _exists(name):
@@ -202,7 +229,7 @@ def _exists(name: str) -> bool:
         return importlib.util.find_spec(name) is not None
     except (ModuleNotFoundError, ValueError):
         return False
-    except Exception:  # its package is there, and fails: `_import` says how
+    except Exception:  # its package exists but fails to import: `_import` reports how
         return True
 
 
@@ -211,7 +238,7 @@ def _import(name: str, reference: str) -> ModuleType:
         return importlib.import_module(name)
     except KeyboardInterrupt:
         raise
-    except BaseException as error:  # whatever a user's file does when it is read, `exit()` too
+    except BaseException as error:  # anything a user's file may do when it is run, even `exit()`
         line = str(error).splitlines()[0] if str(error) else ""
         raise InputError(
             f"{reference}: cannot be loaded ({type(error).__name__}: {line})"
@@ -219,7 +246,7 @@ def _import(name: str, reference: str) -> ModuleType:
 
 
 def _module_name(path: Path) -> str:
-    # a dot would stand between a package and its module
+    # a dot would separate a package from its module
     return _FILE + quote(str(path)).replace(".", "%2E")
 
 
@@ -228,7 +255,7 @@ def _path_of(name: str) -> Path:
 
 
 class _Files:
-    """Finds the modules that are files of users, also for who unpickles an object of theirs."""
+    """Finds the modules of user files, also when an object of theirs is unpickled."""
 
     @classmethod
     def find_spec(
@@ -239,7 +266,7 @@ class _Files:
         place = _path_of(name)
         folder = str(place.parent)
         if folder not in sys.path:
-            # what lies beside it is imported as if the file were run
+            # modules beside the file are found as if the file were run as a script
             sys.path.append(folder)
         return importlib.util.spec_from_file_location(name, place)
 

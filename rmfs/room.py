@@ -1,4 +1,4 @@
-"""Whether what is asked for fits the memory of the machine, before it is begun."""
+"""Checks that a run or layout fits into memory before it is started."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 TILE_BYTES = 1600
-"""Of a layout, per tile of its area: measured while layouts of 10,000 to 100,000 are generated."""
+"""Of a layout, per tile of its area; measured while generating 10,000 to 100,000 tiles."""
 WAYPOINT_BYTES = 3200
-"""Of a run, per waypoint: tables of travel times, the planner's timetables."""
+"""Of a run, per waypoint: tables of travel times and the planner's timetables."""
 STOCK_BYTES = 24
 """Of a run, per SKU and pod: units, free units, and those drawn at the start."""
 SKU_BYTES = 400
 ORDER_BYTES = 1000
-"""Per order that waits at time zero."""
+"""Of a run, per order waiting at time zero."""
 ROBOT_BYTES = 20_000
 
 _force: ContextVar[bool] = ContextVar("force", default=False)
@@ -30,7 +30,7 @@ _force: ContextVar[bool] = ContextVar("force", default=False)
 
 @contextmanager
 def forced(force: bool = True) -> Iterator[None]:
-    """Within, what does not fit is begun all the same."""
+    """Context in which work starts even if it may not fit into memory."""
     token = _force.set(force)
     try:
         yield
@@ -62,12 +62,12 @@ def require(needed: float, what: str) -> None:
 
 
 def spoken(size: float) -> str:
-    """Return a number of bytes in words."""
+    """Return a number of bytes as text for humans."""
     return f"{size / 1e9:.0f} GB" if size >= 1e10 else f"{size / 1e9:.1f} GB"
 
 
 def available() -> float:
-    """Return the bytes that this process may still take: of the machine, and of its own limit."""
+    """Return the bytes that this process may still allocate, by the machine's limit and its own."""
     limits = [float("inf")]
     try:
         told = Path("/proc/meminfo").read_text("utf-8")
@@ -78,6 +78,6 @@ def available() -> float:
         if soft != resource.RLIM_INFINITY:
             pages = int(Path("/proc/self/statm").read_text("utf-8").split()[0])
             limits.append(float(soft - pages * resource.getpagesize()))
-    except OSError:  # another system: nothing is known, and nothing refused
+    except OSError:  # another system: nothing is known, so nothing is refused
         pass
     return min(limits)

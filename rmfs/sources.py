@@ -1,8 +1,8 @@
-"""The files of users that a class of theirs is made of: its module, and all that this imports.
+"""The user's source files that a class depends on: its module and everything it imports.
 
-What a module imports is read from its text, so the answer does not depend on what else the present
-process has imported. What belongs to Python, to rmfs or to other installed packages is told by its
-version, not by its files.
+Imports are found by parsing the source text, so the answer does not depend on what the current
+process has imported. Python, rmfs and other installed packages are identified by their version
+and not by their files.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ _OWN = __name__.partition(".")[0]
 
 @dataclass(frozen=True)
 class _Module:
-    """A module that has been found.
+    """A module that has been located.
 
     Attributes
     ----------
     below
-        Where its own modules lie; nothing unless it is a package.
+        Folders of its submodules; empty unless it is a package.
     """
 
     name: str
@@ -40,15 +40,15 @@ class _Module:
 
     @property
     def package(self) -> str:
-        """The package that relative imports start from."""
+        """The package to which relative imports refer."""
         return self.name if self.below is not None else self.name.rpartition(".")[0]
 
 
 def sources(classes: Iterable[type]) -> dict[str, Path]:
-    """Return the files of users that classes are made of, by the name of the module.
+    """Return the user's files that classes depend on, by module name.
 
-    A class of rmfs itself is made of none. Of a class of an installed package it is the files of
-    this package. Modules that are imported under a name computed at run time are not found.
+    A class of rmfs itself depends on none; a class of another installed package depends on the
+    files of that package. Modules imported under a name computed at run time are not found.
     """
     found: dict[str, Path] = {}
     for one in classes:
@@ -94,7 +94,7 @@ def _find(name: str) -> _Module | None:
 
 
 def _is_users(module: _Module, home: str) -> bool:
-    """Whether a module is no part of Python and of no other installed package than that named."""
+    """Whether a module belongs neither to Python nor to an installed package other than `home`."""
     path = module.file.resolve()
     if any(part in _INSTALLED for part in path.parts):
         return module.name.partition(".")[0] == home
@@ -102,7 +102,7 @@ def _is_users(module: _Module, home: str) -> bool:
 
 
 def _imported(module: _Module) -> Iterator[str]:
-    """Yield all names that a module may import as modules, and the packages above them."""
+    """Yield all names that a module may import as modules, and their parent packages."""
     try:
         tree = ast.parse(module.file.read_bytes())
     except (OSError, SyntaxError, ValueError):
@@ -141,7 +141,7 @@ def _is_for_types(test: ast.expr) -> bool:
 
 
 def _says(node: ast.expr, name: str) -> bool:
-    """Whether an expression is this name, or an attribute of this name."""
+    """Whether an expression is this name, or an attribute of that name."""
     return (isinstance(node, ast.Name) and node.id == name) or (
         isinstance(node, ast.Attribute) and node.attr == name
     )

@@ -1,4 +1,4 @@
-"""What a new kind of station is written with; the page on station kinds shows one."""
+"""Public names for defining a new kind of station; see the guide on station kinds."""
 
 from rmfs.control.decisions import Visit as Visit
 from rmfs.layout.kinds import StationKind as StationKind

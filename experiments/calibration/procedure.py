@@ -4,8 +4,8 @@ r"""Where a noisy, monotone response has a given mean: a root, found and then te
    via retrospective approximation, IIE Transactions 33(3), 259-275). The mean over a few seeds, the
    same at every level, is a function of the level, and its root is found as that of any function:
    by the Illinois variant of regula falsi. That root is a guess.
-2. *Test*: fresh seeds at the guess, as many as a confidence interval of half the tolerance takes by
-   the two-stage rule of Stein (1945, A two-sample test for a linear hypothesis whose power is
+2. *Test*: fresh seeds at the guess, enough for an interval whose half width is half the tolerance,
+   by the two-stage rule of Stein (1945, A two-sample test for a linear hypothesis whose power is
    independent of the variance, Annals of Mathematical Statistics 16(3), 243-258), which is exact if
    runs are normally distributed. The guess stands if the whole interval lies within the tolerance.
    Otherwise the next guess is where a monotone function through the means so far meets the target

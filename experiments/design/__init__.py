@@ -1,8 +1,9 @@
 """Designs: which runs an experiment consists of.
 
-`file` is what a design file may say, `arms` turns it into arms, `resolve` loads what an arm names
-and gives it a digest, `planning` puts everything together and says what is wrong, `stages` says
-which runs are wanted next.
+`file` defines the contents of a design file, `arms` turns it into arms, `resolve` loads the inputs
+of an arm and computes their digest, `planning` combines everything and reports problems, and
+`stages`
+determines which runs are needed next.
 """
 
 from rmfs.experiments.design.arms import Arm as Arm

@@ -1,7 +1,7 @@
-"""From factors, lists and files to arms.
+"""Arms from factors, lists and files.
 
-A factor is a parameter (`layout.robots`, `controllers.psa`, or just `scenario` for the whole file)
-with its levels; or a name of its own, each of whose levels sets several parameters at once.
+A factor is either a parameter (`layout.robots`, `controllers.psa`, or just `scenario` for the whole
+file) with its levels, or a user-defined name, each of whose levels sets several parameters.
 """
 
 from __future__ import annotations
@@ -41,15 +41,15 @@ class Arm:
     name
         Unique in its design.
     levels
-        Per factor what is shown of its level: a number, a text, a truth value, or nothing.
+        For each factor the displayed level: a number, a string, a boolean, or None.
     inputs
         Name or path of layout, scenario and controllers.
     overrides
-        Parameters on top of these files, as pairs of path and value.
+        Parameters that replace those of these files, as pairs of path and value.
     pacing
-        What thinking costs.
+        How simulated time accounts for the computation of optimisers.
     digest
-        Hash of everything that decides about a run but its seed; empty until resolved.
+        Hash of everything that determines a run except its seed; empty until resolved.
     """
 
     name: str
@@ -67,16 +67,17 @@ class Level:
     Attributes
     ----------
     shown
-        Its levels as columns of a result table.
+        The values shown in the columns of a result table.
     settings
-        Parameters it sets, by dotted path.
+        Parameters that it sets, by dotted path.
     name
         Its part of the arm's name.
     raw
-        Per column the values by which exclusions may name it.
+        For each column, the values by which exclusions may refer to it.
     of_grid
-        Whether it is a level of a grid: arms tell it with its factor. An arm of a list goes by its
-        name alone.
+        Whether it is a level of a grid, whose arms are named with the factor. An arm of a list is
+        named
+        by the level alone.
     """
 
     shown: dict[str, Any]
@@ -115,9 +116,9 @@ def arms(design: DesignFile, folder: Path) -> tuple[list[Arm], list[str]]:
 
 
 def factor_names(keys: Iterable[str]) -> dict[str, str]:
-    """Return a short name per factor: the last words of its path, as few as tell it apart.
+    """Return a short name for each factor: as few last words of its path as are unique.
 
-    A last `name` (of a rule) is left out: `controllers.psa.name` is called `psa`.
+    A final `name` (of a rule) is left out: `controllers.psa.name` becomes `psa`.
     """
     keys = list(keys)
     words = {key: key.removesuffix(".name").split(".") for key in keys}
@@ -264,11 +265,15 @@ def _read_csv(path: Path) -> list[dict[str, str]]:
     try:
         with path.open(encoding="utf-8", newline="") as file:
             reader = csv.DictReader(file, strict=True)
+            columns = list(reader.fieldnames or ())
             rows = list(reader)
     except FileNotFoundError:
         raise InputError(f"{path}: no such file") from None
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: cannot be read ({error})") from None
+    doubled = [name for name in dict.fromkeys(columns) if columns.count(name) > 1]
+    if doubled:
+        raise InputError(f"{path}: line 1 names the column {doubled[0]} more than once")
     for number, row in enumerate(rows, 2):
         if None in row or None in row.values():
             raise InputError(f"{path}: line {number} has not as many cells as the first line")

@@ -1,4 +1,4 @@
-"""What a design file may say (`rmfs-design/1`)."""
+"""The contents of a design file (`rmfs-design/1`)."""
 
 from __future__ import annotations
 
@@ -53,11 +53,13 @@ class Strict(Model):
 
 
 class Best(Strict):
-    """The arms that go on to a stage: the best ones of the stage before."""
+    """The arms that continue in a stage: the best ones of the previous stage."""
 
-    best: int = Field(ge=1, description="how many arms")
+    best: int = Field(ge=1, description="number of arms")
     by: Measure = Field(description="column of the footprint whose means are compared")
-    goal: Goal | None = Field(None, description="default: whether more or less of it is better")
+    goal: Goal | None = Field(
+        None, description="whether to maximise or minimise it; default: from the data dictionary"
+    )
 
     @pydantic.model_validator(mode="after")
     def _known_goal(self) -> Best:
@@ -76,7 +78,7 @@ class Until(Strict):
     relative_half_width: Share = 0.02
     confidence: Share = 0.95
     step: int = Field(1, ge=1, description="seeds added at a time")
-    max_seeds: int = Field(50, ge=2, description="where an arm stops in any case")
+    max_seeds: int = Field(50, ge=2, description="maximum number of seeds per arm")
 
 
 class Select(Strict):
@@ -84,12 +86,14 @@ class Select(Strict):
 
     procedure: Literal["kim-nelson"] = "kim-nelson"
     column: Measure
-    goal: Goal | None = Field(None, description="default: whether more or less of it is better")
+    goal: Goal | None = Field(
+        None, description="whether to maximise or minimise it; default: from the data dictionary"
+    )
     indifference: float = Field(
         gt=0, description="smallest difference worth detecting, in units of the column"
     )
-    error: Share = Field(0.05, description="probability of a wrong choice, at most")
-    max_seeds: int = Field(200, ge=2, description="where the procedure stops in any case")
+    error: Share = Field(0.05, description="maximum probability of a wrong choice")
+    max_seeds: int = Field(200, ge=2, description="maximum number of seeds per arm")
 
     @pydantic.model_validator(mode="after")
     def _known_goal(self) -> Select:
@@ -102,7 +106,7 @@ class Select(Strict):
 
 
 class Stage(Strict):
-    """One part of an experiment; the next begins when it is over.
+    """One part of an experiment; the next one starts when it has ended.
 
     All arms of a stage get its seeds. `until` and `select` then add further ones.
     """
@@ -117,7 +121,7 @@ class Stage(Strict):
     @pydantic.model_validator(mode="after")
     def _one_rule(self) -> Stage:
         if self.until is not None and self.select is not None:
-            raise ValueError(f"stage {self.name}: until and select exclude each other")
+            raise ValueError(f"stage {self.name}: until and select cannot be combined")
         return self
 
 
@@ -134,39 +138,42 @@ class DesignFile(Strict):
     )
     first_seed: Seed = 1
     common_random_numbers: bool = Field(
-        True, description="the same seed means the same demand for every arm"
+        True, description="whether the same seed means the same demand for every arm"
     )
     seeded: list[str] = Field(
-        [], description='parameters that take the seed of the run, for example "layout.seed"'
+        [], description='parameters that are set to the seed of the run, for example "layout.seed"'
     )
 
-    pacing: str = Field("instant", description="what thinking costs in simulated time")
-    check: bool = Field(False, description="prove every run safe; fills `collisions`")
+    pacing: str = Field(
+        "instant", description="how simulated time accounts for the computation of optimisers"
+    )
+    check: bool = Field(False, description="prove every run free of collisions; fills `collisions`")
     allow_not_well_formed: bool = False
-    keep: list[str] = Field([], description="tables kept of every run beside its footprint")
+    keep: list[str] = Field([], description="tables to keep of every run besides its footprint")
     decisions: str = Field(
         "",
-        description="folder for every question to an optimiser, one below it per run",
+        description="folder for all questions to optimisers, with a subfolder per run",
     )
     measures: list[str] = Field(
         [],
-        description="measures of your own: path/to/file.py:Class, module:Class, or the name of an "
-        "installed one",
+        description="additional measures: path/to/file.py:Class, module:Class, or the name "
+        "of an installed one",
     )
 
     base: Table = Field(
-        description="layout, scenario, controllers, and parameters that all arms share"
+        description="layout, scenario, controllers, and parameters shared by all arms"
     )
     factors: dict[str, list[Any]] = Field({}, description="levels of each factor: a grid of arms")
-    arms: list[Table] = Field([], description="arms one by one, each combined with the grid")
+    arms: list[Table] = Field([], description="single arms, each combined with the grid")
     arms_file: str | None = Field(
-        None, description=".csv (a column per parameter) or .toml ([[arms]]) with more arms"
+        None, description=".csv (one column per parameter) or .toml ([[arms]]) file with more arms"
     )
-    exclude: list[Table] = Field([], description="combinations of levels that are left out")
+    exclude: list[Table] = Field([], description="combinations of levels to leave out")
     only_file: str | None = Field(
         None,
-        description=".csv with a column per factor and a row per combination: all others are left "
-        "out (a fraction of the grid, see `rmfs.experiments.design.fraction`)",
+        description=".csv file with a column per factor and a row per combination; all other "
+        "combinations are left out (a fraction of the grid, see "
+        "`rmfs.experiments.design.fraction`)",
     )
     stages: list[Stage] = Field([], description="default: one stage with the seeds above")
 
@@ -203,7 +210,7 @@ class DesignFile(Strict):
         return self
 
     def seeds_of(self, stage: Stage | None = None) -> list[int]:
-        """Seeds that every arm gets, in a stage or by default."""
+        """Return the seeds of every arm, in a stage or by default."""
         for given in (stage, self):
             if given is not None and given.seeds is not None:
                 return given.seeds
@@ -212,7 +219,7 @@ class DesignFile(Strict):
         return []
 
     def all_stages(self) -> list[Stage]:
-        """The stages; a design without has one that holds everything."""
+        """The stages; a design without stages has one with all runs."""
         return self.stages or [Stage(name="all")]
 
 

@@ -1,12 +1,13 @@
-"""A fraction of a grid that tells the main effects best.
+"""Fractions of a grid that estimate the main effects as precisely as possible.
 
 `python -m rmfs.experiments.design.fraction` finds one.
 
-A full factorial of many rules has thousands of arms. For a screening, the effects of the factors
-can be told from far fewer, if their levels are spread well. The arms chosen here maximise the
+A full factorial of many rules has thousands of arms. For a screening, far fewer suffice to estimate
+the effects of the factors, if their levels are well balanced. The arms chosen here maximise the
 determinant of the information matrix of the main effects (D-optimality) by exchanging arms, the
-best exchange first (Fedorov 1972). The result is written to a file, so that the arms of a study
-do not depend on where it was made.
+best
+exchange first (Fedorov 1972). The result is written to a file, so that the arms of a study do not
+depend on the machine.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from rmfs.experiments.design.arms import Arm
 
 EXCHANGES = 10_000
-"""More than are ever needed: each one improves the design."""
+"""Limit of exchanges, never reached in practice, since each one improves the design."""
 
 IMPROVEMENT = 1e-9
 
@@ -107,7 +108,7 @@ def d_optimal(rows: NDArray[np.float64], count: int, seed: int = 0) -> list[int]
 
 
 def efficiency(rows: NDArray[np.float64], chosen: Sequence[int]) -> float:
-    """Return the D-efficiency of a choice: 1 if each arm tells as much as in the full grid."""
+    """Return the D-efficiency of a choice: 1 if each arm is as informative as in the full grid."""
     part, whole = rows[list(chosen)], rows
     parameters = rows.shape[1]
     share = np.linalg.slogdet(part.T @ part)[1] - np.linalg.slogdet(whole.T @ whole)[1]
@@ -115,7 +116,7 @@ def efficiency(rows: NDArray[np.float64], chosen: Sequence[int]) -> float:
 
 
 def fraction(made: Sequence[Arm], count: int, seed: int = 0) -> tuple[list[Arm], float]:
-    """Choose arms, and say how efficient the choice is."""
+    """Choose arms; return them with the efficiency of the choice."""
     rows = main_effects([list(arm.levels.values()) for arm in made])
     chosen = d_optimal(rows, count, seed)
     return [made[number] for number in chosen], efficiency(rows, chosen)

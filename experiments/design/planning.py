@@ -31,7 +31,7 @@ FILE = "plan.json"
 
 
 class PlanError(InputError):
-    """A plan that cannot be run.
+    """A plan has problems and cannot be run.
 
     Parameters
     ----------
@@ -47,22 +47,22 @@ class PlanError(InputError):
 
 @dataclass(frozen=True)
 class Plan:
-    """What an experiment consists of.
+    """The resolved contents of an experiment.
 
     Attributes
     ----------
     table
         The design file as written.
     arms
-        In the order of the design.
+        Arms in the order of the design.
     files
         Hash of every input file.
     problems
-        What is wrong; a plan with problems is not run.
+        Problems; a plan with problems cannot be run.
     measures
-        Measures of the user, as `rmfs.measure.registry.described` tells them.
+        The user's measures, as described by `rmfs.measure.registry.described`.
     source
-        The file it came from.
+        The file from which it was read.
     """
 
     design: DesignFile
@@ -75,7 +75,7 @@ class Plan:
 
     @cached_property
     def hash(self) -> str:
-        """Hash of the design: of its content and of all its input files."""
+        """Hash of the design's contents and of all its input files."""
         told = {"design": self.table, "files": self.files, "arms": [a.digest for a in self.arms]}
         text = json.dumps(told, sort_keys=True, separators=(",", ":"), default=str)
         return hashlib.sha256(text.encode()).hexdigest()
@@ -91,7 +91,7 @@ class Plan:
         return factor_names(self.factors)
 
     def arm(self, name: str) -> Arm:
-        """Return the arm of a name.
+        """Return the arm with a name.
 
         Raises
         ------
@@ -106,14 +106,14 @@ class Plan:
         raise InputError(f"{name}: no such arm; arms: {shown}{more}")
 
     def seed(self, arm: Arm, replication: int) -> int:
-        """Return the seed of a run: with common random numbers that of the design itself."""
+        """Return the seed of a run; with common random numbers, that of the design itself."""
         if self.design.common_random_numbers:
             return replication
         entropy = [replication, int(arm.digest[:16], 16)]
         return int(np.random.SeedSequence(entropy).generate_state(1, np.uint32)[0])
 
     def job(self, arm: Arm, replication: int) -> Job:
-        """Return all that a worker has to know of one run."""
+        """Return everything that a worker needs for one run."""
         seed = self.seed(arm, replication)
         seeded = [(key.split("."), seed) for key in self.design.seeded]
         return Job(
@@ -135,18 +135,18 @@ class Plan:
         )
 
     def require_sound(self) -> None:
-        """Refuse a plan with problems.
+        """Raise an error if the plan has problems.
 
         Raises
         ------
         PlanError
-            With all of them.
+            Lists all of them.
         """
         if self.problems:
             raise PlanError(self.source, self.problems)
 
     def save(self, folder: Path) -> None:
-        """Write the plan beside the results, which are read with it."""
+        """Write the plan to the folder of the results, which are read with it."""
         told = {
             "format": FORMAT,
             "hash": self.hash,
@@ -174,13 +174,13 @@ def plan(
     name_or_path
         A design file, or the name of a shipped one.
     base
-        Entries that replace or complete those of the table `base`.
+        Entries that replace or extend those of the table `base`.
     replications
-        Number of seeds in place of the design's own; only for designs without stages.
+        Number of seeds, instead of the design's own; only for designs without stages.
     without
         Names of arms to leave out.
     told
-        Called with the number of arms resolved so far and in all.
+        Called with the number of arms resolved so far and in total.
 
     Raises
     ------
@@ -237,7 +237,7 @@ def plan_of(
 
 
 def load(folder: Path) -> Plan:
-    """Read the plan that results were made with.
+    """Load the plan with which results were made.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""Which runs are wanted, given the results so far.
+"""Determines which runs are needed, given the results so far.
 
-Everything here depends on the design and on reproducible results alone, never on when they came
-in: an experiment that was interrupted wants the same runs as one that was not.
+This depends only on the design and on reproducible results, never on their order of arrival: an
+interrupted experiment needs the same runs as an uninterrupted one.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Wanted:
     arm
         Name of the arm.
     replication
-        Its seed as the design counts.
+        The seed as numbered in the design.
     """
 
     stage: str
@@ -40,16 +40,16 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Schedule:
-    """The runs wanted so far.
+    """The runs needed so far.
 
     Attributes
     ----------
     runs
-        In the order in which they should be done, each (arm, replication) once.
+        In the order in which they should be made, each (arm, replication) once.
     complete
-        Whether nothing will be added once these are done.
+        Whether no further runs will be added.
     remarks
-        What the rules of the stages decided, a line each.
+        Decisions of the stages' rules, one line each.
     """
 
     runs: list[Wanted]
@@ -58,7 +58,7 @@ class Schedule:
 
 
 def columns(plan: Plan) -> list[str]:
-    """Columns of the results that the stages look at."""
+    """Return the columns of results that the stages use."""
     named: dict[str, None] = {}
     for stage in plan.design.stages:
         for rule in (stage.until, stage.select):
@@ -79,7 +79,7 @@ def schedule(
     results
         Finished runs: columns `arm`, `replication` and those of `columns`.
     failed
-        Runs, as arm and replication, that failed: nothing waits for them.
+        Failed runs, as arm and replication, which will not be waited for.
     """
     known = _Known(results, frozenset(failed))
     runs: dict[tuple[str, int], Wanted] = {}

@@ -16,11 +16,13 @@ if TYPE_CHECKING:
 
     from rmfs.experiments.papers.study import Study
 
-CONTROLLERS = "controllers"
+CONTROLLERS, RULES = "controllers", "rules"
 RATES = ("units_per_h", "lines_per_h", "orders_per_h")
 EFFORT = ("units_per_visit", "orders_per_visit", "distance_per_unit_m", "distance_per_order_m")
 SHARES = tuple(f"{kind}_decision_share" for kind in ("optimiser", "heuristic", "stale", "failed"))
 COLUMNS = (*RATES, "station_share", *EFFORT, "order_turnover_median_s")
+START = ", start rule"
+"""Ends the name of controllers whose start rule decides in place of the solver."""
 DECISION_S = "optimiser_wall_median_s"
 LEAST_SHARE = 0.9
 """Share of decisions by optimisers below which a run says nothing about optimisers."""
@@ -39,9 +41,12 @@ def completed(frame: pd.DataFrame, station_units_per_h: float) -> pd.DataFrame:
     Returns
     -------
     The frame with `distance_per_order_m`, metres of all robots per completed order, and
-    `station_share`, units per hour / what all stations can do.
+    `station_share`, units per hour / what all stations can do; `controllers` are the levels of a
+    factor `rules`, where the design has one.
     """
     limit = frame["pick_stations"] * station_units_per_h
+    if RULES in frame:
+        frame = frame.assign(**{CONTROLLERS: frame[RULES]})
     return frame.assign(
         distance_per_order_m=frame["distance_m"] / frame["orders_completed"],
         station_share=frame["units_per_h"] / limit,
@@ -106,18 +111,68 @@ def gains(
         for controllers in runs[CONTROLLERS].unique():
             if controllers == baseline:
                 continue
-            row: dict[tuple[str, str], float] = {}
-            for column in columns:
-                wide = runs.pivot_table(index="replication", columns=CONTROLLERS, values=column)
-                found = interval(100 * (wide[controllers] / wide[baseline] - 1))
-                row[column, "mean"], row[column, HALF] = found.mean, found.half_width
-            rows[f"{where}, {controllers}"] = row
+            rows[f"{where}, {controllers}"] = _percent(runs, controllers, baseline, columns)
     made = rows_frame(rows, ", ".join((*groups, CONTROLLERS)))
     caption = (
         f"Difference to {baseline} in percent, seed by seed, with 95% confidence intervals "
         "(Student's t)."
     )
     return Table(made, {(c, part): 1 for c in columns for part in ("mean", HALF)}, caption)
+
+
+def of_optimiser(
+    frame: pd.DataFrame, groups: Sequence[str], columns: Sequence[str] = (*RATES, *EFFORT)
+) -> Table:
+    """Return what optimisers add to their own start rules, in percent, seed by seed.
+
+    Parameters
+    ----------
+    frame
+        As `completed` returns it. A level of `controllers` is compared with the level of the same
+        name and `START`, where there is one.
+    groups
+        Columns within whose values controllers are compared.
+    columns
+        Measures to compare.
+    """
+    rows: dict[str, dict[tuple[str, str], float]] = {}
+    for levels, runs in frame.groupby(list(groups), sort=False):
+        where = ", ".join(str(level) for level in levels)
+        for controllers in runs[CONTROLLERS].unique():
+            start = f"{controllers}{START}"
+            if not (runs[CONTROLLERS] == start).any():
+                continue
+            rows[f"{where}, {controllers}"] = _percent(runs, controllers, start, columns)
+    caption = (
+        "What the optimiser adds to its own start rule, which is the same controller without a "
+        "solver: difference in percent, seed by seed, with 95% confidence intervals (Student's t)."
+    )
+    made = rows_frame(rows, ", ".join((*groups, CONTROLLERS)))
+    return Table(made, {(c, part): 1 for c in columns for part in ("mean", HALF)}, caption)
+
+
+def publish_added(
+    study: Study,
+    frame: pd.DataFrame,
+    groups: Sequence[str],
+    name: str,
+    columns: Sequence[str] = (*RATES, *EFFORT),
+) -> None:
+    """Publish `of_optimiser` as `name`-optimiser, if the design has start rules."""
+    if frame[CONTROLLERS].str.endswith(START).any():
+        study.publish(of_optimiser(frame, groups, columns), f"{name}-optimiser", columns)
+
+
+def _percent(
+    runs: pd.DataFrame, controllers: str, other: str, columns: Sequence[str]
+) -> dict[tuple[str, str], float]:
+    """Return the differences between two levels of `controllers` in percent, with intervals."""
+    row: dict[tuple[str, str], float] = {}
+    for column in columns:
+        wide = runs.pivot_table(index="replication", columns=CONTROLLERS, values=column)
+        found = interval(100 * (wide[controllers] / wide[other] - 1))
+        row[column, "mean"], row[column, HALF] = found.mean, found.half_width
+    return row
 
 
 def too_few(frame: pd.DataFrame) -> list[str]:

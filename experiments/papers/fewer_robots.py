@@ -15,7 +15,14 @@ import pandas as pd
 
 from rmfs.experiments.figures.lines import lines
 from rmfs.experiments.figures.style import saving
-from rmfs.experiments.papers.benefit import CONTROLLERS, completed, overview, require_optimised
+from rmfs.experiments.papers.benefit import (
+    CONTROLLERS,
+    START,
+    completed,
+    overview,
+    publish_added,
+    require_optimised,
+)
 from rmfs.experiments.papers.study import command, done, parser, station_units_per_h
 from rmfs.experiments.statistics import interval
 from rmfs.experiments.tables import HALF, Table, rows_frame
@@ -122,8 +129,10 @@ def main(arguments: list[str] | None = None) -> None:
     name = study.plan.design.name
     study.publish(overview(frame, (*groups, ROBOTS), COLUMNS), name, COLUMNS)
     study.publish(needed(frame, groups), f"{name}-needed", ("station_share",))
+    publish_added(study, frame, (*groups[:-1], ROBOTS), name)
+    solved = frame[~frame[CONTROLLERS].str.endswith(START)]
     if DEMAND not in frame:
-        print(picture(study, frame, each * frame["pick_stations"].iloc[0]))
+        print(picture(study, solved, each * frame["pick_stations"].iloc[0]))
     # fleets far too small keep no plan: they are shown, and nothing is claimed of them
     require_optimised(study, frame[frame["station_share"] >= ENOUGH])
 

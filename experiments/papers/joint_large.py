@@ -13,9 +13,11 @@ import sys
 
 from rmfs.experiments.papers.benefit import (
     COLUMNS,
+    START,
     completed,
     gains,
     overview,
+    publish_added,
     require_optimised,
 )
 from rmfs.experiments.papers.study import command, done, parser, station_units_per_h
@@ -28,7 +30,9 @@ def main(arguments: list[str] | None = None) -> None:
     study = done(parser("joint-large", __doc__).parse_args(arguments))
     frame = completed(study.frame, station_units_per_h(study))
     study.publish(overview(frame, ("demand", "controllers")), "joint-large", COLUMNS)
-    study.publish(gains(frame, ("demand",), BASELINE), "joint-large-gains", COLUMNS)
+    solved = frame[~frame["controllers"].str.endswith(START)]
+    study.publish(gains(solved, ("demand",), BASELINE), "joint-large-gains", COLUMNS)
+    publish_added(study, frame, ("demand",), "joint-large")
     require_optimised(study)
 
 

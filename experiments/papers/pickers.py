@@ -1,8 +1,8 @@
 """How evenly work is spread over pickers, and what that costs.
 
-Two pickers of different speed who tire, on the small site with arrivals. Rules that look at pickers
-stand beside pod match, and optimisers with balance in their objective beside the same without.
-Published are means, and differences of the latter seed by seed.
+The small site with arrivals has two pickers who differ in speed and tire. Rules that take pickers
+into account are compared with pod match, and optimisers with balance in their objective with the
+same optimisers without it. Means are published, and for the optimisers also differences by seed.
 """
 
 from __future__ import annotations

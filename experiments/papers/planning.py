@@ -3,7 +3,8 @@
 TA planning on the small site with three to five robots (`--large`: the large site with 20 and 30),
 whole orders, a backlog and arrivals, after a warm-up. The start rule is the same controller with
 `method = "greedy"`: same horizon, same values, plans that go on from the last one, but nothing
-searched. Bundles and space in use stand beside, as who stores fewer has robots to spare for a
+searched. With `--anticipation`, planning is compared with itself when it also reckons with orders
+still to come. Bundles and space in use stand beside, as who stores fewer has robots to spare for a
 while.
 """
 
@@ -38,16 +39,23 @@ GAINED = ("units_per_h", "distance_per_unit_m", "units_per_visit", "orders_per_h
 def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("planning", __doc__)
-    options.add_argument("--large", action="store_true", help="the large site instead")
+    other = options.add_mutually_exclusive_group()
+    other.add_argument("--large", action="store_true", help="the large site instead")
+    other.add_argument(
+        "--anticipation", action="store_true", help="with orders still to come, instead"
+    )
     given = options.parse_args(arguments)
-    name = "planning-large" if given.large else "planning"
+    name, baseline = "planning", START_RULE
     if given.large:
+        name = given.design = "planning-large"
+    elif given.anticipation:
+        name, baseline = "anticipation", "planning"
         given.design = name
     study = done(given)
     frame = completed(study.frame, station_units_per_h(study))
     frame = frame.assign(**{CONTROLLERS: frame["planned"]})
     study.publish(overview(frame, (*GROUPS, CONTROLLERS), COLUMNS), name, COLUMNS)
-    study.publish(gains(frame, GROUPS, START_RULE, GAINED), f"{name}-gains", GAINED)
+    study.publish(gains(frame, GROUPS, baseline, GAINED), f"{name}-gains", GAINED)
     require_optimised(study)
 
 

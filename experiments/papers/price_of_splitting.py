@@ -3,11 +3,11 @@
 Split orders against whole ones (each by the best controllers we have), with put walls of so many
 slots, one minute and ten minutes away from the pick stations; the controllers split no more orders
 than the wall can hold, or (`always`) as many as they like. Published are means, differences seed by
-seed, what splitting as far as the wall goes does against the better of whole and always, and where
-splitting breaks even: slots of the wall, from which on it picks more units per hour; seconds that a
-packer may take for each further tote until the work of pickers and packers per unit is that of
-whole orders; and the way to the wall at which an order is packed as early, in the mean, as a whole
-one. `--default`, `--large`: these sites.
+seed, what splitting as far as the wall goes does against the better of whole and always, what the
+optimisers add to their start rules, and where splitting breaks even: slots of the wall, from which
+on it picks more units per hour; seconds that a packer may take for each further tote until the work
+of pickers and packers per unit is that of whole orders; and the way to the wall at which an order
+is packed as early, in the mean, as a whole one. `--default`, `--large`: these sites.
 """
 
 from __future__ import annotations
@@ -21,9 +21,11 @@ import numpy as np
 
 from rmfs.experiments.papers.benefit import (
     CONTROLLERS,
+    START,
     completed,
     gains,
     overview,
+    publish_added,
     require_optimised,
 )
 from rmfs.experiments.papers.study import command, done, parser, station_units_per_h
@@ -69,7 +71,9 @@ def walls_of(runs: pd.DataFrame) -> dict[str, tuple[float, float]]:
     """Return the walls (`wall_of`) by the levels of `orders` that split as far as a wall goes."""
     labels = [str(label) for label in runs[ORDERS].unique()]
     return {
-        label: wall_of(label) for label in labels if label != WHOLE and not label.endswith(ALWAYS)
+        label: wall_of(label)
+        for label in labels
+        if label != WHOLE and not label.endswith((ALWAYS, START))
     }
 
 
@@ -252,7 +256,9 @@ def main(arguments: list[str] | None = None) -> None:
     frame = completed(study.frame, station_units_per_h(study))
     frame = frame.assign(**{CONTROLLERS: frame[ORDERS]})
     study.publish(overview(frame, (DEMAND, CONTROLLERS), COLUMNS), name, COLUMNS)
-    study.publish(gains(frame, (DEMAND,), WHOLE, GAINED), f"{name}-gains", GAINED)
+    split = frame[~frame[ORDERS].str.endswith(START)]
+    study.publish(gains(split, (DEMAND,), WHOLE, GAINED), f"{name}-gains", GAINED)
+    publish_added(study, frame, (DEMAND,), name, GAINED)
     study.publish(against_better(frame), f"{name}-better", ("units_per_h",))
     study.publish(even(frame), f"{name}-even", GAINED)
     # where the wall is ignored, stations are blocked and little is left to decide

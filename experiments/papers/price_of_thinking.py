@@ -38,7 +38,7 @@ def picture(study: Study, frame: pd.DataFrame) -> Path:
     path = study.place("price-of-thinking.png")
     with saving(path, 6.0, 4.0) as figure:
         ax = figure.subplots()
-        timed = frame[frame[THINKING] != "none"]
+        timed = frame[~frame[THINKING].isin(["none", "start rule"])]
         words = timed[THINKING].str.split(expand=True)
         timed = timed.assign(mode=words[0], limit_s=words[1].astype(float))
         lines(timed, "limit_s", "units_per_h", "mode", ax)

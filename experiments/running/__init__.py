@@ -1,4 +1,4 @@
-"""Running an experiment: jobs, the processes that do them, and the driver that hands them out."""
+"""Running of experiments: jobs, worker processes, and the driver that distributes jobs."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ def run(
     dask: str | None = None,
     watcher: Watcher | None = None,
 ) -> Tally:
-    """Do the runs of a plan that are not finished yet.
+    """Make the runs of a plan that are not finished yet.
 
     Parameters
     ----------
     folder
-        Where results go; made if absent.
+        Folder for the results, created if necessary.
     processes
-        Runs at a time on this machine. Default: one per core that this process may use.
+        Number of parallel runs on this machine. Default: one per available core.
     dask
-        Address of a Dask scheduler or a cluster profile, in place of this machine.
+        Address of a Dask scheduler, or a cluster profile, instead of this machine.
     watcher
-        Told of progress.
+        Notified of progress.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def run(
 
 
 def cores() -> int:
-    """Return how many cores this process may use."""
+    """Return the number of cores available to this process."""
     import os
 
     try:

@@ -1,8 +1,8 @@
-"""Runs on a Dask cluster: one that exists, or one that a batch system starts.
+"""Runs on a Dask cluster: an existing one, or one started through a batch system.
 
-The workers need the same version of rmfs, and input files of your own under the same path (a shared
-file system); every worker compares the hashes of the inputs. Start workers with one thread each
-(`dask worker ADDRESS --nworkers N --nthreads 1`): a run is a process.
+Workers need the same version of rmfs, and your input files under the same paths (a shared file
+system); every worker compares the hashes of the inputs. Start workers with one thread each
+(`dask worker ADDRESS --nworkers N --nthreads 1`), because each run is a process.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ CLUSTERS = {
 
 
 class Profile(Model):
-    """A cluster profile (`rmfs-cluster/1`): what dask-jobqueue is told.
+    """A cluster profile (`rmfs-cluster/1`) with the settings of dask-jobqueue.
 
-    `cluster = "local"` starts workers on this machine, to try things out.
+    `cluster = "local"` starts workers on this machine, for testing.
     """
 
     format: Literal["rmfs-cluster/1"]
@@ -55,14 +55,14 @@ class Profile(Model):
 
 
 class DaskWorkers:
-    """Does jobs on the workers of a Dask cluster.
+    """Executes jobs on the workers of a Dask cluster.
 
     Parameters
     ----------
     address
-        Of a scheduler (`tcp://HOST:PORT`), or a profile (a .toml file).
+        Address of a scheduler (`tcp://HOST:PORT`), or a profile (.toml file).
     work
-        What is done with a job. Default: simulate it.
+        Function that executes a job. Default: simulate it.
 
     Raises
     ------
@@ -97,14 +97,14 @@ class DaskWorkers:
         return 2 * max(1, sum(threads))
 
     def submit(self, job: Job) -> None:
-        """Begin a job on some worker; if that one dies Dask begins it again on another."""
+        """Submit a job to a worker; if the worker dies, Dask submits it to another."""
         with self._scheduler_there():
             future = self.client.submit(_work_of(self._work), job, pure=False)
         self._jobs[future] = job
         future.add_done_callback(self._done.put)
 
     def wait(self, timeout_s: float) -> list[tuple[Job, Outcome]]:
-        """Return the jobs that have ended within a time.
+        """Return the jobs that have ended, waiting up to a given time.
 
         Raises
         ------
@@ -120,7 +120,7 @@ class DaskWorkers:
             return ended
 
     def close(self) -> None:
-        """Cancel what still runs and leave the cluster; end it if it was started here."""
+        """Cancel running jobs and leave the cluster; stop the cluster if it was started here."""
         # a scheduler that is gone has nothing to cancel
         with suppress(OSError, RuntimeError, CancelledError):
             self.client.cancel(list(self._jobs), force=True)
@@ -164,7 +164,7 @@ def read_profile(path: Path) -> Profile:
 
 
 def job_script(path: Path) -> str:
-    """Return what a batch system will be given for each of its jobs; nothing is submitted.
+    """Return the script submitted to the batch system for each of its jobs, without submitting it.
 
     Raises
     ------

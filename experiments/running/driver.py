@@ -27,23 +27,23 @@ ATTEMPTS = 3
 """How often a run is begun whose worker dies without a word."""
 
 PATIENCE_S = 1.0
-"""Time between two looks at the engine; progress is told in between."""
+"""Time between two looks at the engine; progress is reported in between."""
 
 MERGE_EVERY = 1024
 """Runs after which the files of single runs are merged."""
 
 
 class Watcher(Protocol):
-    """Told how the experiment goes."""
+    """Is notified of the progress of an experiment."""
 
     def planned(self, total: int, finished: int) -> None:
-        """So many runs are wanted, so many of them were finished before or are now."""
+        """The total number of runs, and how many of them are finished."""
 
     def ended(self, job: Job, outcome: Outcome) -> None:
         """A run has ended; well if `outcome.error` is empty."""
 
     def remark(self, text: str) -> None:
-        """Something worth a line."""
+        """Something happened that is worth a line of output."""
 
     def tick(self) -> None:
         """Some time has passed."""

@@ -17,15 +17,15 @@ class Job:
     Attributes
     ----------
     arm_digest
-        Hash of all that decides about the run but its seed.
+        Hash of everything that determines the run except its seed.
     replication
-        The seed as the design counts; the seed of the run itself may be derived from it.
+        The seed as listed in the design; that of the run itself may be derived from it.
     files
-        Hash of every input file of the design: the worker compares.
+        Hash of every input file of the design, checked by the worker.
     measures
-        References to measures of the user.
+        References to the user's own measures.
     decisions
-        Folder for the questions to optimisers; empty for none.
+        Folder for recorded questions to optimisers; empty if they are not recorded.
     """
 
     design: str

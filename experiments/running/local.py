@@ -1,7 +1,7 @@
-"""Runs on this machine: every run in a process of its own, several at a time.
+"""Runs on this machine: each in a process of its own, several in parallel.
 
-The processes are forked from a server that has everything imported and never simulates, so that a
-run begins within milliseconds, in fresh memory, whatever happened to the others.
+Processes are forked from a server that has imported everything and never simulates. A run therefore
+starts within milliseconds, in fresh memory, independently of all others.
 """
 
 from __future__ import annotations
@@ -42,20 +42,20 @@ ONE_THREAD = dict.fromkeys(
 
 
 class Engine(Protocol):
-    """Something that does jobs."""
+    """Executes jobs."""
 
     @property
     def slots(self) -> int:
-        """Return how many jobs it wants to have at a time."""
+        """Return the maximum number of jobs that should be submitted at a time."""
 
     def submit(self, job: Job) -> None:
-        """Begin a job."""
+        """Start a job."""
 
     def wait(self, timeout_s: float) -> list[tuple[Job, Outcome]]:
-        """Return the jobs that have ended; waits for one if there is none yet."""
+        """Return the jobs that have ended; wait for one if there is none yet."""
 
     def close(self) -> None:
-        """End everything that still runs."""
+        """Stop all running jobs."""
 
 
 @dataclass

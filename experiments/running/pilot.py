@@ -1,4 +1,4 @@
-"""How long an experiment will take: from finished runs, or from short ones tried out."""
+"""Estimates the duration of an experiment from finished runs, or from short pilot runs."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from rmfs.experiments.store import Store
 
 ARMS = 4
-"""Arms that are tried out, evenly spread over the design."""
+"""Number of arms in pilot runs, evenly spread over the design."""
 
 SHARE = 0.05
-"""Simulated share of a run that is tried out."""
+"""Simulated share of a run in a pilot run."""
 
 LEAST_S, MOST_S = 600.0, 7200.0
-"""Simulated time tried out, at least and at most."""
+"""Minimum and maximum simulated time of a pilot run."""
 
 ENOUGH = 8
-"""Finished runs that make a pilot needless."""
+"""Number of finished runs that makes pilot runs unnecessary."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Estimate:
 
 
 def estimate(plan: Plan, store: Store) -> Estimate | None:
-    """Estimate how long a run of a design takes; nothing if no pilot run got through."""
+    """Estimate the duration of a run of a design; None if no pilot run succeeded."""
     from rmfs.experiments.results import assigned
 
     known = assigned(plan, store)

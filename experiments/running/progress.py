@@ -93,13 +93,13 @@ class Bar:
         self.progress.console.print(text, markup=False)
 
     def tick(self) -> None:
-        """Redraw: the time left goes down also while nothing ends."""
+        """Redraw: the time left decreases even while no run ends."""
         self.progress.refresh()
 
 
 @contextmanager
 def watching(name: str) -> Iterator[Watcher]:
-    """Yield a watcher for where this process prints to."""
+    """Yield a watcher that suits the output: a progress bar on a terminal, otherwise lines."""
     if not sys.stderr.isatty():
         yield Lines(sys.stderr)
         return

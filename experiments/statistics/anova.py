@@ -1,8 +1,8 @@
-"""Analysis of variance: how much of the spread of a measure each factor explains.
+"""Analysis of variance: how much of the variation of a measure each factor explains.
 
-Every effect is a comparison of two linear models by least squares, with the rank of each as its
-number of parameters: so combinations of levels that are left out cost degrees of freedom, and
-effects that the design cannot tell apart are noticed.
+Every effect is a comparison of two linear models by least squares, whose numbers of parameters are
+their ranks. Left-out combinations of levels therefore cost degrees of freedom, and effects that the
+design cannot separate are detected.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SEEDS, RESIDUAL, POOLED = "seeds", "residual", "interactions"
-"""Rows that are no effect of a factor or a pair of factors."""
+"""Rows that are not an effect of a factor or a pair of factors."""
 
 CROSS = " x "
-"""Between the names of two factors in the name of their interaction."""
+"""Separates the names of two factors in the name of their interaction."""
 
 NEGLIGIBLE = 1e-9
-"""Share of a column, beyond the others, that is taken for rounding."""
+"""Share of a column not explained by the others below which it counts as rounding error."""
 
 Effect = tuple[int, ...]
-"""Numbers of the factors that an effect is of."""
+"""Numbers of the factors in an effect."""
 
 
 def anova(
@@ -49,29 +49,34 @@ def anova(
 ) -> pd.DataFrame:
     """Return the analysis-of-variance table of categorical factors.
 
-    Sums of squares are of type II: each effect after all others that do not contain it, so that
-    factors of an unbalanced design (with excluded combinations) do not take credit for each other.
+    Sums of squares are of type II: each effect is adjusted for all others that do not contain it,
+    so
+    that factors of an unbalanced design (with excluded combinations) do not take credit for each
+    other.
 
-    Interactions of two factors have a row each where the runs can tell all effects apart and at
-    least one degree of freedom is left for the residual. Where they cannot (a fraction of a grid),
-    all that differs between combinations of levels beyond the main effects is one row,
-    `interactions`, and the residual is the spread of equal combinations over the seeds. Where no
-    combination has been run twice, interactions are part of the residual. What was done is told
-    in `attrs["interactions"]` of the table.
+    Interactions of two factors have one row each if the runs can separate all effects and leave at
+    least
+    one degree of freedom for the residual. If they cannot (as in a fraction of a grid), all
+    differences
+    between combinations of levels beyond the main effects form one row, `interactions`, and the
+    residual
+    is the variation of equal combinations over the seeds. If no combination has been run twice,
+    interactions are part of the residual. `attrs["interactions"]` of the table states which case
+    applies.
 
     Parameters
     ----------
     factors
         Columns; factors with one level are left out.
     interactions
-        Whether to take interactions out of the residual. Default yes.
+        Whether to separate interactions from the residual. Default True.
     block
-        Column of the seeds, whose share of the spread is taken out of the residual (with common
+        Column of the seeds, whose share of the variation is removed from the residual (with common
         random numbers). Default `replication`.
     confidence
-        Of the intervals of `partial_eta_sq`. Default 0.95.
+        Confidence of the intervals of `partial_eta_sq`. Default 0.95.
     names
-        What the table calls the factors. Default as in the frame.
+        Names of the factors in the table. Default: as in the frame.
 
     Returns
     -------
@@ -84,7 +89,8 @@ def anova(
     ------
     InputError
         If no factor varies, there are too few runs for the model, or the main effects of two
-        factors are the same.
+        factors
+        cannot be separated.
     """
     require(frame, column, *factors)
     known = frame[frame[column].notna()]
@@ -107,12 +113,12 @@ def anova(
 
 
 def varying_factors(frame: pd.DataFrame, factors: Sequence[str]) -> list[str]:
-    """Return the factors that have more than one level in these runs."""
+    """Return the factors with more than one level in these runs."""
     return [factor for factor in factors if len(frame[factor].unique()) > 1]
 
 
 def tell_apart(frame: pd.DataFrame, factors: Sequence[str]) -> bool:
-    """Whether the runs tell all main effects and interactions of two factors apart.
+    """Whether the runs separate all main effects and interactions of two factors.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ Method = Literal["t", "bootstrap"]
 
 RESAMPLES = 1999
 BOOTSTRAP_SEED = 0
-"""The resampling is part of the method: the same data give the same interval."""
+"""Seed of the resampling, which is fixed so that equal data give equal intervals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ def interval(
     Parameters
     ----------
     values
-        One number per run; missing ones are left out.
+        One number per run; missing values are ignored.
     confidence
         Probability that intervals made this way cover the true mean. Default 0.95.
     method
@@ -103,7 +103,7 @@ def per_arm(
     Parameters
     ----------
     by
-        Column that tells the arms apart. Default `arm`.
+        Column that identifies the arms. Default `arm`.
 
     Returns
     -------
@@ -129,7 +129,7 @@ def per_arm(
 
 
 def require(frame: pd.DataFrame, *columns: str) -> None:
-    """Refuse a frame in which a column is missing.
+    """Raise an error if a column is missing from a frame.
 
     Raises
     ------

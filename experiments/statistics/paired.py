@@ -1,7 +1,8 @@
 """Differences between arms, seed by seed.
 
-With common random numbers two arms meet the same demand under the same seed, so the difference of
-each pair varies less than the arms themselves. Differences are always "arm minus baseline".
+With common random numbers two arms face the same demand for the same seed, so the difference of
+each
+pair varies less than the arms themselves. Differences are always "arm minus baseline".
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ def paired(
     Parameters
     ----------
     arm, baseline
-        One number per seed, indexed by seed; seeds that only one of them has are left out.
+        One number per seed, indexed by seed; only common seeds are used.
 
     Returns
     -------
@@ -86,14 +87,14 @@ def against(
     by: str = "arm",
     pair: str = "replication",
 ) -> pd.DataFrame:
-    """Compare every arm with a baseline, seed by seed, corrected for their number.
+    """Compare every arm with a baseline, seed by seed, corrected for multiple comparisons.
 
     Parameters
     ----------
     baseline
-        The arm that the others are compared with.
+        The arm to which the others are compared.
     pair
-        Column that makes pairs. Default `replication`, the seed as the design counts.
+        Column that identifies pairs. Default `replication`, the seed as numbered in the design.
 
     Returns
     -------
@@ -122,7 +123,7 @@ def against(
 
 
 def holm(p_values: pd.Series) -> pd.Series:
-    """Return p values corrected for their number; missing ones stay missing."""
+    """Return p values corrected by Holm's method; missing ones stay missing."""
     from rmfs.experiments.extras import statsmodels
 
     known = p_values.dropna()

@@ -2,9 +2,10 @@
 
 Procedure KN: S.-H. Kim and B. L. Nelson (2001), A fully sequential procedure for indifference-zone
 selection in simulation, ACM Transactions on Modeling and Computer Simulation 11(3), 251-273. If
-runs are normally distributed and the best arm is better than all others by the indifference or
-more, it is selected with probability 1 - error at least. Arms may be correlated through common
-random numbers, which then save runs.
+runs
+are normally distributed and the best arm is better than all others by at least the indifference, it
+is selected with probability at least 1 - error. Arms may be correlated through common random
+numbers, which reduces the number of runs.
 """
 
 from __future__ import annotations
@@ -25,22 +26,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Selection:
-    """How far the procedure has come with the observations there are.
+    """State of the procedure after the available observations.
 
     Attributes
     ----------
     left
-        Arms that may still be the best one.
+        Arms that may still be the best.
     used
-        Observations of each arm that the procedure looked at.
+        Number of observations of each arm that the procedure used.
     observations
-        Those of the arms that are left.
+        Number of observations of the remaining arms.
     over
-        Whether it has come to an end; otherwise it wants one more of each arm that is left.
+        Whether it has ended; otherwise it needs one more observation of each remaining arm.
     best
-        The arm selected, once it is over.
+        The selected arm, once it has ended.
     proven
-        Whether the stated error holds; not where the procedure was cut off.
+        Whether the stated error holds; not if the procedure was cut off.
     """
 
     left: tuple[str, ...]
@@ -51,7 +52,7 @@ class Selection:
     proven: bool
 
     def verdict(self) -> str:
-        """Say the result in words."""
+        """Return the result as a sentence."""
         if not self.over:
             return f"{len(self.left)} arms may be the best one"
         if self.proven:
@@ -71,7 +72,7 @@ def kim_nelson(
     goal: str = "max",
     most: int | None = None,
 ) -> Selection:
-    """Run procedure KN (with c = 1) as far as the observations go.
+    """Run procedure KN (with c = 1) as far as the observations allow.
 
     Parameters
     ----------
@@ -87,7 +88,7 @@ def kim_nelson(
     goal
         `max` or `min`.
     most
-        Where to stop in any case. Default nowhere.
+        Maximum number of observations. Default: no limit.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Sequential stopping: runs until a confidence interval is narrow enough."""
+"""Sequential stopping: adds runs until a confidence interval is narrow enough."""
 
 from __future__ import annotations
 
@@ -11,19 +11,20 @@ if TYPE_CHECKING:
 
 
 def narrow_enough(values: Sequence[float], relative: float, confidence: float = 0.95) -> bool:
-    """Whether the t interval of a mean is narrow in relation to it.
+    """Whether the t interval of a mean is narrow relative to the mean.
 
-    The sequential procedure of Law and Kelton (Simulation Modeling and Analysis, section on
-    confidence intervals with specified precision, after Chow and Robbins 1965): the half width is
-    compared with relative / (1 + relative) times the mean, so that the true mean is missed by no
-    more than `relative` of itself. As it stops where the sample happens to vary little, its
-    coverage lies somewhat below `confidence` when few runs are the start
-    (`tests.tools.coverage`).
+    Implements the sequential procedure of Law and Kelton (Simulation Modeling and Analysis, section
+    on
+    confidence intervals with specified precision, after Chow and Robbins 1965). The half width is
+    compared with relative / (1 + relative) times the mean, so that the relative error of the true
+    mean
+    is at most `relative`. Because the procedure stops when the sample happens to vary little, its
+    coverage is somewhat below `confidence` if it starts with few runs (`tests.tools.coverage`).
 
     Parameters
     ----------
     relative
-        Half width wanted, as a share of the mean.
+        Required half width, as a share of the mean.
     """
     if len(values) < 2:
         return False

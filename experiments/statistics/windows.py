@@ -1,4 +1,4 @@
-"""Rates in a part of a run: after a warm-up, before and after something was changed."""
+"""Rates within a part of a run, for example after a warm-up, or before and after a change."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ def rates(
     end_s: float = float("inf"),
     keys: Sequence[str] = ("arm", "replication"),
 ) -> pd.DataFrame:
-    """Return counts per hour of every run within a window of its time.
+    """Return counts per hour of every run within a time window.
 
-    Only intervals of the time series that lie wholly in the window are counted.
+    Only intervals of the time series that lie completely within the window are counted.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def rates(
     start_s, end_s
         The window, since the start of the runs.
     keys
-        Columns that tell runs apart.
+        Columns that identify runs.
 
     Returns
     -------

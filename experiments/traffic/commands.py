@@ -1,4 +1,4 @@
-"""`rmfs traffic`: planners alone."""
+"""`rmfs traffic`: experiments with path planners, without orders."""
 
 from __future__ import annotations
 
@@ -21,11 +21,12 @@ if TYPE_CHECKING:
     from rmfs.trips import TripRun, TripStream
 
 app = typer.Typer(
-    help="Path planners alone: random trips, duels, growth, random cases.", no_args_is_help=True
+    help="Compare path planners without orders: random trips, duels, growth, random cases.",
+    no_args_is_help=True,
 )
 
 UNSAFE = 1
-"""Exit code where the checker finds a trace unsafe, or nothing can move any more."""
+"""Exit code if the checker finds a trace unsafe, or nothing can move any more."""
 
 LayoutArgument = Annotated[
     str, typer.Argument(metavar="LAYOUT", help="Name of a shipped layout, or a file.")
@@ -33,10 +34,10 @@ LayoutArgument = Annotated[
 Robots = Annotated[
     int | None, typer.Option(min=1, help="Robots per tier. [default: those of the layout]")
 ]
-Seed = Annotated[int, typer.Option(min=0, help="Of the trips and of the planner.")]
-Duration = Annotated[float, typer.Option(min=1.0, help="Simulated seconds that are measured.")]
-Warmup = Annotated[float, typer.Option(min=0.0, help="Simulated seconds before that.")]
-Check = Annotated[bool, typer.Option("--check", help="Prove the motion safe.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of the trips and of the planner.")]
+Duration = Annotated[float, typer.Option(min=1.0, help="Measured simulated seconds.")]
+Warmup = Annotated[float, typer.Option(min=0.0, help="Simulated seconds before measuring.")]
+Check = Annotated[bool, typer.Option("--check", help="Prove the motion free of collisions.")]
 Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Override a parameter of the layout."),
@@ -48,13 +49,13 @@ Allow = Annotated[
     ),
 ]
 Out = Annotated[
-    Path | None, typer.Option(help="A .csv or .md file for the table.", show_default=False)
+    Path | None, typer.Option(help=".csv or .md file for the table.", show_default=False)
 ]
 Lists = Annotated[
     Path | None,
     typer.Option(help="Robots and trips on a .map; a list of its format.", show_default=False),
 ]
-PLANNER_HELP = "Name, or NAME:KEY=VALUE,KEY=VALUE with parameters"
+PLANNER_HELP = "Planner: NAME, or NAME:KEY=VALUE,KEY=VALUE with parameters"
 
 
 @app.command()
@@ -70,7 +71,7 @@ def bench(
     allow_not_well_formed: Allow = False,
     out: Out = None,
 ) -> None:
-    """Drive random trips, without orders, by one planner."""
+    """Drive random trips, without orders, with one planner."""
     duel(layout, robots, [planner], seed, duration, warmup, check, set_, allow_not_well_formed, out)
 
 
@@ -93,7 +94,7 @@ def duel(
     agents: Lists = None,
     tasks: Lists = None,
 ) -> None:
-    """Drive the same trips by several planners: random ones, or on a .map those of its files."""
+    """Drive the same trips with several planners: random ones, or those of the files of a .map."""
     names = planner or duels.all_planners()
     duels.check_planners(names)
     loaded, trips = _given(
@@ -124,13 +125,13 @@ def duel(
 
 @app.command("scale")
 def scale_command(
-    most: Annotated[int, typer.Option(min=32, help="The biggest fleet.")] = 2000,
+    most: Annotated[int, typer.Option(min=32, help="Largest fleet.")] = 2000,
     planner: Annotated[str, typer.Option(help=f"{PLANNER_HELP}.")] = "time-windows:swift=true",
     duration: Duration = 600.0,
     seed: Seed = 1,
     out: Annotated[Path, typer.Option(help="Folder of table and picture.")] = Path("results/scale"),
 ) -> None:
-    """Measure how work and memory grow from 32 to 2000 robots, density kept."""
+    """Measure how work and memory grow from 32 to 2000 robots at constant density."""
     from rmfs.experiments.traffic import scale
 
     duels.check_planners([planner])
@@ -146,8 +147,8 @@ def scale_command(
 
 @app.command("warehouses")
 def warehouses_command(
-    least: Annotated[int, typer.Option(min=125, help="The smallest fleet.")] = 250,
-    most: Annotated[int, typer.Option(min=125, help="The biggest fleet.")] = 2000,
+    least: Annotated[int, typer.Option(min=125, help="Smallest fleet.")] = 250,
+    most: Annotated[int, typer.Option(min=125, help="Largest fleet.")] = 2000,
     rules: Annotated[
         list[str] | None,
         typer.Option(
@@ -155,13 +156,13 @@ def warehouses_command(
         ),
     ] = None,
     later: Annotated[
-        float, typer.Option(min=1.0, help="When the second window of 600 s begins (s).")
+        float, typer.Option(min=1.0, help="Start of the second window of 600 s (s).")
     ] = 1200.0,
     seed: Seed = 1,
     check: Check = False,
     out: Annotated[Path, typer.Option(help="Folder of the table.")] = Path("results/scale"),
 ) -> None:
-    """Measure how the work of whole warehouses grows from 250 to 2000 robots, density kept."""
+    """Measure how the work of whole warehouses grows from 250 to 2000 robots, constant density."""
     from rmfs.experiments.traffic import warehouses
 
     if not any(least <= site.robots <= most for site in warehouses.SITES):

@@ -1,8 +1,8 @@
-"""The command line: the one place that may import everything.
+"""The command line, the only part that may import everything.
 
-Whatever a user does wrong ends in one line on the standard error stream and exit code 2; an
-interruption ends in exit code 130; a defect that is noticed in one line, a file to report and exit
-code 1. Imports are made inside the commands, so that help and errors come at once.
+A user error is reported as one line on standard error with exit code 2, an interruption ends with
+exit code 130, and a detected defect with one line, a file to report and exit code 1. Commands
+import their modules themselves, so that help and errors appear at once.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
     Parameters
     ----------
     arguments
-        Without the program's name. Default: those of the process.
+        Arguments without the program's name. Default: those of the process.
 
     Returns
     -------
@@ -48,16 +48,16 @@ def main(arguments: list[str] | None = None) -> int:
         code = command.main(args=arguments, prog_name="rmfs", standalone_mode=False)
     except InputError as error:
         return _complain(str(error))
-    except OSError as error:  # what no part of the program has a better word for
+    except OSError as error:  # errors for which no part of the program has a better message
         where = "" if error.filename is None else f"{error.filename!s:.200}: "
         return _complain(f"{where}{error.strerror or error}")
     except MemoryError:
-        return _complain("there is not enough memory for this")
+        return _complain("not enough memory")
     except InternalError as error:
         _say(told(error, arguments))
         return DEFECT
     except typer.TyperException as error:
-        # without a message, a group was called without a command and has shown its help
+        # without a message: a group was called without a command and has shown its help
         return _complain(error.format_message()) if error.format_message() else 0
     except (KeyboardInterrupt, typer.Abort):
         _complain("interrupted")
@@ -68,7 +68,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _complain(message: str) -> int:
-    """Tell the user in one line what is wrong."""
+    """Report an error to the user in one line."""
     _say(message)
     return WRONG_INPUT
 
@@ -98,10 +98,10 @@ for command in (run, check, plot, report, view, compare):
 
 @app.command()
 def bench(
-    runs: Annotated[int, typer.Option(min=1, help="Runs of each case; the median counts.")] = 5,
-    out: Annotated[Path, typer.Option(help="Folder of the tables.")] = Path("results/bench"),
+    runs: Annotated[int, typer.Option(min=1, help="Runs per case; the median counts.")] = 5,
+    out: Annotated[Path, typer.Option(help="Folder for the tables.")] = Path("results/bench"),
 ) -> None:
-    """Measure how fast runs are and where their time goes."""
+    """Measure the speed of runs and where their time is spent."""
     from rmfs.experiments import speed
 
     with progress("timing", wordy=False) as advance:
@@ -115,15 +115,19 @@ def import_command(
     source: Annotated[
         Path,
         typer.Argument(
-            metavar="DIR", help="A folder with files of RAWSim-O, or one such file.", exists=False
+            metavar="DIR",
+            help="Folder with files of RAWSim-O, or a single such file.",
+            exists=False,
         ),
     ],
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder to make. [default: below results/imported/]", show_default=False),
+        typer.Option(
+            help="Folder to create. [default: below results/imported/]", show_default=False
+        ),
     ] = None,
 ) -> None:
-    """Turn RAWSim-O's files into ours; list what differs, is dead, unknown or refused."""
+    """Import files of RAWSim-O and report what differs, has no effect, is unknown or is refused."""
     from rmfs.rawsimo.folder import LIST, Imported, import_files
 
     def told(one: Imported) -> None:

@@ -1,11 +1,13 @@
-"""`rmfs check`: whether layout, scenario and controllers go together, before anything runs."""
+"""`rmfs check`: what a run would be refused for, before it; what its files prove, after it."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from rmfs.cli.exit_codes import UNSAFE
 from rmfs.cli.options import (
     ControllersOption,
     LayoutOption,
@@ -20,13 +22,25 @@ if TYPE_CHECKING:
 
 
 def check(
+    runs: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="[RUN]...",
+            help="Run folders with a trace: motion, stock, visits, orders, slots, bundles and "
+            "tables are audited from their files alone. Without any, the inputs below are checked.",
+            show_default=False,
+        ),
+    ] = None,
     layout: LayoutOption = "default",
     scenario: ScenarioOption = "default",
     controllers: ControllersOption = "default",
     set_: SetOption = None,
     allow_not_well_formed: NotWellFormedOption = False,
 ) -> None:
-    """Say whether a run would be refused, and whether its fleet gets the energy it needs."""
+    """Audit runs, or check whether one would be refused and its fleet gets the energy it needs."""
+    if runs:
+        audited(runs)
+        return
     from rmfs.config import parse_override
     from rmfs.simulation.run import Simulation
 
@@ -46,23 +60,39 @@ def check(
     typer.echo(f"{', '.join(made.names)}: ok")
 
 
+def audited(folders: list[Path]) -> None:
+    """Audit runs and say what is found; exit code 1 if something is wrong with one."""
+    from rmfs.measure import load_run
+    from rmfs.measure.audit import audit
+
+    wrong = False
+    for folder in folders:
+        found = audit(load_run(folder))
+        wrong |= not found.ok
+        if len(folders) > 1:
+            typer.echo(f"{folder}:")
+        typer.echo(found.summary())
+    if wrong:
+        raise typer.Exit(UNSAFE)
+
+
 def told_of_energy(layout: Layout, energy: Energy) -> list[str]:
-    """Tell in lines what a fleet draws, and what it can get."""
+    """Describe, in lines, the energy that a fleet draws and what it can get."""
     from rmfs.simulation.charging.balance import balance, working_w
 
     working = working_w(layout, energy)
-    draws = f"{layout.robots} robots draw {layout.robots * energy.standby_w:g} W standing still"
+    draws = f"{layout.robots} robots draw {layout.robots * energy.standby_w:g} W at standstill"
     draws += f" and about {working:.0f} W at work"
     if energy.battery is None:
-        return [f"energy: {draws}; they have as much as they need"]
+        return [f"energy: {draws}; their energy is unlimited"]
     given = balance(layout, energy)
-    lines = [f"energy: {draws}; chargers give {given.given_w:g} W at most"]
+    lines = [f"energy: {draws}; chargers supply at most {given.given_w:g} W"]
     if given.given_w < working:
         missing = working - given.given_w
-        lines.append(f"energy: about {missing:.0f} W are missing in the long run at full work")
+        lines.append(f"energy: in the long run about {missing:.0f} W are missing at full work")
     if not given.has_stations:
         lines.append(
-            "energy: only waypoints of queues charge: a robot that runs low elsewhere cannot be "
-            "sent for energy, and strands"
+            "energy: only queue waypoints charge, so a robot that runs low elsewhere cannot be "
+            "sent to charge and strands"
         )
     return lines

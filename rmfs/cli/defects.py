@@ -1,4 +1,4 @@
-"""What becomes of a defect that the program has noticed itself: a line, and a file to report."""
+"""Reports defects that the program has detected itself: one line, and a file to send."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ def told(error: InternalError, arguments: list[str] | None) -> str:
     Parameters
     ----------
     error
-        The defect; its notes say in which run it was met.
+        The defect; its notes name the run in which it occurred.
     arguments
-        Of the command line; by default those of the process.
+        Command-line arguments. Default: those of the process.
     """
     where = "".join(f", {note}" for note in getattr(error, "__notes__", []))
     return f"internal error{where}: {error}; please report {written(error, arguments)}"
 
 
 def written(error: InternalError, arguments: list[str] | None) -> Path:
-    """Write all that helps to come to a defect again into a file in the working folder.
+    """Write everything that helps to reproduce a defect to a file in the working folder.
 
     Returns
     -------
-    The file; below the folder for temporary files if the working folder cannot be written.
+    Path of the file; in the folder for temporary files if the working folder is not writable.
     """
     from rmfs.measure.provenance import version
 

@@ -1,4 +1,4 @@
-"""Commands of other packages: known by name, imported when they are called."""
+"""Commands of other packages, listed here by name and imported when they are called."""
 
 from __future__ import annotations
 
@@ -12,27 +12,30 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 SUB_COMMANDS = {
-    "layout": ("rmfs.layout.commands", "Make, draw, check and import layouts."),
+    "layout": ("rmfs.layout.commands", "Generate, draw, check and import layouts."),
     "scenario": ("rmfs.scenario.commands", "List, show and check scenarios."),
     "controllers": ("rmfs.control.commands", "List, show and check sets of controllers."),
-    "traffic": ("rmfs.experiments.traffic.commands", "Path planners alone: trips, duels, growth."),
-    "decisions": ("rmfs.solvers.decisions.commands", "Decisions as files: solve, check, compare."),
-    "experiment": ("rmfs.experiments.commands", "Plan and run experiments; tables and figures."),
+    "traffic": ("rmfs.experiments.traffic.commands", "Compare path planners without orders."),
+    "decisions": ("rmfs.solvers.decisions.commands", "Solve, check and compare saved decisions."),
+    "experiment": (
+        "rmfs.experiments.commands",
+        "Plan and run experiments; make tables and figures.",
+    ),
 }
-"""Module and help of each group of commands; its module is imported when it is called."""
+"""Module and help of each command group; the module is imported when the group is called."""
 
 COMMANDS = {
-    "demonstrate": ("rmfs.demonstrator.commands", "Run a warehouse with real robots."),
+    "demonstrate": ("rmfs.demonstrator.commands", "Run a warehouse with physical robots."),
     "learn": ("rmfs.learning.commands", "Train linear rules on simulated runs."),
-    "emulate": ("rmfs.demonstrator.commands", "Emulate a room with robots like real ones."),
+    "emulate": ("rmfs.demonstrator.commands", "Emulate a room with physical robots."),
 }
-"""The same of commands that are no groups."""
+"""The same for single commands."""
 
 ELSEWHERE = {**SUB_COMMANDS, **COMMANDS}
 
 
 def names_of(kind: Literal["layouts", "scenarios", "controllers"]) -> Callable[[str], list[str]]:
-    """Return what completes the name of a shipped instance."""
+    """Return a function that completes the names of shipped instances."""
 
     def complete(incomplete: str) -> list[str]:
         from rmfs import instances
@@ -43,14 +46,14 @@ def names_of(kind: Literal["layouts", "scenarios", "controllers"]) -> Callable[[
 
 
 class LazyGroup(TyperGroup):
-    """A group that knows its sub-commands by name and loads one when it is called."""
+    """A command group that knows its sub-commands by name and loads one when it is called."""
 
     def list_commands(self, ctx: Any) -> list[str]:
-        """Name all commands, loaded or not."""
+        """Return the names of all commands, loaded or not."""
         return [*super().list_commands(ctx), *(n for n in ELSEWHERE if n not in self.commands)]
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Return a command, or what help needs to know of it if it is not loaded."""
+        """Return a command, or a stub with its help if it is not loaded."""
         if cmd_name in ELSEWHERE and cmd_name not in self.commands:
             return TyperGroup(name=cmd_name, help=ELSEWHERE[cmd_name][1])
         return super().get_command(ctx, cmd_name)
@@ -63,7 +66,7 @@ class LazyGroup(TyperGroup):
 
 
 def tell_defaults(command: Any) -> Any:
-    """Let the help of every option say its default, also where that is none."""
+    """Make the help of every option show its default, even if there is none."""
     for one in getattr(command, "commands", {}).values():
         tell_defaults(one)
     for parameter in command.params:
@@ -75,7 +78,7 @@ def tell_defaults(command: Any) -> Any:
 
 
 def _loaded(name: str) -> Any:
-    """Import a command or group; it is put below another so that it gets no options of its own."""
+    """Import a command or group, wrapped in another so that it gets no options of its own."""
     module = importlib.import_module(ELSEWHERE[name][0])
     above = typer.Typer(add_completion=False)
     above.add_typer(module.app, name=name if name in SUB_COMMANDS else None)

@@ -1,4 +1,4 @@
-"""Options that several commands have: what is run, and what is changed of it."""
+"""Options shared by several commands: what to run, and which parameters to change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Commands that look at runs which are done: plot, report, view and compare."""
+"""Commands for finished runs: plot, report, view and compare."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def plot(
     what: Annotated[
         list[str] | None,
         typer.Option(
-            help="Picture: progression, heat (or heat:COLUMN of its table), backlog, turnover, "
+            help="Plot: progression, heat (or heat:COLUMN of its table), backlog, turnover, "
             "stations, robots, pile-on, warmup; may be repeated. [default: all]",
             show_default=False,
         ),
@@ -25,7 +25,7 @@ def plot(
         Path | None, typer.Option(help="Folder. [default: the run folder]", show_default=False)
     ] = None,
 ) -> None:
-    """Draw pictures of a run."""
+    """Plot a run."""
     from rmfs.measure import load_run
     from rmfs.measure.pictures import PICTURES, save
 
@@ -45,10 +45,10 @@ def report(
         ),
     ] = None,
     csv: Annotated[
-        bool, typer.Option("--csv", help="Write every table as CSV, too, into the run folder.")
+        bool, typer.Option("--csv", help="Also write every table as CSV into the run folder.")
     ] = False,
 ) -> None:
-    """Write a report of a run: one HTML file."""
+    """Write a report of a run as one HTML file."""
     from rmfs.measure import load_run
     from rmfs.measure.folder import write_csv
     from rmfs.measure.report import write_report
@@ -65,24 +65,25 @@ def view(
         list[Path] | None,
         typer.Argument(
             metavar="[RUN [RUN]]",
-            help="Run folder with a trace; two side by side; none: a form that starts a run.",
+            help="Run folder with a trace, or two to show side by side; without one, a form "
+            "that starts a run.",
             show_default=False,
         ),
     ] = None,
     export: Annotated[
         Path | None,
-        typer.Option(help="Write one HTML file to send instead.", show_default=False),
+        typer.Option(help="Write one self-contained HTML file instead.", show_default=False),
     ] = None,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page; 0: any free.")] = 0,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0: any free port.")] = 0,
     open_: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser.")] = True,
 ) -> None:
-    """Look at a run in the browser: a replay of its trace."""
+    """View a run in the browser: a replay of its trace."""
     from rmfs.view.commands import export_runs, serve_runs
 
     if export is None:
         serve_runs(runs or [], port=port, open_browser=open_)
     elif not runs:
-        raise InputError("--export: name the run to be written")
+        raise InputError("--export: name the run to export")
     else:
         export_runs(runs, export)
         print(export)
@@ -93,7 +94,7 @@ def compare(
         list[str],
         typer.Argument(
             metavar="A B ...",
-            help="Run folders, folders of experiments, their arms (FOLDER#ARM), or tables.",
+            help="Run folders, experiment folders, their arms (FOLDER#ARM), or tables.",
         ),
     ],
     columns: Annotated[
@@ -101,7 +102,7 @@ def compare(
         typer.Option(
             "--column",
             "-c",
-            help="Column of the footprint; may be repeated. [default: the main ones]",
+            help="Column of the footprint; may be repeated. [default: the main columns]",
             show_default=False,
         ),
     ] = None,
@@ -112,13 +113,14 @@ def compare(
     allow_incomplete: Annotated[
         bool,
         typer.Option(
-            "--allow-incomplete", help="Exit with code 0 although runs are lacking; the note stays."
+            "--allow-incomplete",
+            help="Exit with code 0 even if runs are missing; the note is still printed.",
         ),
     ] = False,
 ) -> None:
-    """Say in what runs, arms or tables differ: input and output, paired by seed.
+    """Compare runs, arms or tables: inputs and outputs, paired by seed.
 
-    Exit code 3 if runs of an experiment are lacking: a note says how many.
+    Exits with code 3 if runs of an experiment are missing; a note says how many.
     """
     from rmfs.experiments.compare import compare as compared
     from rmfs.experiments.compare_print import print_comparisons

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.recording import DecisionRecorder
 
 LONGEST = 100
-"""Characters of a folder's name that tell what was changed, at most."""
+"""Most characters of a folder name that describe the changed parameters."""
 
 
 def run(
@@ -52,7 +52,7 @@ def run(
         bool,
         typer.Option(
             "--force",
-            help="Replace the run folder if there is one; run what may not fit into memory.",
+            help="Replace an existing run folder; start even if memory may not suffice.",
         ),
     ] = False,
     set_: SetOption = None,
@@ -60,29 +60,31 @@ def run(
         str,
         typer.Option(
             metavar="MODE",
-            help="What the thinking of optimisers costs in simulated time: instant, wall, work, "
-            "fixed=SECONDS or replay=RUN_DIR; parameters by --set pacing.KEY=VALUE.",
+            help="How simulated time accounts for the optimisers' computation: instant, "
+            "wall, work, fixed=SECONDS or replay=RUN_DIR; parameters by --set "
+            "pacing.KEY=VALUE.",
         ),
     ] = "instant",
-    trace: Annotated[bool, typer.Option("--trace", help="Write the trace of all motion.")] = False,
+    trace: Annotated[bool, typer.Option("--trace", help="Write a trace of all motion.")] = False,
     record: Annotated[
         Path | None,
         typer.Option(
-            help="Folder for the orders and bundles that come, to be replayed (orders.csv, "
-            "bundles.csv).",
+            help="Folder in which to record the arriving orders and bundles for replay "
+            "(orders.csv, bundles.csv).",
             show_default=False,
         ),
     ] = None,
     decisions: Annotated[
         Path | None,
         typer.Option(
-            help="Folder for every question to an optimiser, as a file that can be solved and "
-            "checked elsewhere (rmfs decisions).",
+            help="Folder in which to save every question to an optimiser as a file (see rmfs "
+            "decisions).",
             show_default=False,
         ),
     ] = None,
     check: Annotated[
-        bool, typer.Option("--check", help="Prove the motion safe; fills `collisions`.")
+        bool,
+        typer.Option("--check", help="Prove the motion free of collisions; fills `collisions`."),
     ] = False,
     allow_not_well_formed: NotWellFormedOption = False,
     measure: Annotated[
@@ -90,7 +92,7 @@ def run(
         typer.Option(
             "--measure",
             metavar="REF",
-            help="Measure of your own: path/to/file.py:Class, module:Class, or the name of an "
+            help="Additional measure: path/to/file.py:Class, module:Class, or the name of an "
             "installed one; may be repeated.",
         ),
     ] = None,
@@ -98,27 +100,27 @@ def run(
         float | None,
         typer.Option(
             metavar="S",
-            help="Save the run every S simulated seconds, in FOLDER.checkpoint beside the run "
-            "folder, until it has ended.",
+            help="Save the run every S simulated seconds, in FOLDER.checkpoint beside the "
+            "run folder, until it ends.",
             show_default=False,
         ),
     ] = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Go on from the checkpoint of a run that was killed.")
+        bool, typer.Option("--resume", help="Continue from the checkpoint of a killed run.")
     ] = False,
     live: Annotated[
-        bool, typer.Option("--live", help="Show the run in the browser while it happens.")
+        bool, typer.Option("--live", help="Show the run in the browser while it is simulated.")
     ] = False,
     speed: Annotated[
         float | None,
         typer.Option(
-            help="With --live: simulated seconds per second to begin with. "
-            "[default: as fast as it goes]",
+            help="With --live: initial speed in simulated seconds per second. [default: as fast as "
+            "possible]",
             show_default=False,
         ),
     ] = None,
     port: Annotated[
-        int, typer.Option(min=0, max=65535, help="With --live: of the page; 0: any free.")
+        int, typer.Option(min=0, max=65535, help="With --live: port of the page; 0: any free port.")
     ] = 0,
     open_: Annotated[
         bool, typer.Option("--open/--no-open", help="With --live: open a browser.")
@@ -137,10 +139,10 @@ def run(
     target = out or Path("results") / default_name(inputs, seed, set_ or [], pacing)
     streams = None if record is None else StreamRecorder()
     if speed is not None and not live:
-        raise InputError("--speed: only with --live")
+        raise InputError("--speed: only valid with --live")
     keeps = record is not None or decisions is not None
     if (checkpoint_every is not None or resume) and (live or keeps):
-        raise InputError("--checkpoint-every, --resume: not with --live, --record or --decisions")
+        raise InputError("--checkpoint-every, --resume: invalid with --live, --record, --decisions")
     with ExitStack() as stack:
         stack.enter_context(terminable())
         stack.enter_context(forced(force))
@@ -195,7 +197,7 @@ def run(
 def kept_decisions(
     folder: Path, inputs: dict[str, str], seed: int, changes: Sequence[str] = ()
 ) -> DecisionRecorder:
-    """Return what writes the questions of a run into a folder."""
+    """Return the observer that writes the questions of a run to a folder."""
     from rmfs.solvers.decisions.recording import DecisionRecorder
 
     names = {part: Path(given).stem for part, given in inputs.items()}
@@ -203,7 +205,7 @@ def kept_decisions(
 
 
 def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
-    """Simulate and show progress; a run in which nothing can move any more ends with a report.
+    """Simulate and show progress; if nothing can move any more, the run ends with a report.
 
     Parameters
     ----------
@@ -222,7 +224,7 @@ def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
 
     what = f"simulating {', '.join(inputs.values())}, seed {seed}"
     with progress(what) as advance, warnings.catch_warnings():
-        warnings.simplefilter("ignore", IdleRuleWarning)  # told below, in our own words
+        warnings.simplefilter("ignore", IdleRuleWarning)  # reported below in our own format
         try:
             done = simulate(*inputs.values(), seed=seed, progress=advance, remark=told, **options)
         except (StalledError, OptimiserError, ReplayError, RuleError) as error:
@@ -244,8 +246,7 @@ def default_name(
     Parameters
     ----------
     changes
-        What was given as `--set`. Where these cannot stand in a name of sensible length, a hash of
-        them does.
+        The `--set` arguments. If they are unsuitable or too long for a name, a hash replaces them.
     """
     told = [text.replace(".name=", "=") for text in changes]
     told += [] if pacing == "instant" else [f"pacing={pacing}"]
@@ -265,7 +266,7 @@ def proven(done: Run) -> CheckReport:
 
 
 def conclude(target: Path, footprint: pd.Series, report: CheckReport | None) -> None:
-    """Print the main figures; an unsafe trace or a score above 1 is a defect: exit code 1."""
+    """Print the main figures; exit with code 1 on a defect: an unsafe trace or a score above 1."""
     from rich.console import Console
 
     from rmfs.measure.summary import summarised

@@ -1,4 +1,4 @@
-"""What a command says while it works: a bar on a terminal, lines elsewhere."""
+"""Progress of a command: a bar on a terminal, lines elsewhere."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
 
 
 def step(text: str) -> None:
-    """Say what is done now, where no progress bar says it."""
+    """Report the current step, unless a progress bar does."""
     if not sys.stderr.isatty():
         print(f"rmfs: {text}", file=sys.stderr, flush=True)
 
 
 @contextmanager
 def progress(text: str, *, wordy: bool = True) -> Iterator[Callable[[float, float], None]]:
-    """Yield a function that is told (done, total): a bar on a terminal, one line elsewhere.
+    """Yield a function of (done, total) that reports progress: a bar on a terminal, else one line.
 
-    The line is printed at the first call: what is wrong with the input is noticed before.
+    The line is printed at the first call, so that input errors are reported before it.
 
     Parameters
     ----------
     wordy
-        Whether there is a line elsewhere. Default yes.
+        Whether to print a line where there is no terminal. Default True.
     """
     if not sys.stderr.isatty():
         yield lambda done, total: None if done or not wordy else step(text)
@@ -50,7 +50,7 @@ def progress(text: str, *, wordy: bool = True) -> Iterator[Callable[[float, floa
 
 @contextmanager
 def terminable() -> Iterator[None]:
-    """Let SIGTERM, which batch systems send, end a command as Ctrl-C does: nothing half-written."""
+    """Let SIGTERM, which batch systems send, end a command like Ctrl-C: nothing is half-written."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -1,9 +1,9 @@
-"""The decisions: a protocol for each decision problem, and the rules that follow it.
+"""Controllers: a protocol for each decision problem, and the rules that implement it.
 
-A folder per problem (`poa`, `roa`, `rps`, `pps`, `psa`, `ta`, `sa`, `mm`, `pp`) holds its protocol
-in `__init__.py` and one module per rule. `base` has what all controllers share, `view` what they
-may read, `decisions` what they may say, `registry` how a name becomes a controller, and `settings`
-the controllers file.
+Each problem has a folder (`poa`, `roa`, `rps`, `pps`, `psa`, `ta`, `sa`, `mm`, `pp`) with its
+protocol in `__init__.py` and one module per rule. `base` holds what all controllers share, `view`
+what they may read, `decisions` what they may decide, `registry` how a name becomes a controller,
+and `settings` the controllers file.
 """
 
 from rmfs.control.base import Controller as Controller

@@ -1,4 +1,4 @@
-"""Answers as a table: what a decision chooses among, a row per answer, a column per number."""
+"""Possible answers to a question as a table: one row per answer, one column per attribute."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 
 class Candidates:
-    """C possible answers, as a table: a row per answer, a column per number.
+    """C possible answers as a table: one row per answer, one column per attribute.
 
-    `candidates[row]` is the answer itself, to be handed to `Decision.answer`.
+    `candidates[row]` is the answer itself, to be passed to `Decision.answer`.
 
     Attributes
     ----------
     columns
-        Arrays of shape (C,) by name; `MEANINGS` says what each is.
+        Arrays of shape (C,) by name; see `MEANINGS`.
     """
 
     def __init__(self, columns: Columns, answer: Callable[[int], Any]) -> None:
@@ -62,27 +62,27 @@ MEANINGS = {
     "pod": Meaning("", "number of a pod"),
     "place": Meaning("", "waypoint of a storage place"),
     "lines": Meaning("lines", "lines of the order"),
-    "units": Meaning("units", "units still wanted, or what the pod can serve of them"),
+    "units": Meaning("units", "units still open, or how many of them the pod can serve"),
     "inbound_units": Meaning(
-        "units", "of these, to spare on pods at the station or on their way there"
+        "units", "of these, units that are spare on pods at the station or on their way there"
     ),
     "in_stock": Meaning("", "1 if stock can serve the whole order, 0 if not"),
-    "age_s": Meaning("s", "time since it arrived"),
-    "due_in_s": Meaning("s", "time until it is due, negative if it is late"),
-    "free_slots": Meaning("orders", "slots of the station without an order"),
-    "orders": Meaning("orders", "orders the pod completes"),
+    "age_s": Meaning("s", "time since arrival"),
+    "due_in_s": Meaning("s", "time until the due time, negative if late"),
+    "free_slots": Meaning("orders", "free slots of the station"),
+    "orders": Meaning("orders", "orders that the pod completes"),
     "bundles": Meaning("bundles", "bundles for the pod, or the station"),
     "space": Meaning("space units", "space the bundle takes"),
     "free_space": Meaning("space units", "room left on the pod, or at the station"),
-    "reach_s": Meaning("s", "estimated time of the robot to the pod"),
-    "bring_s": Meaning("s", "unhindered time from the pod to the station"),
-    "away_s": Meaning("s", "unhindered time of the robot to the place or the station"),
+    "reach_s": Meaning("s", "estimated travel time from the robot to the pod"),
+    "bring_s": Meaning("s", "unhindered travel time from the pod to the station"),
+    "away_s": Meaning("s", "unhindered travel time from the robot to the place or station"),
     "back_s": Meaning("s", "unhindered time from the place to the nearest active pick station"),
     "distance_m": Meaning("m", "straight distance"),
-    "robots": Meaning("robots", "robots at work for the station, or bound for it"),
-    "level_share": Meaning("share", "what is in the robot's battery, of its capacity"),
+    "robots": Meaning("robots", "robots working for the station or on their way there"),
+    "level_share": Meaning("share", "charge of the robot's battery, as a share of its capacity"),
     "active": Meaning("", "1 if the station takes new work, 0 if not"),
     "pick": Meaning("", "1 if the station is a pick station, 0 if not"),
-    "kind": Meaning("", "0 work for the station, 1 store the pod, 2 move a pod, 3 rest"),
+    "kind": Meaning("", "0 work for a station, 1 store the pod, 2 move a pod, 3 rest"),
 }
-"""What the columns of candidates are."""
+"""Units and meanings of the columns of candidates."""

@@ -1,4 +1,4 @@
-"""Questions for optimisers: what a controller asks, what comes back, and how a call went."""
+"""Questions to optimisers, their answers, and a record of each call."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Q = TypeVar("Q")
 D = TypeVar("D")
 
 BOUND_TOLERANCE = 1e-6
-"""How far, relative to the objective, a bound may pass it by rounding."""
+"""Tolerance, relative to the objective, by which rounding may put a bound beyond it."""
 
 Plain = NDArray[Any] | int | float | str | bool | Sequence["Plain"]
-"""What a solution may consist of: it is sent between processes, recorded and replayed."""
+"""Values allowed in a solution, which is sent between processes, recorded and replayed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,30 +30,30 @@ class Answer:
     Attributes
     ----------
     solution
-        Arrays and numbers by name; None if there is no solution, or none was found in time.
+        Arrays and numbers by name; None if there is no solution or none was found in time.
     objective, bound
-        Cost of the solution and what is proven about the least one; inf or nan where nothing is.
+        Cost of the solution and proven lower bound; inf or nan where there is none.
     status
-        How the solver ended, in its words.
+        Final status, as the solver names it.
     backend
-        Who solved it.
+        Name of the back end.
     work
-        Deterministic work in the unit of the back end.
+        Deterministic work, in the unit of the back end.
     wall_s, build_s
-        Wall time in all, and the part in which the solver's model was built.
+        Total wall time, and the part spent building the solver's model.
     built
-        Entries built or gone through besides the work: the nonzeros of the solver's model.
+        Size of the model that was built (nonzeros), which counts besides the work.
     scale
-        What a gap is large or small against, in the unit of the objective, such as the cost of the
-        pods called. Default: the objective, which means little where gains and costs cancel out.
+        Reference for the relative gap, in the unit of the objective, such as the cost of the pods
+        called. Default: the objective, which is unsuitable where gains and costs cancel out.
     found
-        The optimiser's own values, of which `solution` is what the controller needs: for who keeps
-        questions and answers. It is not recorded.
+        The optimiser's own values, for those who save questions and answers; `solution` is the part
+        that the controller needs. Not recorded.
 
     Raises
     ------
     TypeError
-        If the solution is no mapping, or a number is none.
+        If the solution is not a mapping, or a value is not a number.
     ValueError
         If work is negative or not finite, or a bound is beyond the objective.
     """
@@ -81,20 +81,20 @@ class Answer:
         slack = BOUND_TOLERANCE * max(1.0, abs(self.objective))
         if self.solution is not None and self.bound - self.objective > slack:
             raise ValueError(
-                f"bound {self.bound} is beyond the objective {self.objective}: of a cost, less is "
-                "better"
+                f"bound {self.bound} exceeds the objective {self.objective}: costs are "
+                "minimised, so a bound must not be larger"
             )
 
     @property
     def gap_abs(self) -> float:
-        """Distance of objective and bound in their own unit; nan without one of them."""
+        """Absolute gap between objective and bound; nan if either is missing."""
         if self.solution is None or not isfinite(self.objective - self.bound):
             return nan
         return abs(self.objective - self.bound)
 
     @property
     def gap(self) -> float:
-        """`gap_abs` relative to `scale`; nan without it, or where only the scale is 0."""
+        """`gap_abs` relative to `scale`; nan if it is missing, or if only the scale is 0."""
         scale = abs(self.objective) if isnan(self.scale) else self.scale
         if self.gap_abs == 0.0:
             return 0.0
@@ -102,12 +102,12 @@ class Answer:
 
 
 def checked(answer: Any) -> Answer:
-    """Return what an optimiser returned, if it is an answer.
+    """Return an optimiser's return value if it is an `Answer`.
 
     Raises
     ------
     TypeError
-        If it is not.
+        If it is not an `Answer`.
     """
     if not isinstance(answer, Answer):
         raise TypeError(f"an optimiser must return an Answer; it returned {type(answer).__name__}")
@@ -116,19 +116,20 @@ def checked(answer: Any) -> Answer:
 
 @dataclass(frozen=True, eq=False)
 class Ask(Generic[Q]):
-    """A question for an optimiser; `decide` yields it like a decision.
+    """A question to an optimiser; `decide` yields it like a decision.
 
     Attributes
     ----------
     solve
-        A function of a module, which another process can import. The same question must always
-        get the same answer.
+        Function of a module that another process can import. It must always give the same answer
+        to the same question.
     question
-        What the world looks like: a frozen dataclass of arrays and numbers, copied from the view.
+        The relevant state of the world: a frozen dataclass of arrays and numbers copied from the
+        view.
     sizes
-        How large the question is, such as `{"orders": 80}`, for the table of decisions.
+        Dimensions of the question, such as `{"orders": 80}`, for the table of decisions.
     memo
-        What the controller wants back with the answer, such as the orders behind the indices.
+        Data that the controller gets back with the answer, such as the orders behind the indices.
     """
 
     solve: Callable[[Q], Answer]
@@ -141,18 +142,18 @@ class Outcome(StrEnum):
     """How a call ended."""
 
     WAITING = "waiting"
-    """The answer has not come (also: when the run ended)."""
+    """The answer has not arrived yet, or not before the run ended."""
     SOLUTION = "solution"
     NOTHING = "nothing"
     """The optimiser ended without a solution."""
     FAILED = "failed"
-    """The optimiser raised an error, died, or took longer than it may."""
+    """The optimiser raised an error, crashed, or exceeded its time limit."""
     ABANDONED = "abandoned"
-    """The controller was exchanged before the answer came."""
+    """The controller was exchanged before the answer arrived."""
 
 
 class Asker(Protocol):
-    """Who asks: a controller (`rmfs.control.base.Controller`)."""
+    """A controller that asks questions (`rmfs.control.base.Controller`)."""
 
     in_flight: int
 
@@ -163,27 +164,27 @@ class Asker(Protocol):
 
 @dataclass(eq=False)
 class Call:
-    """One question in the course of a run.
+    """One question in a run, and what became of it.
 
     Attributes
     ----------
     number
-        Of all questions of the run, from 0.
+        Number of the question in the run, from 0.
     controller
-        Who asked.
+        The controller that asked.
     requested_us, completed_us
-        When it was asked and when the answer took effect, in simulated microseconds; -1 for not
+        Simulated times, in microseconds, of the question and of the effect of its answer; -1 if not
         yet.
     state
-        Hash of the question and of the state of the world it was asked in.
+        Hash of the question and of the state of the world when it was asked.
     failure
-        Why it failed, in one line.
+        Reason for a failure, in one line.
     applied, stale
-        Decisions of the solution that were applied, and that no longer held.
+        Number of decisions of the solution that were applied, and that were no longer valid.
     fallback
-        Decisions that the heuristic took in its place when it had failed or found nothing.
+        Decisions made by the controller's own rule because the call failed or found nothing.
     done
-        How many of its parts have been dealt with (`left`).
+        Number of parts already handled (`left`).
     """
 
     number: int
@@ -208,48 +209,48 @@ class Call:
 
     @property
     def paced_s(self) -> float:
-        """Simulated time from question to effect; nan while it waits."""
+        """Simulated time from the question to its effect; nan while waiting."""
         if self.completed_us < 0:
             return float("nan")
         return (self.completed_us - self.requested_us) / 1e6
 
     def left(self, name: str, parts: Sequence[D]) -> Iterator[D]:
-        """Yield the parts of an answer that have not been dealt with.
+        """Yield the parts of an answer that have not been handled yet.
 
-        A rule for TA that goes through its answer by this can be asked again in the middle of it:
-        when PPS, PSA or repositioning are decided outside, `answered` ends with the first question
-        to them, and is called anew once that is answered (`Controller.goes_on`).
+        A TA rule that iterates over its answer this way can be resumed in the middle. When PPS, PSA
+        or repositioning are decided outside, `answered` stops at the first question to them and is
+        called again once that question is answered (`Controller.goes_on`).
 
         Parameters
         ----------
         name
-            Of these parts among all of the answer's.
+            Name of this group of parts within the answer.
         parts
-            All of them; the same ones each time.
+            All parts of the group, the same on each call.
         """
         while (number := self.done.get(name, 0)) < len(parts):
             self.done[name] = number + 1
             yield parts[number]
 
     def count(self) -> None:
-        """Count a decision that was based on it."""
+        """Count a decision based on this answer."""
         if self.solution is None:
             self.fallback += 1
         else:
             self.applied += 1
 
     def forget(self) -> None:
-        """Let go of question and values, which may be large; sizes and solution stay."""
+        """Release the question and its values, which may be large; sizes and solution are kept."""
         self.ask = replace(self.ask, question=None, memo=None)
         if self.answer is not None:
             self.answer = replace(self.answer, found=None)
 
 
 class By(NamedTuple, Generic[D]):
-    """A decision, and the call whose solution it comes from; None: the controller's own rule.
+    """A decision with the call whose solution it comes from; None: the controller's own rule.
 
-    Without it a decision is the controller's own when it was asked for one, and the answer's when
-    it was told an answer (`answered`).
+    A bare decision is attributed to the controller if it comes from `decide`, and to the answer if
+    it comes from `answered`.
     """
 
     decision: D
@@ -257,11 +258,11 @@ class By(NamedTuple, Generic[D]):
 
 
 def told_by(decision: Any, otherwise: Call | None) -> tuple[Any, Call | None]:
-    """Part a decision from the call it comes from."""
+    """Separate a decision from the call it comes from."""
     return decision if type(decision) is By else (decision, otherwise)
 
 
 def own(decisions: Iterable[D]) -> Iterator[D | By[D]]:
-    """Yield decisions as the controller's own, whatever it was asked or told."""
+    """Yield decisions attributed to the controller's own rule, even from within `answered`."""
     for decision in decisions:
         yield decision if type(decision) is Ask else By(decision, None)

@@ -1,4 +1,4 @@
-"""What all controllers have in common."""
+"""The base class of all controllers."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 
 class Parameters(Model):
-    """Base of the parameters of controllers; the text below a field explains it to users."""
+    """Base class of controller parameters; the docstring below a field explains it to users."""
 
     model_config = pydantic.ConfigDict(use_attribute_docstrings=True)
 
 
 class RuleTables(Parameters):
-    """Rules for some problems, each a table as in a controllers file."""
+    """Rules for some problems; each is a table as in a controllers file."""
 
     poa: Table | None = None
     """The rule for pick order assignment."""
@@ -54,48 +54,48 @@ class RuleTables(Parameters):
 
 
 class NoParameters(Parameters):
-    """A rule that has nothing to set."""
+    """Parameters of a rule that has none."""
 
 
 P = TypeVar("P", bound=Parameters)
 
 
 class Controller(Generic[P]):
-    """Base of all controllers.
+    """Base class of all controllers.
 
-    A controller is asked for decisions when one of its triggers happened, or at the time it names
-    itself. It reads the view and changes nothing: its decisions do. A new controller is installed
-    with `START`, at the beginning of a run or in the middle of it.
+    A controller is asked for decisions when one of its triggers occurs, or at a time of its own
+    choice. It reads the view and changes nothing itself; its decisions are applied by the
+    simulation. A new controller is installed with `START`, at the beginning of a run or during it.
 
     Attributes
     ----------
     problem
-        The decision problem it solves.
+        The decision problem that it solves.
     parameters_model
-        The model of its parameters: file format, `--set` and documentation come from it.
+        Model of its parameters, which defines file format, `--set` and documentation.
     triggers
-        Events after which every controller of the problem is asked (paper, table 1).
+        Events after which all controllers of the problem are asked (paper, table 1).
     subscriptions
-        Further events after which this controller wants to be asked.
+        Further events after which this controller is asked.
     hears
-        Events of which `hear` is told at once, decision or not.
+        Events that are passed to `hear` immediately, even if no decision is due.
     waits_for
-        Problems whose decision it waits for; two rules that wait for each other are refused.
+        Problems that must be decided first; two rules that wait for each other are refused.
     decides
-        Further problems whose decisions it takes; a dummy has to stand in for each of them.
+        Further problems that it decides; each of them must be set to a dummy.
     is_dummy
-        Whether it decides nothing and leaves the decision to another controller.
+        Whether it decides nothing and leaves the problem to another controller.
     optimisers
-        Modules with the functions that solve its questions (`rmfs.control.asks`); a controller
-        that asks optimisers names one at least.
+        Modules with the functions that answer its questions (`rmfs.control.asks`); required of
+        controllers that ask optimisers.
     goes_on
-        Whether `answered` may be called again with a call whose answer it was carrying out when
-        somebody outside was asked: it then goes on where it was (`Call.left`). To be said by rules
-        for TA that ask optimisers; without it PPS, PSA and repositioning cannot be decided outside.
+        Whether `answered` may be called again with the same call after it was interrupted by a
+        question to somebody outside; it then continues where it stopped (`Call.left`). Set by TA
+        rules that ask optimisers; otherwise PPS, PSA and repositioning cannot be decided outside.
     looks_ahead
-        Whether it is given `lookahead`, with which it tries decisions out.
+        Whether it needs `lookahead`, with which it can try out decisions.
     in_flight
-        How many of its questions wait for an answer.
+        Number of its questions that are waiting for an answer.
     """
 
     problem: ClassVar[Problem]
@@ -118,28 +118,28 @@ class Controller(Generic[P]):
         self.rng = rng
 
     def next_event_s(self) -> float:
-        """When it wants to be asked at the latest; looked up after each time it was asked."""
+        """Time by which it needs to be asked; read after each time it was asked."""
         return inf
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Take note of an event of `hears`; the subject is as described at the trigger."""
+        """Process an event listed in `hears`; the subject is described at the trigger."""
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the decisions of a solution that still hold, as `decide` yields its own.
+        """Yield the decisions of a solution that are still valid, in the same way as `decide`.
 
-        It is called once for each question, also if there is no solution. Decisions that no longer
-        hold are to be counted in `call.stale`; one that does not come from this answer says so
-        (`rmfs.control.asks.By`). Here: no decisions.
+        Called once for each question, even if there is no solution. Count decisions that are no
+        longer valid in `call.stale`, and mark decisions that do not come from this answer with
+        `rmfs.control.asks.By`. By default there are no decisions.
         """
         return iter(())
 
     def is_modelled(self, decision: Any) -> bool:
-        """Whether a decision is of a kind that its optimisers take: only those are counted.
+        """Whether a decision is of a kind that its optimisers make: only those are counted.
 
-        What is prepared ahead counts when it is done.
+        A prepared task counts when it is carried out.
         """
         return not getattr(decision, "is_ahead", False)
 
     def draw(self, count: int) -> int:
-        """Draw a number from 0 to `count` - 1, all equally likely."""
+        """Draw an integer from 0 to `count` - 1, all equally likely."""
         return int(self.rng.random() * count)

@@ -1,4 +1,4 @@
-"""What a decision chooses among, with the numbers that rules look at."""
+"""The options of a decision, with the attributes that rules compare."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def candidates_for(view: View, question: Question, refused: Sequence[Any] = ()) 
     Parameters
     ----------
     refused
-        Answers of the same turn that came to nothing.
+        Answers of the same turn that could not be carried out.
     """
     if question.kind != "turn":
         return _OF_KIND[question.kind](view, view.robots[question.robot], question.stations)
@@ -56,7 +56,7 @@ def candidates_for(view: View, question: Question, refused: Sequence[Any] = ()) 
 
 
 def _orders(view: View) -> Candidates:
-    """Pairs of an order of the backlog and a station that can take it."""
+    """Pairs of an order in the backlog and a station that can take it."""
     orders: list[Order] = []
     stations: list[PickStation] = []
     taking = [s for s in view.pick_stations if s.active and s.free_slots > 0]
@@ -108,7 +108,7 @@ def _bundles_to_stations(view: View) -> Candidates:
 
 
 def _bundles_to_pods(view: View) -> Candidates:
-    """Pairs of a bundle and a pod with room; then, with bundle -1, pods whose bundles are held."""
+    """Pairs of a bundle and a pod with room; then pods with promised bundles, as bundle -1."""
     free = view.inventory.capacity - view.inventory.load
     waiting = list(view.bundles.without_pod.values())
     fits = [np.flatnonzero(free >= bundle.space) for bundle in waiting]
@@ -134,7 +134,7 @@ def _bundles_to_pods(view: View) -> Candidates:
 
 
 def _stations_to_switch(view: View) -> Candidates:
-    """Every station: switched to the other state."""
+    """All stations, each switched to its other state."""
     stations = view.stations
     columns: Columns = {
         "station": np.arange(len(stations)),
@@ -145,7 +145,7 @@ def _stations_to_switch(view: View) -> Candidates:
 
 
 def _charges(view: View) -> Candidates:
-    """Pairs of a robot without pod and a station with room; then robots that could leave."""
+    """Pairs of a robot without a pod and a station with room; then robots that could leave."""
     batteries = view.batteries
     shares = [] if batteries is None else batteries.shares().tolist()
     robots = [*view.asking.values(), *view.resting.values()]
@@ -180,7 +180,7 @@ def _charges(view: View) -> Candidates:
 
 
 def _exchanges(view: View) -> Candidates:
-    """None: which controllers could be installed is not known here."""
+    """No options: the controllers that could be installed are not known here."""
     return Candidates({"station": np.empty(0, np.int64)}, lambda row: row)
 
 
@@ -188,7 +188,7 @@ def _exchanges(view: View) -> Candidates:
 
 
 def _pick_pods(view: View, robot: Robot, stations: tuple[int, ...]) -> Candidates:
-    """Pods at hand with units that the station wants."""
+    """Available pods with units that the station needs."""
     station = view.pick_stations[stations[0]]
     found = pick_candidates(view, robot, station, "assigned-and-completable")
     done = found.completed() if len(found) else None
@@ -204,7 +204,7 @@ def _pick_pods(view: View, robot: Robot, stations: tuple[int, ...]) -> Candidate
 
 
 def _replenishment_pods(view: View, robot: Robot, stations: tuple[int, ...]) -> Candidates:
-    """Pods at hand for which bundles wait at the station."""
+    """Available pods for which bundles wait at the station."""
     station = view.stations[stations[0]]
     assert isinstance(station, ReplenishmentStation)
     found = replenishment_candidates(view, robot, station)
@@ -246,7 +246,7 @@ def _places(view: View, robot: Robot, stations: tuple[int, ...]) -> Candidates:
 
 
 def _moves(view: View, robot: Robot, stations: tuple[int, ...]) -> Candidates:
-    """Pods at hand, each to the empty place nearest to it."""
+    """Available pods, each with the empty place nearest to it."""
     pods = np.flatnonzero(view.storage.is_at_hand)
     places = view.storage.places[view.storage.is_empty]
     if not len(places):

@@ -1,4 +1,4 @@
-"""Choosing rules: which rule solves a problem, with which parameters, and beside which others."""
+"""Choice of rules: which rule solves each problem, and which rules may be combined."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ if TYPE_CHECKING:
     from rmfs.control.base import Controller, Parameters
 
 DEFAULTS = {problem: problem.default for problem in Problem}
-"""The rule of a problem that a file does not mention."""
+"""The rule of a problem that a controllers file does not mention."""
 
 _SHARED: dict[type[Parameters], str] = {TurnoverParameters: "classes", ZoneParameters: "zones"}
-"""Parameters on which all rules that have them must agree, and what they describe."""
+"""Parameters that all rules with them must share, and what they describe."""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """A rule and its parameters, validated.
+    """A rule and its validated parameters.
 
     Attributes
     ----------
     name
-        As in the file: a registered name or `module:Class`.
+        As in the file: a registered name, `module:Class` or `path/to/file.py:Class`.
     """
 
     problem: Problem
@@ -48,17 +48,17 @@ class Choice:
         return registry.find(self.problem, self.name)
 
     def to_table(self) -> Table:
-        """Name and parameters as they stand in a controllers file."""
+        """Return name and parameters as a table of a controllers file."""
         return {"name": self.name, **self.parameters.model_dump(mode="json", exclude_none=True)}
 
 
 def choose(problem: Problem, table: Table, source: str) -> Choice:
-    """Validate the table of a problem: its rule by name, everything else a parameter.
+    """Validate the table of a problem: `name` selects the rule, all other keys are parameters.
 
     Raises
     ------
     InputError
-        If something is wrong; names the key and what is valid.
+        If something is wrong; names the key and the valid values.
     """
     parameters = dict(table)
     name = parameters.pop("name", DEFAULTS[problem])
@@ -75,19 +75,19 @@ def choose(problem: Problem, table: Table, source: str) -> Choice:
 
 
 def check_together(choices: Mapping[Problem, Choice], source: str) -> None:
-    """Refuse rules that do not go together.
+    """Refuse rules that cannot be combined.
 
     Parameters
     ----------
     choices
-        One for every problem.
+        One for each problem.
 
     Raises
     ------
     InputError
-        If a joint controller stands beside a partner that is not a dummy, or a dummy beside nobody
-        who takes its decision; if two rules wait for each other; if two rules class pods by
-        turnover, or lay out zones, in different ways.
+        If a joint controller is combined with a partner that is not a dummy; if no controller makes
+        the decisions of a dummy; if two rules wait for each other; or if two rules use different
+        turnover classes or zones.
     """
     _refuse_mutual_waiting(choices, source)
     _refuse_different_views(choices, source)
@@ -104,7 +104,7 @@ def check_together(choices: Mapping[Problem, Choice], source: str) -> None:
     for problem, choice in choices.items():
         if choice.controller.is_dummy and problem not in taken:
             raise InputError(
-                f"{source}: {problem}.name: a dummy decides nothing, and no other controller here "
+                f"{source}: {problem}.name: a dummy decides nothing, and no other controller "
                 f"decides {problem}"
             )
 

@@ -33,7 +33,7 @@ def list_controllers(
         bool, typer.Option("--rules", help="List the rules for each decision problem instead.")
     ] = False,
 ) -> None:
-    """List the shipped sets of controllers, or all rules there are."""
+    """List the shipped sets of controllers, or all available rules."""
     Console().print(_rules() if rules else _sets())
 
 
@@ -54,7 +54,7 @@ def show(
 
 @app.command()
 def check(controllers: Name) -> None:
-    """Read a set of controllers, and say what is wrong or which rules it names."""
+    """Check a set of controllers: report what is wrong, or the rules it selects."""
     read, notes = load_with_notes(controllers)
     _print_notes(notes)
     choices = read.choices.values()
@@ -64,13 +64,15 @@ def check(controllers: Name) -> None:
 
 @app.command("import")
 def import_command(
-    path: Annotated[Path, typer.Argument(metavar="FILE", help="A RAWSim-O .xconf.")],
+    path: Annotated[
+        Path, typer.Argument(metavar="FILE", help="RAWSim-O controller configuration (.xconf).")
+    ],
     out: Annotated[
         Path | None, typer.Option(help="The .toml file to write; default: NAME.toml.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that exists.")] = False,
 ) -> None:
-    """Turn a RAWSim-O controller configuration into a set of ours, and say what is different."""
+    """Convert a RAWSim-O controller configuration, and report the differences."""
     if path.suffix.lower() != ".xconf":
         raise InputError(f"{path}: expected a .xconf file")
     target = out if out is not None else Path(f"{path.stem}.toml")
@@ -85,7 +87,7 @@ def import_command(
 
 
 def _print_notes(notes: list[str]) -> None:
-    # beside the output proper, which may be TOML
+    # on standard error: the output proper may be TOML
     for note in notes:
         typer.echo(f"note: {note}", err=True)
 
@@ -107,7 +109,7 @@ def _rules() -> Table:
 
 
 def _below_controllers(text: str) -> tuple[list[str], object]:
-    """Read one `--set`; its key starts with `controllers`, as everywhere."""
+    """Parse one `--set`; its key starts with `controllers`, as in `rmfs run`."""
     path, value = parse_override(text)
     if path[0] != "controllers" or len(path) == 1:
         raise InputError(f"--set {text}: expected a key such as controllers.psa.name")

@@ -1,4 +1,4 @@
-"""What controllers may say. Each decision is applied before the controller is resumed."""
+"""The decisions that controllers can make; each is applied before the controller is resumed."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 
 
 class AssignOrder(NamedTuple):
-    """POA: put an order of the backlog on a pick station."""
+    """POA: assign an order of the backlog to a pick station."""
 
     order: Order
     station: int
 
 
 class AssignLines(NamedTuple):
-    """POA: put some lines of an order of the backlog on a pick station, those of these SKUs.
+    """POA: assign the lines of an order with these SKUs to a pick station.
 
-    The order is split: the other lines stay in the backlog. Lines of an order that has a part at
-    the station already join it, so that it takes one slot there.
+    The order is split: its other lines stay in the backlog. Lines of an order that already has a
+    part at the station join that part and share its slot.
     """
 
     order: Order
@@ -34,10 +34,10 @@ class AssignLines(NamedTuple):
 
 
 class QueueOrder(NamedTuple):
-    """POA: let an order of the backlog join the pool of a pick station.
+    """POA: move an order of the backlog into the pool of a pick station.
 
-    It stays in the backlog, but pods can be bound to it; only to this station it can be assigned.
-    Station -1 takes it out of the pool it is in; pods bound to it are free of it then.
+    It remains in the backlog and can only be assigned to this station, but pods can be bound to it.
+    Station -1 removes it from its pool and unbinds its pods.
     """
 
     order: Order
@@ -52,46 +52,46 @@ class SendBundle(NamedTuple):
 
 
 class PromiseBundle(NamedTuple):
-    """RPS: keep room on a pod for a bundle, without releasing the decision yet."""
+    """RPS: reserve room on a pod for a bundle, without releasing the decision yet."""
 
     bundle: Bundle
     pod: int
 
 
 class ReleasePod(NamedTuple):
-    """RPS: release what was promised to a pod, so that a station can be chosen."""
+    """RPS: release the bundles promised to a pod, so that a station can be chosen."""
 
     pod: int
 
 
 class BringForPicks(NamedTuple):
-    """TA: bring a pod (or go on with the one carried) to a pick station."""
+    """TA: bring a pod (or the one already carried) to a pick station."""
 
     robot: Robot
     pod: int
     station: int
 
     def task(self) -> Task:
-        """Make of it a task that has not begun."""
+        """Return the corresponding task, not yet begun."""
         return PickTask(self.robot.index, self.pod, self.station)
 
 
 class BringForBundles(NamedTuple):
-    """TA: bring a pod (or go on with the one carried) to a replenishment station."""
+    """TA: bring a pod (or the one already carried) to a replenishment station."""
 
     robot: Robot
     pod: int
     station: int
 
     def task(self) -> Task:
-        """Make of it a task that has not begun."""
+        """Return the corresponding task, not yet begun."""
         return ReplenishTask(self.robot.index, self.pod, self.station)
 
 
 class Visit(NamedTuple):
-    """Bring a pod (or go on with the one carried) to a station of another kind.
+    """Bring a pod (or the one already carried) to a station of another kind.
 
-    `what` is the kind of task that the kind of station has.
+    `what` is the kind of task, as defined by the kind of station.
     """
 
     robot: Robot
@@ -100,33 +100,33 @@ class Visit(NamedTuple):
     what: type[VisitTask]
 
     def task(self) -> Task:
-        """Make of it a task that has not begun."""
+        """Return the corresponding task, not yet begun."""
         return self.what(self.robot.index, self.pod, self.station)
 
 
 class Park(NamedTuple):
-    """TA: store the pod the robot carries at a place.
+    """TA: store the carried pod at a place.
 
-    In a prepared task the place may be -1: PSA is asked when its turn comes.
+    In a prepared task the place may be -1: PSA then chooses it when the task begins.
     """
 
     robot: Robot
     place: int
 
     def task(self) -> Task:
-        """Make of it a task that has not begun."""
+        """Return the corresponding task, not yet begun."""
         return ParkTask(self.robot.index, place=self.place)
 
 
 class Reposition(NamedTuple):
-    """TA: fetch a pod that is at hand and store it at another place, which is empty."""
+    """TA: fetch an available pod and store it at another, empty place."""
 
     robot: Robot
     pod: int
     place: int
 
     def task(self) -> Task:
-        """Make of it a task that has not begun."""
+        """Return the corresponding task, not yet begun."""
         return RepositionTask(self.robot.index, self.pod, place=self.place)
 
 
@@ -137,16 +137,16 @@ class Rest(NamedTuple):
     place: int
 
     def task(self) -> Task:
-        """Make of it a task that has not begun."""
+        """Return the corresponding task, not yet begun."""
         return RestTask(self.robot.index, place=self.place)
 
 
 TaskDecision = BringForPicks | BringForBundles | Visit | Park | Reposition | Rest
-"""What TA may decide."""
+"""The decisions of TA."""
 
 
 class WorkFor(NamedTuple):
-    """TA, from outside: let a robot work for a station; PPS chooses the pod, if it carries none."""
+    """TA, from outside: let a robot work for a station; PPS chooses a pod unless it carries one."""
 
     robot: Robot
     station: int
@@ -159,7 +159,7 @@ class Store(NamedTuple):
 
 
 class MovePod(NamedTuple):
-    """TA, from outside: let an empty robot move a pod; repositioning chooses pod and place."""
+    """TA, from outside: let a robot without a pod move one; repositioning chooses pod and place."""
 
     robot: Robot
 
@@ -170,46 +170,46 @@ class _Ahead(NamedTuple):
 
 
 class Prepare(_Ahead):
-    """TA: what a robot is to do after its present task, one after another; the last word counts.
+    """TA: what a robot is to do next, in order; replaces what was prepared before.
 
-    Prepared tasks keep nothing for the robot. One that is impossible when its turn comes (the pod
-    is claimed, the place taken, the work done by others) is passed over; after the last one TA is
-    asked as usual.
+    Prepared tasks reserve nothing. A task that has become impossible by then (the pod is claimed,
+    the place occupied, the work done by others) is skipped; after the last one, TA is asked as
+    usual.
     """
 
     __slots__ = ()
-    is_ahead = True  # counts when it is done
+    is_ahead = True  # counts when it is carried out
 
 
 class Charge(NamedTuple):
-    """CA: let a robot without pod get energy at a station, until its battery has a level."""
+    """CA: send a robot without a pod to an energy station, until its battery reaches a level."""
 
     robot: Robot
     station: int
     until_share: float
 
     def task(self) -> Task:
-        """Make of it a task that has not begun."""
+        """Return the corresponding task, not yet begun."""
         return ChargeTask(
             self.robot.index, station=self.station, until_share=float(self.until_share)
         )
 
 
 class Unplug(NamedTuple):
-    """CA: let a robot leave the plug-in place where it stands; it needs a task then."""
+    """CA: make a robot leave its plug-in place; it then needs a task."""
 
     robot: Robot
 
 
 class SwitchStation(NamedTuple):
-    """SA: let a station take new work, or stop it."""
+    """SA: let a station take new work, or not."""
 
     station: int
     active: bool
 
 
 class Exchange(NamedTuple):
-    """MM: install another controller for its problem."""
+    """MM: replace the controller of a problem."""
 
     choice: Choice
 
@@ -231,4 +231,4 @@ Decision = (
     | SwitchStation
     | Exchange
 )
-"""What any problem may decide."""
+"""The decisions of all problems."""

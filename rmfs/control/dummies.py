@@ -1,7 +1,7 @@
-"""Dummies: they stand in for a problem whose decisions a joint controller of another problem takes.
+"""Dummies: placeholders for problems that a joint controller of another problem decides.
 
-A dummy is never asked, or answers that there is nothing. A controllers file with a dummy needs a
-controller that names the problem in `decides`.
+A dummy is never asked, or answers that nothing can be done. A controllers file with a dummy needs a
+controller that lists the problem in `decides`.
 """
 
 from __future__ import annotations
@@ -72,21 +72,21 @@ class DummyRPS(ReplenishmentPodSelection[NoParameters]):
 
 
 class DummyPPS(PodSelection[LateBinding]):
-    """Leaves the choice of pods to another controller; what is bound on the way is set here."""
+    """Leaves the choice of pods to another controller; its parameters control late binding."""
 
     is_dummy: ClassVar[bool] = True
     parameters_model = LateBinding
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
-        """Find none."""
+        """Return -1: no pod."""
         return -1
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Find none."""
+        """Return -1: no pod."""
         return -1
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Take the first."""
+        """Return the first station."""
         return stations[0]
 
 
@@ -96,7 +96,7 @@ class DummyPSA(PodStorageAssignment[NoParameters]):
     is_dummy: ClassVar[bool] = True
 
     def place(self, robot: Robot) -> int:
-        """Find none."""
+        """Return -1: no place."""
         return -1
 
 
@@ -106,7 +106,7 @@ class DummyRepositioning(Repositioning[NoParameters]):
     is_dummy: ClassVar[bool] = True
 
     def move(self, robot: Robot) -> Move | None:
-        """Find none."""
+        """Return None: no move."""
         return None
 
 
@@ -122,7 +122,7 @@ class DummyTA(TaskAllocation[NoParameters]):
         yield from ()
 
     def rest_place(self, robot: Robot) -> int:
-        """Let it stay where it is."""
+        """Return -1: the robot stays where it is."""
         return -1
 
 
@@ -138,7 +138,7 @@ class DummySA(StationActivation[NoParameters]):
 
 
 class DummyCA(ChargeAssignment[NoParameters]):
-    """Leaves charging to another controller; who is low goes in any case."""
+    """Leaves charging to another controller; robots that run low are sent in any case."""
 
     is_dummy: ClassVar[bool] = True
     triggers = NEVER

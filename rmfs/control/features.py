@@ -1,8 +1,8 @@
-"""Candidates as numbers for policies: a row per answer, scaled, and the best of them first.
+"""Candidates as features for policies: one row per answer, scaled, and the best ones first.
 
-`rmfs.control.candidates` lists what could be answered, in seconds, units and metres. Here the
-columns that say how good an answer is (no names of robots, pods or places) are divided by a scale,
-so that 1 is a usual value, and cut off at `LIMIT`.
+`rmfs.control.candidates` lists the possible answers in seconds, units and metres. Here the columns
+that rate an answer (not the numbers of robots, pods or places) are divided by a scale, so that 1 is
+a typical value, and clipped at `LIMIT`.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
 
 LIMIT = 10.0
-"""No feature is greater, or less than the negative of it."""
+"""Features are clipped to this absolute value."""
 
 FAR = 1e9
-"""What is greater counts as this in rankings; nothing is less than its negative."""
+"""Larger absolute values count as this in rankings."""
 
 KINDS: dict[Problem, tuple[str, ...]] = {
     Problem.POA: ("poa",),
@@ -40,7 +40,7 @@ KINDS: dict[Problem, tuple[str, ...]] = {
     Problem.REPOSITIONING: ("move",),
     Problem.CA: ("ca",),
 }
-"""The kinds of question of each problem; a problem decided in turns has one of its own name."""
+"""The kinds of question of each problem; problems decided in turns have one of the same name."""
 
 COLUMNS: dict[str, tuple[str, ...]] = {
     "poa": (
@@ -59,7 +59,7 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "place": ("away_s", "back_s"),
     "move": ("distance_m", "reach_s"),
 }
-"""The features of each kind of question, by the names of columns of candidates."""
+"""The features of each kind of question, as names of candidate columns."""
 
 _KIND_OF_TASK = ("work", "store", "move", "rest")
 
@@ -90,16 +90,16 @@ SCALES: dict[str, float] = {
     "distance_m": 30.0,
     "level_share": 1.0,
 }
-"""What each feature is divided by, in the unit of its column."""
+"""The divisor of each feature, in the unit of its column."""
 
 OWN_MEANINGS: dict[str, tuple[str, str]] = {
-    "orders_at_station": ("orders", "orders open at the station"),
+    "orders_at_station": ("orders", "open orders at the station"),
     "work": ("", "1 if the robot would work for the station"),
     "store": ("", "1 if it would store its pod"),
     "move": ("", "1 if it would move an idle pod"),
     "rest": ("", "1 if it would rest"),
 }
-"""Unit and meaning of features that are no columns of candidates."""
+"""Unit and meaning of features that are not columns of candidates."""
 
 RANKINGS: dict[str, dict[str, float]] = {
     "poa": {"in_stock": 1000.0, "inbound_units": 30.0, "age_s": 0.01, "due_in_s": -0.01},
@@ -115,11 +115,11 @@ RANKINGS: dict[str, dict[str, float]] = {
     "place": {"away_s": -1.0, "back_s": -1.0},
     "move": {"distance_m": -1.0, "reach_s": -1.0},
 }
-"""By which weighted sum of their columns (not scaled) the k best candidates are found."""
+"""Weights of the unscaled columns whose sum ranks candidates to find the k best."""
 
 
 class Feature(NamedTuple):
-    """What one number of a candidate is: the column divided by its scale."""
+    """A feature of a candidate: a column divided by its scale."""
 
     name: str
     unit: str
@@ -128,14 +128,14 @@ class Feature(NamedTuple):
 
 
 def features_of(kinds: Iterable[str]) -> tuple[Feature, ...]:
-    """Return the features of candidates of some kinds of question, each once."""
+    """Return the features of candidates for some kinds of question, without duplicates."""
     names = dict.fromkeys(name for kind in kinds for name in COLUMNS[kind])
     told = {**{name: tuple(one) for name, one in MEANINGS.items()}, **OWN_MEANINGS}
     return tuple(Feature(name, told[name][0], SCALES[name], told[name][1]) for name in names)
 
 
 def numbers(candidates: Candidates, kind: str, view: View) -> dict[str, NDArray[np.float64]]:
-    """Return the columns of candidates that are features, not scaled, each of shape (C,)."""
+    """Return the columns of candidates that are features, unscaled, each of shape (C,)."""
     columns = candidates.columns
     if kind == "ta":
         task = columns["kind"]
@@ -147,7 +147,7 @@ def numbers(candidates: Candidates, kind: str, view: View) -> dict[str, NDArray[
 
 
 def matrix(columns: Mapping[str, NDArray[np.float64]], names: Sequence[str]) -> NDArray[np.float64]:
-    """Return the scaled features of C candidates, shape (C, F); zero where there is no column."""
+    """Return the scaled features of C candidates, shape (C, F); zero for missing columns."""
     count = len(next(iter(columns.values()))) if columns else 0
     found = np.zeros((count, len(names)))
     for place, name in enumerate(names):
@@ -162,15 +162,15 @@ def best_rows(
 ) -> NDArray[np.intp]:
     """Return the rows of the k best candidates by a weighted sum, the best first.
 
-    Of equals the earlier row comes first.
+    Ties go to the earlier row.
     """
     count = len(next(iter(columns.values()))) if columns else 0
     score = np.zeros(count)
     for name, weight in weights.items():
-        # times are at most far away: an order without a due time is due never
+        # infinite times are capped: an order without a due time is never due
         score -= weight * np.minimum(columns[name], FAR)
     if count > 4 * k:
-        # the k-th best score bounds those that are sorted; equals of it are kept
+        # the k-th best score limits the rows to sort; ties with it are kept
         bound = np.partition(score, k - 1)[k - 1]
         few = np.flatnonzero(score <= bound)
         return few[np.argsort(score[few], kind="stable")][:k]

@@ -1,4 +1,4 @@
-"""Which of several decisions is the best, by trials: sequential halving."""
+"""Sequential halving: finds the best of several decisions by trials."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """A question to the future; the first decision is that of the base rule.
+    """Decisions to compare by trials; the first is that of the base rule.
 
     Attributes
     ----------
     trials
-        Tries decisions out.
+        Tries out a decision.
     count
-        How many decisions there are.
+        Number of decisions.
     samples
-        Futures in which each may be tried.
+        Maximum number of futures in which each decision is tried.
     instants
-        Budget: no further round begins after so many instants.
+        Budget: no further round starts once this many instants have been simulated.
     certainty
-        Another decision than the first is taken if its mean advantage is so many standard errors.
+        A decision replaces the first only if its mean advantage is this many standard errors.
     state
-        What tells this question from others.
+        Identifies the question for hashing.
     """
 
     trials: Trials
@@ -42,7 +42,7 @@ class Comparison:
     state: tuple[float, ...] = field(default=())
 
     def digested(self) -> tuple[object, ...]:
-        """Return what makes the hash of the question."""
+        """Return what determines the hash of the question."""
         return self.count, self.samples, self.instants, self.certainty, self.state
 
 
@@ -50,8 +50,9 @@ def solve(question: Comparison) -> Answer:
     """Find the decision with the greatest value.
 
     All decisions are tried in one future, then in as many again, and after each round the worse
-    half is dropped; the base rule's stays to be compared with, future by future (Karnin, Koren and
-    Somekh 2013, "Almost optimal exploration in multi-armed bandits"). Work is counted in instants.
+    half is dropped. The base rule's decision stays, so that the others are compared with it in the
+    same futures (Karnin, Koren and Somekh 2013, "Almost optimal exploration in multi-armed
+    bandits"). Work is counted in instants.
     """
     values: dict[int, list[float]] = {row: [] for row in range(question.count)}
     alive, tried, spent, round_end = list(values), 0, 0, 1

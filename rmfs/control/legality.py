@@ -1,4 +1,4 @@
-"""Why a decision is not possible: the rules of the world, in words."""
+"""Explains why a decision is impossible in the current world."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 KINDS: dict[Problem, tuple[type, ...]] = {
     problem: tuple(getattr(say, name) for name in problem.decisions) for problem in Problem
 }
-"""What may be decided in a turn of each problem."""
+"""The classes of decision allowed in a turn of each problem."""
 
 
 def why_not(given: Any, question: Question, view: View) -> str:
-    """Say why an answer is impossible; an empty text if it is possible.
+    """Return why an answer is impossible, or an empty string if it is possible.
 
     Parameters
     ----------
     given
-        A decision in a turn; a number or a `Move` for what TA asks.
+        A decision, or a number or `Move` as an answer to a question of TA.
     """
     if question.kind != "turn":
         return _ANSWERS[question.kind](given, question, view)
@@ -40,10 +40,10 @@ def why_not(given: Any, question: Question, view: View) -> str:
 
 
 def reason(decision: Any, view: View) -> str:
-    """Say why a decision is impossible now; an empty text if nothing speaks against it."""
+    """Return why a decision is impossible now, or an empty string if it is possible."""
     check = _DECISIONS.get(type(decision))
     if check is None:
-        return f"{type(decision).__name__} is no decision of rmfs.control.decisions"
+        return f"{type(decision).__name__} is not a decision of rmfs.control.decisions"
     return check(decision, view)
 
 
@@ -57,9 +57,9 @@ def _is_number(given: Any) -> bool:
 
 def _station(number: Any, count: int, what: str, first: int = 0) -> str:
     if not _is_number(number):
-        return f"{number!r} is no number of a {what}"
+        return f"{number!r} is not the number of a {what}"
     if not first <= number < first + count:
-        return f"there is no {what} {number} (they are {first} to {first + count - 1})"
+        return f"there is no {what} {number} (valid: {first} to {first + count - 1})"
     return ""
 
 
@@ -90,10 +90,10 @@ def _assign_lines(decision: say.AssignLines, view: View) -> str:
     if wrong:
         return wrong
     if order.queued_at >= 0:
-        return f"order {order.index} is in a pool, and not to be split"
+        return f"order {order.index} is in a pool and cannot be split"
     missing = set(skus) - {line.sku for line in order.lines}
     if missing or not skus:
-        return f"order {order.index} has no lines of SKUs {sorted(missing)} left"
+        return f"order {order.index} has no open lines of SKUs {sorted(missing)}"
     return ""
 
 
@@ -106,7 +106,7 @@ def _queue(decision: say.QueueOrder, view: View) -> str:
         return wrong
     if order not in view.orders:
         return f"order {order.index} is not in the backlog"
-    return "" if order.queued_at < 0 else f"order {order.index} is in a pool already"
+    return "" if order.queued_at < 0 else f"order {order.index} is already in a pool"
 
 
 def _send(decision: say.SendBundle, view: View) -> str:
@@ -116,7 +116,7 @@ def _send(decision: say.SendBundle, view: View) -> str:
     if wrong:
         return wrong
     if bundle.station >= 0:
-        return f"bundle {bundle.index} has station {bundle.station} already"
+        return f"bundle {bundle.index} already has station {bundle.station}"
     target = view.replenishment_stations[station - first]
     if not target.active:
         return f"station {station} is switched off"
@@ -131,7 +131,7 @@ def _promise(decision: say.PromiseBundle, view: View) -> str:
     if wrong:
         return wrong
     if bundle.pod >= 0:
-        return f"bundle {bundle.index} has pod {bundle.pod} already"
+        return f"bundle {bundle.index} already has pod {bundle.pod}"
     free = float(view.inventory.capacity[pod] - view.inventory.load[pod])
     if bundle.space > free:
         return f"pod {pod} has {free:g} space units left, not {bundle.space:g}"
@@ -140,7 +140,7 @@ def _promise(decision: say.PromiseBundle, view: View) -> str:
 
 def _release(decision: say.ReleasePod, view: View) -> str:
     held = decision.pod in view.bundles.unreleased
-    return "" if held else f"nothing is held back for pod {decision.pod}"
+    return "" if held else f"no bundles are promised to pod {decision.pod}"
 
 
 def _switch(decision: say.SwitchStation, view: View) -> str:
@@ -151,20 +151,20 @@ def _switch(decision: say.SwitchStation, view: View) -> str:
 
 
 def _may_begin(robot: Any, view: View) -> str:
-    """Why a robot cannot be given a task."""
+    """Return why a robot cannot be given a task."""
     if robot.index in view.asking or robot.index in view.resting:
         return ""
-    return f"robot {robot.index} has a task"
+    return f"robot {robot.index} already has a task"
 
 
 def _fetches(robot: Any, pod: int, view: View) -> str:
-    """Why a robot cannot go on with a pod, or fetch it."""
+    """Return why a robot cannot use the pod it carries, or cannot fetch a pod."""
     wrong = _may_begin(robot, view) or _station(pod, len(view.inventory.capacity), "pod")
     if wrong or robot.pod == pod:
         return wrong
     if robot.pod >= 0:
         return f"robot {robot.index} carries pod {robot.pod}"
-    return "" if view.storage.is_at_hand[pod] else f"pod {pod} is not at hand"
+    return "" if view.storage.is_at_hand[pod] else f"pod {pod} is not available"
 
 
 def _pick(decision: say.BringForPicks, view: View) -> str:
@@ -200,15 +200,15 @@ def _charge(decision: say.Charge, view: View) -> str:
     if robot.pod >= 0:
         return f"robot {robot.index} carries pod {robot.pod}"
     if any(other.robot == robot.index for other in view.recovery_stations):
-        return f"robot {robot.index} stands at a station for energy: it goes elsewhere first"
+        return f"robot {robot.index} stands at an energy station and must leave it first"
     places = [other.index for other in view.recovery_stations]
     if station not in places:
-        return f"station {station} gives no energy (those that do: {places})"
+        return f"station {station} is not an energy station (those are: {places})"
     if not isinstance(until, int | float) or not 0 < until <= 1:
-        return f"{until!r} is no level (a share of the capacity, more than 0 and at most 1)"
+        return f"{until!r} is not a level (a share of the capacity, above 0 and at most 1)"
     bound = len(view.all_stations[station].tasks)
     most = len(view.layout.stations[station].queue)
-    return "" if bound < most else f"{bound} robots are bound for station {station} already"
+    return "" if bound < most else f"{bound} robots are already bound for station {station}"
 
 
 def _unplug(decision: say.Unplug, view: View) -> str:
@@ -219,16 +219,16 @@ def _unplug(decision: say.Unplug, view: View) -> str:
         batteries = view.batteries
         if batteries is None or batteries.share(robot.index) >= batteries.enough_share:
             return ""
-        return f"robot {robot.index} has too little for a task"
-    return f"robot {robot.index} stands at no plug-in place"
+        return f"robot {robot.index} has too little charge for a task"
+    return f"robot {robot.index} is not at a plug-in place"
 
 
 def _empty_place(place: Any, view: View) -> str:
     if not _is_number(place) or not 0 <= place < len(view.storage.place_index):
-        return f"{place!r} is no waypoint"
+        return f"{place!r} is not a waypoint"
     index = view.storage.place_index[place]
     if index < 0:
-        return f"waypoint {place} is no storage place"
+        return f"waypoint {place} is not a storage place"
     return "" if view.storage.is_empty[index] else f"place {place} is not empty"
 
 
@@ -257,9 +257,9 @@ def _rest(decision: say.Rest, view: View) -> str:
     if robot.pod >= 0:
         return f"robot {robot.index} carries pod {robot.pod}"
     if not 0 <= place < len(view.storage.kept_by):
-        return f"{place} is no waypoint"
+        return f"{place} is not a waypoint"
     keeper = view.storage.kept_by[place]
-    return "" if keeper in (-1, robot.index) else f"place {place} is kept by robot {keeper}"
+    return "" if keeper in (-1, robot.index) else f"place {place} is reserved for robot {keeper}"
 
 
 def _work_for(decision: say.WorkFor, view: View) -> str:
@@ -316,7 +316,7 @@ def _pod_at_hand(given: Any, question: Question, view: View) -> str:
     wrong = _station(given, len(view.inventory.capacity), "pod")
     if wrong:
         return wrong
-    return "" if view.storage.is_at_hand[given] else f"pod {given} is not at hand"
+    return "" if view.storage.is_at_hand[given] else f"pod {given} is not available"
 
 
 def _replenishment_pod(given: Any, question: Question, view: View) -> str:
@@ -329,7 +329,7 @@ def _replenishment_pod(given: Any, question: Question, view: View) -> str:
 
 
 def _one_of(given: Any, question: Question, view: View) -> str:
-    return "" if given in question.stations else f"it is none of {question.stations}"
+    return "" if given in question.stations else f"it is not one of {question.stations}"
 
 
 def _place(given: Any, question: Question, view: View) -> str:
@@ -338,7 +338,7 @@ def _place(given: Any, question: Question, view: View) -> str:
 
 def _move(given: Any, question: Question, view: View) -> str:
     if not isinstance(given, Move):
-        return "a Move of rmfs.control.repositioning is wanted"
+        return "expected a Move of rmfs.control.repositioning"
     return _pod_at_hand(given.pod, question, view) or _empty_place(given.place, view)
 
 

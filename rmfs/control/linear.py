@@ -1,7 +1,7 @@
-"""What linear rules have in common: weights of features, and the choice of the greatest sum.
+"""Linear rules: weights of features, and the candidate with the greatest weighted sum.
 
-The features are those of `rmfs.control.features`, scaled; `rmfs learn` finds weights. Sums are
-taken feature by feature in a fixed order, so that a run repeats on every machine.
+The features are those of `rmfs.control.features`, scaled; `rmfs learn` trains the weights. Sums are
+taken in a fixed order of features, so that runs are reproducible on every machine.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ STARTS: dict[str, Weights] = {
         **{"away_s": -1.0, "units": 1.0, "robots": -5.0},
     },
 }
-"""Weights of scaled features that make a rule, where those of the ranking do not."""
+"""Initial weights of scaled features, where those of the ranking do not make a rule."""
 
 
 def default_weights(kind: str) -> Weights:
-    """Return the weights with which a rule begins: those of the ranking, if it has none."""
+    """Return the initial weights of a rule; by default those of the ranking."""
     if kind in STARTS:
         return {name: STARTS[kind].get(name, 0.0) for name in COLUMNS[kind]}
     ranking = RANKINGS[kind]
@@ -43,16 +43,16 @@ def default_weights(kind: str) -> Weights:
 
 
 def checked(kind: str, weights: Mapping[str, float]) -> Weights:
-    """Return weights of all features of a kind of question; those not named are 0.
+    """Return weights for all features of a kind of question; missing ones are 0.
 
     Raises
     ------
     ValueError
-        If there is no such feature.
+        If a feature is unknown.
     """
     unknown = [name for name in weights if name not in COLUMNS[kind]]
     if unknown:
-        raise ValueError(f"{unknown[0]} is no feature here; valid: {', '.join(COLUMNS[kind])}")
+        raise ValueError(f"{unknown[0]} is not a feature here; valid: {', '.join(COLUMNS[kind])}")
     return {name: float(weights.get(name, 0.0)) for name in COLUMNS[kind]}
 
 
@@ -63,12 +63,12 @@ def best_of(
     weights: Weights,
     among: NDArray[np.intp] | None = None,
 ) -> int:
-    """Return the row with the greatest weighted sum, of equals the first; -1 without any.
+    """Return the row with the greatest weighted sum, the first in a tie; -1 if there is none.
 
     Parameters
     ----------
     among
-        Rows to choose from; by default all.
+        Rows to choose from. Default: all.
     """
     rows = np.arange(len(candidates)) if among is None else among
     if not len(rows):
@@ -83,7 +83,7 @@ def scores(
     weights: Weights,
     rows: NDArray[np.intp] | slice = ALL,
 ) -> NDArray[np.float64]:
-    """Return the weighted sum of each candidate, or of some rows of them, shape (C,)."""
+    """Return the weighted sum of each candidate, or of selected rows, shape (C,)."""
     columns = {name: values[rows] for name, values in numbers(candidates, kind, view).items()}
     names = list(weights)
     features = matrix(columns, names)

@@ -1,9 +1,10 @@
-"""Looking ahead: what a controller may ask about decisions it has not taken.
+"""Look-ahead: lets a controller try out decisions before it makes one.
 
-A controller that sets `looks_ahead` is given a `LookAhead`. It names some decisions and gets
-trials: copies of the run, in each of which one of them is taken and a base rule goes on. The future
-of a copy is drawn anew, from streams of its own, the same for all decisions that are compared: what
-will really come is not in it. A controller never has the run itself.
+A controller that sets `looks_ahead` is given a `LookAhead`. It passes some decisions and gets
+trials: copies of the run, each with one of the decisions applied and a base rule that continues.
+The future of a copy is drawn anew, from separate streams that are the same for all compared
+decisions, so it reveals nothing about the real future. A controller never has access to the run
+itself.
 """
 
 from __future__ import annotations
@@ -22,29 +23,29 @@ if TYPE_CHECKING:
 
 
 class Goal(Parameters):
-    """What a trial is worth: amounts within its horizon, each times a weight."""
+    """The value of a trial: a weighted sum of amounts within its horizon."""
 
     units: float = 1.0
-    """Of a unit picked at the begin of the horizon; it falls to 0 at its end."""
+    """Value of a unit picked at the start of the horizon; it falls linearly to 0 at its end."""
     orders: float = 0.0
-    """The same of an order completed."""
+    """Value of an order completed, discounted in the same way."""
     units_stored: float = 0.0
-    """The same of a unit stored: what is picked has to be stored sometime."""
+    """Value of a unit stored, discounted likewise: what is picked must be stored at some time."""
     overdue_s: float = pydantic.Field(default=0.0, ge=0)
-    """Of a second that an order is overdue within the horizon; it is subtracted."""
+    """Cost of each second by which an order is overdue within the horizon."""
     distance_m: float = pydantic.Field(default=0.0, ge=0)
-    """Of a metre driven; it is subtracted."""
+    """Cost of each metre driven."""
 
 
 class Tried(NamedTuple):
-    """How a trial went.
+    """The result of a trial.
 
     Attributes
     ----------
     value
-        What it was worth.
+        Value of the trial.
     instants
-        At how many instants something happened: the work it was.
+        Number of simulated instants, as a measure of work.
     """
 
     value: float
@@ -52,7 +53,7 @@ class Tried(NamedTuple):
 
 
 class Trials(Protocol):
-    """Decisions that can be tried out."""
+    """Decisions that can be tried out, one at a time."""
 
     def __call__(self, which: int, sample: int) -> Tried:
         """Try one of the decisions.
@@ -60,15 +61,15 @@ class Trials(Protocol):
         Parameters
         ----------
         which
-            Its place in the list.
+            Index of the decision.
         sample
-            Which of the futures: trials of one number meet the same.
+            Number of the future; trials with the same number share it.
         """
         ...
 
 
 class LookAhead(Protocol):
-    """What a controller that looks ahead is given."""
+    """The look-ahead given to controllers that ask for it."""
 
     def __call__(
         self,
@@ -78,12 +79,12 @@ class LookAhead(Protocol):
         horizon_s: float,
         goal: Goal,
     ) -> Trials:
-        """Prepare trials of some decisions, as the run is now.
+        """Prepare trials of some decisions from the current state of the run.
 
         Parameters
         ----------
         base
-            The rule that takes over the problem after the decision.
+            Rule that decides the problem after the tried decision.
         horizon_s
             How long each trial lasts.
 

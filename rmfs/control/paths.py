@@ -1,4 +1,4 @@
-"""Lengths of the shortest ways in the waypoint graph."""
+"""Lengths of shortest paths in the waypoint graph."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ if TYPE_CHECKING:
 
 
 class PathLengths:
-    """Lengths of shortest ways in metres, for empty robots and for loaded ones.
+    """Lengths of shortest paths in metres, for empty and for loaded robots.
 
-    A loaded robot passes no storage place on its way, occupied or not. A ride in an elevator is as
-    long as the tiers are apart.
+    A loaded robot does not pass through storage places, occupied or not. An elevator ride is as
+    long as the distance between its tiers.
 
     Parameters
     ----------
     layout
-        The warehouse; its graph is built when first asked for.
+        The warehouse; its graph is built on first use.
     """
 
     def __init__(self, layout: Layout) -> None:
@@ -30,21 +30,21 @@ class PathLengths:
         self._edges: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]] | None = None
 
     def away(self, waypoint: int, loaded: bool) -> NDArray[np.float64]:
-        """Lengths of the ways from a waypoint to all others, shape (N,), m; inf if there is none.
+        """Lengths of the paths from a waypoint to all others, shape (N,), m; inf if there is none.
 
-        For a loaded robot the way may begin and end at a storage place.
+        The path of a loaded robot may start and end at a storage place.
         """
         return self._lengths(waypoint, loaded, backwards=False)
 
     def to(self, waypoint: int, loaded: bool) -> NDArray[np.float64]:
-        """Lengths of the ways from all waypoints to one, shape (N,), m; inf if there is none."""
+        """Lengths of the paths from all waypoints to one, shape (N,), m; inf if there is none."""
         return self._lengths(waypoint, loaded, backwards=True)
 
     def _lengths(self, waypoint: int, loaded: bool, *, backwards: bool) -> NDArray[np.float64]:
         graph = self._graph(loaded, backwards)
         if not (loaded and self._layout.is_storage[waypoint]):
             return self._dijkstra(graph, waypoint)
-        # no edge leaves a storage place in this graph: take the first step by hand
+        # no edge leaves a storage place in this graph, so the first step is taken separately
         tails, heads, metres = self._all_edges()
         if backwards:
             tails, heads = heads, tails

@@ -23,25 +23,25 @@ class Problem(StrEnum):
 
     @property
     def meaning(self) -> str:
-        """What the abbreviation stands for."""
+        """The meaning of the abbreviation."""
         return _DECLARED[self].meaning
 
     @property
     def protocol(self) -> str:
-        """The class that every controller of the problem is derived from, as `module:Class`.
+        """The base class of all controllers of the problem, as `module:Class`.
 
-        It says by what methods the controller is asked, and after which triggers.
+        It defines the methods by which a controller is asked, and the triggers.
         """
         return _DECLARED[self].protocol
 
     @property
     def default(self) -> str:
-        """The rule where a file does not mention the problem."""
+        """The rule used if a file does not mention the problem."""
         return _DECLARED[self].default
 
     @property
     def decisions(self) -> tuple[str, ...]:
-        """Classes of `rmfs.control.decisions` that it is decided by; none if it answers TA."""
+        """Its classes in `rmfs.control.decisions`; empty for problems that only answer TA."""
         return _DECLARED[self].decisions
 
 
@@ -115,22 +115,22 @@ _DECLARED = {
         ("Charge", "Unplug"),
     ),
 }
-"""Every problem, declared once: what else is known of one is in its package."""
+"""Declaration of every problem; everything else about a problem is in its package."""
 
 
 class Trigger(IntEnum):
-    """Events of the simulated world; what comes with each is named in brackets."""
+    """Events that may call for a decision; the subject of each is given in brackets."""
 
     START = 0
     """The run begins, or the controller has just been installed."""
     NEW_ORDER = 1
     """An order joined the backlog [Order]."""
     ORDER_ASSIGNED = 2
-    """An order was put on a pick station [Order]."""
+    """An order was assigned to a pick station [Order]."""
     UNIT_PICKED = 3
     """A unit left a pod [pod, SKU]."""
     ORDER_COMPLETED = 4
-    """A pick station handed an order on [Order]."""
+    """A pick station passed on an order [Order]."""
     NEW_BUNDLE = 5
     """A bundle joined the backlog [Bundle]."""
     BUNDLE_PROMISED = 6
@@ -140,7 +140,7 @@ class Trigger(IntEnum):
     BUNDLE_SENT = 8
     """ROA chose a station for a bundle [Bundle]."""
     BUNDLE_ASSIGNED = 9
-    """Pod and station of a bundle are both decided [Bundle]."""
+    """The pod and the station of a bundle are both decided [Bundle]."""
     BUNDLE_STORED = 10
     """A bundle starts to go into its pod [Bundle]."""
     STATION_SWITCHED = 11
@@ -148,7 +148,7 @@ class Trigger(IntEnum):
     ROBOT_FREE = 12
     """A robot needs a task [robot]."""
     POD_AT_HAND = 13
-    """Some pod can be claimed that could not before [nothing]."""
+    """A pod has become available [nothing]."""
     POD_LIFTED = 14
     """A robot starts to lift a pod [pod]."""
     POD_AT_STATION = 15

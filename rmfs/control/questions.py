@@ -1,4 +1,4 @@
-"""What may be asked of somebody outside."""
+"""Questions that can be decided outside the simulation."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ class Question:
     Attributes
     ----------
     kind
-        `turn`: the next decision of a problem that the phase asks about. TA's questions: `pick
-        pod`, `replenishment pod` and `next station` (PPS), `place` (PSA), `move` (repositioning).
+        `turn`: the next decision of a problem. Questions of TA: `pick pod`, `replenishment pod` and
+        `next station` (PPS), `place` (PSA), `move` (repositioning).
     robot
-        Whom a question of TA is about, or -1.
+        The robot that a question of TA concerns, or -1.
     stations
-        The station of `pick pod` and `replenishment pod`; those to choose from of `next station`.
+        The station of `pick pod` and `replenishment pod`; the options of `next station`.
     """
 
     problem: Problem

@@ -1,9 +1,8 @@
-"""How the name of a rule becomes a controller.
+"""Maps the name of a rule to its controller class.
 
-Rules come from three places: the tables below (by reference only: nothing of `solvers` is imported
-here); entry points of other distributions in the group
-`rmfs.controllers`, named `PROBLEM.NAME`; and `module:Class` or `path/to/file.py:Class` written in a
-controllers file.
+Rules come from three sources: the tables below (by reference only, so that nothing of `solvers` is
+imported here); entry points of other distributions in the group `rmfs.controllers`, named
+`PROBLEM.NAME`; and `module:Class` or `path/to/file.py:Class` in a controllers file.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from typing import Any
 from rmfs.control.base import Controller
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
-from rmfs.references import is_reference, resolve
+from rmfs.references import is_reference, require_allowed, resolve
 
 GROUP = "rmfs.controllers"
 """Entry-point group of third-party controllers."""
@@ -143,7 +142,7 @@ _SOLVER_BACKED: dict[Problem, dict[str, str]] = {
     },
     Problem.CA: {"schedule": "rmfs.solvers.control.charging:ScheduleControl"},
 }
-"""Controllers of the same distribution that ask optimisers."""
+"""Controllers of this distribution that ask optimisers."""
 
 
 def names(problem: Problem) -> list[str]:
@@ -177,12 +176,13 @@ def find(problem: Problem, name: str) -> type[Controller[Any]]:
     shipped = _BUILT_IN[problem] | _SOLVER_BACKED.get(problem, {})
     reference = shipped.get(name) or _installed(problem).get(name)
     if reference is None and is_reference(name):
+        require_allowed(name)
         reference = name
     if reference is None:
         known = names(problem)
         near = difflib.get_close_matches(name, known, n=1)
         hint = f"did you mean {near[0]}?" if near else f"valid: {', '.join(known)}"
-        raise InputError(f"no {problem} rule of the name {name}; {hint}")
+        raise InputError(f"no {problem} rule named {name}; {hint}")
     return _load(problem, reference)
 
 
@@ -197,7 +197,7 @@ def _load(problem: Problem, reference: str) -> type[Controller[Any]]:
 
 
 def _lacking(found: type) -> list[str]:
-    """Return the names of methods that a class leaves to others to write."""
+    """Return the names of the abstract methods that a class does not define."""
     members = ((name, getattr(found, name, None)) for name in dir(found))
     return [name for name, member in members if getattr(member, "__isabstractmethod__", False)]
 

@@ -1,4 +1,4 @@
-"""What rules that try decisions out have in common: parameters, the base rule, and the question."""
+"""Shared parts of rollout rules: their parameters, the base rule, and the question."""
 
 from __future__ import annotations
 
@@ -29,33 +29,33 @@ Positive = Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)]
 
 
 class RolloutParameters(Parameters):
-    """Parameters of rules that try decisions out."""
+    """Parameters of rollout rules."""
 
     base: Table = pydantic.Field(default_factory=dict)
-    """The rule that goes on after the decision that is tried, as in a controllers file; by default
-    the default rule of the problem."""
+    """The rule that continues after the tried decision, as in a controllers file; by default the
+    default rule of the problem."""
     candidates: AtLeastOne = 4
-    """Decisions compared, that of the base rule included."""
+    """Number of decisions compared, including that of the base rule."""
     samples: AtLeastOne = 4
-    """Futures in which each of them may be tried."""
+    """Maximum number of futures in which each decision is tried."""
     horizon_s: Positive = 180.0
-    """Simulated time of a trial."""
+    """Simulated duration of a trial."""
     instants: AtLeastOne = 100_000
-    """Budget of a decision: no further round of trials begins after so many simulated instants."""
+    """Budget per decision: no further round of trials starts after this many simulated instants."""
     certainty: Annotated[float, pydantic.Field(ge=0)] = 1.0
-    """Another decision than the base rule's is taken only if its mean advantage is greater than so
-    many standard errors."""
+    """A decision replaces that of the base rule only if its mean advantage exceeds this many
+    standard errors."""
     goal: Goal = Goal()
-    """What a trial is worth."""
+    """Value of a trial."""
 
 
 class TriesOut:
-    """What rules that try decisions out share; goes before the class of their problem.
+    """Shared implementation of rollout rules; precedes the class of the problem in the bases.
 
     Attributes
     ----------
     base
-        The rule that says what would be done, and goes on in trials.
+        The rule that makes the default decision and continues in trials.
     """
 
     looks_ahead: ClassVar[bool] = True
@@ -65,15 +65,15 @@ class TriesOut:
     view: View
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Let the base rule hear."""
+        """Pass the event to the base rule."""
         self.base.hear(trigger, subject)
 
     def next_event_s(self) -> float:
-        """When the base rule wants to be asked."""
+        """Time by which the base rule needs to be asked."""
         return float(self.base.next_event_s())
 
     def best(self, call: Call) -> Iterator[Any]:
-        """Yield the decision that did best in trials, if it still can be taken."""
+        """Yield the decision that did best in the trials, if it is still possible."""
         rows = [] if call.solution is None else [call.solution["row"]]
         for row in call.left("best", rows):
             chosen = call.ask.memo[row]
@@ -86,12 +86,12 @@ class TriesOut:
 def base_rule(
     problem: Problem, parameters: RolloutParameters, view: View, rng: np.random.Generator
 ) -> Any:
-    """Make the rule that goes on.
+    """Create the base rule.
 
     Raises
     ------
     InputError
-        If there is no such rule, or it cannot be one.
+        If there is no such rule, or it is unsuitable.
     """
     choice = choose(problem, parameters.base, f"{problem}.base")
     rule = choice.controller
@@ -109,7 +109,7 @@ def question(
     decisions: Sequence[Any],
     parameters: RolloutParameters,
 ) -> Ask[Comparison]:
-    """Ask which decision is the best; the first is that of the base rule."""
+    """Ask which decision is best; the first one is that of the base rule."""
     view = controller.view
     trials = controller.lookahead(
         controller.problem, decisions, base, parameters.horizon_s, parameters.goal

@@ -1,4 +1,4 @@
-"""The controllers file: which rule solves which problem, and with which parameters."""
+"""The controllers file: the rule for each problem, with its parameters."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class ControllerSettings:
     Attributes
     ----------
     choices
-        One for every problem.
+        One for each problem.
     """
 
     name: str
@@ -40,18 +40,18 @@ class ControllerSettings:
     choices: Mapping[Problem, Choice]
 
     def to_table(self) -> Table:
-        """Everything as it stands in a controllers file, defaults written out."""
+        """Return the contents of a controllers file, with defaults written out."""
         head: Table = {"format": FORMAT, "name": self.name, "description": self.description}
         return head | {str(problem): choice.to_table() for problem, choice in self.choices.items()}
 
     def rules(self) -> list[type[Controller[Any]]]:
-        """Classes of all rules, those that method management may install included."""
+        """Classes of all rules, including those that method management may install."""
         named = dict.fromkeys(_rules_in(self.to_table()))
         return list(dict.fromkeys(registry.find(problem, name) for problem, name in named))
 
 
 def _rules_in(value: Any) -> Iterator[tuple[Problem, str]]:
-    """Yield problem and name of every rule in a table, at any depth."""
+    """Yield the problem and name of every rule in a table, at any depth."""
     if isinstance(value, dict):
         for key, item in value.items():
             if key in DEFAULTS and isinstance(item, dict) and isinstance(item.get("name"), str):
@@ -73,32 +73,32 @@ class _File(RuleTables):
 def load(
     name_or_path: str | Path, overrides: Sequence[tuple[list[str], Any]] = ()
 ) -> ControllerSettings:
-    """Read a controllers file; see `load_with_notes`."""
+    """Load a controllers file; see `load_with_notes`."""
     return load_with_notes(name_or_path, overrides)[0]
 
 
 def load_with_notes(
     name_or_path: str | Path, overrides: Sequence[tuple[list[str], Any]] = ()
 ) -> tuple[ControllerSettings, list[str]]:
-    """Read a controllers file and the remarks of its import.
+    """Load a controllers file, with notes from its import.
 
     Parameters
     ----------
     name_or_path
         A TOML file, a file of RAWSim-O (.xconf), or the name of a shipped set.
     overrides
-        Pairs of path and value, for example `(["psa", "name"], "random")`. An override that
-        chooses another rule drops the parameters the file gave to the former one; a problem set to
-        a plain name chooses that rule with its defaults.
+        Pairs of a key path and a value, for example `(["psa", "name"], "random")`. An override that
+        selects another rule drops the parameters of the previous one; setting a problem to a plain
+        name selects that rule with its defaults.
 
     Returns
     -------
-    The controllers, and remarks on what an import left out or does differently.
+    The controllers, and notes on what an import left out or does differently.
 
     Raises
     ------
     InputError
-        If something in the file is wrong; names the key and what is valid.
+        If something in the file is wrong; names the key and the valid values.
     """
     path = instances.locate("controllers", str(name_or_path))
     if path.suffix.lower() == ".xconf":
@@ -110,7 +110,7 @@ def load_with_notes(
 
 
 def _anchor(table: Table, folder: Path) -> None:
-    """Let files of rules be looked for beside the controllers file first."""
+    """Resolve rule files relative to the controllers file first."""
     for problem in Problem:
         rule = table.get(problem)
         if isinstance(rule, dict) and isinstance(rule.get("name"), str):
@@ -120,7 +120,7 @@ def _anchor(table: Table, folder: Path) -> None:
 def settings(
     table: Table, overrides: Sequence[tuple[list[str], Any]] = (), source: str = "controllers"
 ) -> ControllerSettings:
-    """Validate the content of a controllers file; see `load`."""
+    """Validate the contents of a controllers file; see `load`."""
     file = config.validate(_File, _overridden(table, list(overrides)), source)
     choices = {
         problem: choose(problem, getattr(file, problem) or {}, source) for problem in Problem
@@ -132,7 +132,7 @@ def settings(
 
 
 def _overridden(table: Table, overrides: list[tuple[list[str], Any]]) -> Table:
-    """Apply overrides; those that choose a rule come first and drop parameters of the other."""
+    """Apply overrides; those that select a rule come first and drop the previous parameters."""
     result = config.apply_overrides(table, [])
     others = []
     for path, value in overrides:

@@ -1,4 +1,4 @@
-"""Solutions as text: how answers of optimisers are recorded, exact to the last bit."""
+"""Text format for recorded solutions, exact to the last bit."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def to_text(solution: Mapping[str, Plain]) -> str:
     Raises
     ------
     TypeError
-        If it holds anything but arrays, numbers, texts and sequences of these.
+        If it contains anything but arrays, numbers, strings and sequences of these.
     """
     return json.dumps({str(name): value for name, value in solution.items()}, default=_plain)
 
@@ -38,7 +38,7 @@ def _plain(value: Any) -> Any:
         return {_ARRAY: told}
     if isinstance(value, np.generic):
         return value.item()
-    raise TypeError(f"a solution holds a {type(value).__name__}: only arrays and plain values may")
+    raise TypeError(f"a solution contains a {type(value).__name__}: only plain values may be used")
 
 
 def _array(table: dict[str, Any]) -> Any:

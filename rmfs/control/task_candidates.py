@@ -1,4 +1,4 @@
-"""What robots could do: the candidates of a turn of TA."""
+"""The tasks that robots could do: the candidates of a turn of TA."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ _KIND_OF: dict[type, int] = {WorkFor: WORK, Store: STORE, MovePod: MOVE, Rest: R
 def tasks(
     view: View, refused: Sequence[Any] = (), robots: Sequence[Robot] | None = None
 ) -> Candidates:
-    """List what each robot that needs a task, or is at rest, could do.
+    """List what each robot that needs a task or rests could do.
 
-    Decisions are made only of the rows that are asked for: most are looked at as numbers.
+    Decision objects are created only for rows that are accessed, since most are only compared.
 
     Parameters
     ----------
     refused
-        Decisions of the same turn that came to nothing.
+        Decisions of the same turn that could not be carried out.
     robots
-        Only what these could do.
+        Restrict the list to these robots.
     """
     if robots is None:
         robots = [*view.asking.values(), *view.resting.values()]
@@ -72,7 +72,7 @@ def tasks(
 
 
 def has_tasks(view: View) -> bool:
-    """Whether there is anything that a robot could do, other than to move an idle pod."""
+    """Whether there is any task for a robot, other than moving an idle pod."""
     if view.asking:
         return True
     busy = any(station.has_open_work for station in view.stations)
@@ -80,13 +80,13 @@ def has_tasks(view: View) -> bool:
 
 
 def open_work(view: View, station: int) -> int:
-    """Return units, or pods with bundles, for which nothing is under way yet."""
+    """Return the units, or pods with bundles, that no pod or robot is under way for."""
     target = view.stations[station]
     return target.requests.units if isinstance(target, PickStation) else len(target.waiting)
 
 
 def _rows(view: View, robots: Sequence[Robot]) -> list[tuple[int, int, int]]:
-    """List rows: place among the robots, kind of task, station or -1."""
+    """List rows: index of the robot, kind of task, station or -1."""
     rows: list[tuple[int, int, int]] = []
     busy = [station.index for station in view.stations if station.has_open_work]
     for at, robot in enumerate(robots):
@@ -109,7 +109,7 @@ def _measure(
     station: NDArray[np.int64],
     works: NDArray[np.bool_],
 ) -> None:
-    """Fill in what there is to know of work for stations."""
+    """Fill in the attributes of work for stations."""
     stations = view.stations
     here = np.array([robot.waypoint for robot in robots])
     there = np.array([one.waypoint for one in stations])
@@ -121,7 +121,7 @@ def _measure(
 
 
 def _served(view: View, pod: int) -> list[int]:
-    """Find the stations that want something of a pod."""
+    """Find the stations that need something from a pod."""
     inventory = view.inventory
     skus = [sku for sku in inventory.skus_of(pod) if inventory.available[sku, pod] > 0]
     picks = np.flatnonzero(view.need[:, skus].any(axis=1)).tolist() if skus else []
@@ -131,7 +131,7 @@ def _served(view: View, pod: int) -> list[int]:
 
 
 def _key(refused: Any) -> tuple[int, int, int]:
-    """Return robot, kind and station of a decision."""
+    """Return the robot, kind and station of a decision."""
     return refused.robot.index, _KIND_OF[type(refused)], getattr(refused, "station", -1)
 
 

@@ -1,4 +1,4 @@
-"""Writing a set of controllers as TOML, with what each parameter means as a comment."""
+"""Writes a set of controllers as TOML, with parameter descriptions as comments."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def to_toml(settings: ControllerSettings) -> str:
-    """Write all rules and parameters, defaults included; reading the text back gives the same."""
+    """Write all rules and parameters, including defaults; reading the text gives an equal set."""
     head = [f'format = "{FORMAT}"', f"name = {_value(settings.name)}"]
     if settings.description:
         head.append(f"description = {_value(settings.description)}")

@@ -1,4 +1,4 @@
-"""How long it takes to get from here to there, as controllers may ask."""
+"""Travel times and distances for controllers."""
 
 from __future__ import annotations
 
@@ -18,36 +18,36 @@ if TYPE_CHECKING:
 _Waypoints = NDArray[np.signedinteger[Any]]
 
 Metric = Literal["euclidean", "manhattan", "path", "time"]
-"""Straight distance, distance along the axes, length of the shortest way, and time for it."""
+"""Euclidean distance, Manhattan distance, length of the shortest path, and travel time."""
 
 
 class TravelTimes(Protocol):
-    """The part of traffic that knows travel times; they depend on the kind of the robot."""
+    """The part of the traffic model that knows travel times, which depend on the type of robot."""
 
     def travel_times_to(self, waypoint: int, loaded: bool, robot: int = ...) -> NDArray[np.float64]:
-        """Unhindered times from all waypoints to one, shape (N,), s; inf if unreachable."""
+        """Return unhindered times from all waypoints to one, shape (N,), s; inf if unreachable."""
         ...
 
     def travel_times_from(
         self, waypoint: int, loaded: bool, robot: int = ...
     ) -> NDArray[np.float64]:
-        """Unhindered times from one waypoint to all, shape (N,), s; inf if unreachable."""
+        """Return unhindered times from one waypoint to all, shape (N,), s; inf if unreachable."""
         ...
 
     def robot_waypoint(self, robot: int) -> int:
-        """Where a robot stands, or the next waypoint at which it stops."""
+        """Return where a robot stands, or the next waypoint at which it stops."""
         ...
 
 
 class TravelTables:
-    """What has been worked out of times and distances: it holds for every copy of a run.
+    """Cached travel times and distances, valid for every copy of a run.
 
     Attributes
     ----------
     paths
-        Lengths of the shortest ways.
+        Lengths of shortest paths.
     distances, to, away
-        By waypoint: distances of a metric, times to it, and times from it, shape (N,) each.
+        By waypoint: distances by metric, times to it and times from it, shape (N,) each.
     """
 
     def __init__(self, layout: Layout) -> None:
@@ -60,15 +60,15 @@ class TravelTables:
 class Travel:
     """Travel times and distances between waypoints.
 
-    Exact times come from traffic and are kept, like distances, for the waypoints asked for: ask for
-    stations, of which there are few. From anywhere else `estimate_s` is meant.
+    Exact times come from traffic and are cached per waypoint, as are distances: request them for
+    stations, of which there are few, and use `estimate_s` from anywhere else.
 
     Parameters
     ----------
     layout
         The warehouse.
     times
-        Traffic, or whatever else knows times.
+        The traffic model, or any other source of travel times.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Travel:
     tiers
         Number of tiers.
     tables
-        What has been worked out so far.
+        Cached values.
     """
 
     def __init__(self, layout: Layout, times: TravelTimes) -> None:
@@ -89,7 +89,7 @@ class Travel:
         kinds = layout.robot_kinds
         self._seconds_per_metre = 1 / min(kind.top_speed_m_s for kind in kinds)
         self._quarter_turn_s = max(kind.full_turn_s for kind in kinds) / 4
-        # farther than anything on one tier, so that the own tier always comes first
+        # longer than any distance on one tier, so that the own tier always comes first
         self._other_tier_m = 1 + max(tier.length_m + tier.width_m for tier in layout.tiers)
 
     def to(self, waypoint: int, *, loaded: bool) -> NDArray[np.float64]:
@@ -102,7 +102,7 @@ class Travel:
     def away(self, waypoint: int, *, loaded: bool, keep: bool = True) -> NDArray[np.float64]:
         """Unhindered times from this waypoint to all, shape (N,), s.
 
-        Without `keep` they are not remembered: for who remembers what it needs of them.
+        With `keep=False` they are not cached, for callers that cache what they need.
         """
         times = self.tables.away.get((waypoint, loaded))
         if times is None:
@@ -114,7 +114,7 @@ class Travel:
     def distances_to(
         self, waypoint: int, metric: Metric, *, loaded: bool = True
     ) -> NDArray[np.float64]:
-        """How far it is from every waypoint to this one, shape (N,), m or, by time, s."""
+        """Distance from every waypoint to this one, shape (N,), m, or s by time."""
         if metric == "time":
             return self.to(waypoint, loaded=loaded)
         if metric == "path":
@@ -124,14 +124,14 @@ class Travel:
     def distances_from(
         self, waypoint: int, metric: Metric, *, loaded: bool = True, keep: bool = True
     ) -> NDArray[np.float64]:
-        """How far it is from this waypoint to every other, shape (N,), m or, by time, s.
+        """Distance from this waypoint to every other, shape (N,), m, or s by time.
 
-        Times are not remembered without `keep`.
+        With `keep=False` times are not cached.
         """
         if metric == "time":
             return self.away(waypoint, loaded=loaded, keep=keep)
         if metric == "path":
-            # keys of ways in the other direction are negative
+            # keys of paths in the other direction are negative
             return self._kept(~waypoint, metric, loaded, self.tables.paths.away)
         return self._kept(waypoint, metric, True, self._straight(metric))
 
@@ -143,9 +143,9 @@ class Travel:
         *,
         loaded: bool = True,
     ) -> NDArray[np.float64]:
-        """How far it is from a waypoint to others, shape (n,), m or, by time, s.
+        """Distance from a waypoint to others, shape (n,), m, or s by time.
 
-        Straight distances are worked out each time: to be used where waypoints hardly ever repeat.
+        Straight distances are recomputed each time: use this where waypoints rarely repeat.
         """
         if metric == "euclidean":
             return self.metres(waypoint, others)
@@ -178,9 +178,9 @@ class Travel:
     def manhattan_metres(
         self, waypoint: int | _Waypoints, others: _Waypoints
     ) -> NDArray[np.float64]:
-        """Distances along the axes to other waypoints, more on other tiers, m.
+        """Return Manhattan distances to other waypoints, more to other tiers, m.
 
-        Shape (n,); for waypoints of shape (m, 1) shape (m, n).
+        Shape (n,), or (m, n) for waypoints of shape (m, 1).
         """
         distance: NDArray[np.float64] = np.abs(self._x[others] - self._x[waypoint])
         distance += np.abs(self._y[others] - self._y[waypoint])
@@ -189,19 +189,19 @@ class Travel:
         return distance
 
     def estimate_s(self, waypoint: int | _Waypoints, others: _Waypoints) -> NDArray[np.float64]:
-        """Estimate times to other waypoints: Manhattan distance at top speed and one turn.
+        """Estimate times to other waypoints: Manhattan distance at top speed plus one turn.
 
         Parameters
         ----------
         waypoint
-            One, or several of shape (m, 1).
+            One waypoint, or several of shape (m, 1).
         others
             Waypoints, shape (n,).
 
         Returns
         -------
         NDArray
-            Seconds, shape (n,), or (m, n) from several waypoints.
+            Seconds, shape (n,), or (m, n) for several waypoints.
         """
         seconds = self.manhattan_metres(waypoint, others)
         seconds *= self._seconds_per_metre
@@ -209,7 +209,7 @@ class Travel:
         return seconds
 
     def metres(self, waypoint: int, others: NDArray[np.signedinteger[Any]]) -> NDArray[np.float64]:
-        """Euclidean distances to other waypoints, more on other tiers, shape (n,), m."""
+        """Return Euclidean distances to other waypoints, more to other tiers, shape (n,), m."""
         x, y = self._x[others] - self._x[waypoint], self._y[others] - self._y[waypoint]
         distance: NDArray[np.float64] = np.sqrt(
             x * x + y * y
@@ -219,5 +219,5 @@ class Travel:
         return distance
 
     def robot_waypoint(self, robot: int) -> int:
-        """Where a robot stands, or the next waypoint at which it stops."""
+        """Return where a robot stands, or the next waypoint at which it stops."""
         return self._times.robot_waypoint(robot)

@@ -1,4 +1,4 @@
-"""What a controller may read."""
+"""The state of the world that a controller may read."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 class View:
     """The world as controllers see it: to be read, never to be changed.
 
-    Its arrays are read-only; of its objects (orders, stations, robots) controllers read the
-    attributes and leave the methods that change something to the simulation.
+    Its arrays are read-only. Of its objects (orders, stations, robots) controllers may read the
+    attributes, but must not call methods that change something.
 
     Attributes
     ----------
     layout, skus
         The warehouse and the SKUs.
     inventory
-        Stock: contained, available and promised (`rmfs.world.inventory`).
+        Stock: contained, available and promised units (`rmfs.world.inventory`).
     storage
         Places, pods and claims (`rmfs.world.storage`).
     orders, bundles
@@ -42,29 +42,29 @@ class View:
     pick_stations, replenishment_stations, stations
         `stations` holds both, pick stations first (`rmfs.world.stations`).
     all_stations
-        Those, and after them the stations of all other kinds.
+        All stations, including those of other kinds, which come last.
     slot_news, work_news
-        Which stations may have a slot, a robot or open work that had not (`rmfs.world.news`).
+        Stations that may have newly gained a slot, robot or open work (`rmfs.world.news`).
     need
         Open units per pick station and SKU, shape (S, K).
     lines
-        Order lines per pick station and SKU, picked or not, shape (S, K): of the open orders there.
+        Order lines of the open orders per pick station and SKU, picked or not, shape (S, K).
     bundles_waiting
-        Assigned bundles not yet in a task, per replenishment station and pod, shape (S, P).
+        Assigned bundles not yet part of a task, per replenishment station and pod, shape (S, P).
     recovery_stations
-        Of these, the stations where robots get energy: plug-in places and battery swap.
+        Stations where robots get energy: plug-in places and battery swap.
     robots, asking, resting
-        All robots; those that need a task; those at rest.
+        All robots, those that need a task, and those at rest.
     queued_need
         Open units of queued orders per pick station and SKU, shape (S, K).
     travel
         Travel times.
     end_s
-        When the run ends.
+        End of the run.
     time_of_day_s
-        What the clock of the warehouse shows at time zero.
+        Time of day at time zero.
     trackers
-        What controllers count together (`rmfs.control.trackers`).
+        Counters shared by controllers (`rmfs.control.trackers`).
     """
 
     def __init__(
@@ -103,28 +103,28 @@ class View:
 
     @property
     def now_s(self) -> float:
-        """Present simulated time."""
+        """Current simulated time."""
         return self._world.now_s
 
     @property
     def batteries(self) -> Batteries | None:
-        """What robots carry to draw from; None if it is as much as they need."""
+        """The robots' batteries; None if energy is unlimited."""
         return self._world.batteries
 
     @property
     def put_wall(self) -> PutWall | None:
-        """Where the parts of split orders come together; None if they are done when picked."""
+        """The put wall for parts of split orders; None if orders are complete when picked."""
         return self._world.put_wall
 
     @property
     def staff(self) -> Staff | None:
-        """People at the pick stations; None if every unit takes the same time."""
+        """The pickers at the pick stations; None if every unit takes the same time."""
         return self._world.staff
 
     def unit_s(self, station: int) -> float:
-        """Return how long a unit takes at a pick station, in s: a mean, as its picker is now.
+        """Return the mean time of a unit at a pick station, in s, given its picker's current state.
 
-        Without a picker it is what the layout says.
+        Without a picker it is the time of the layout.
         """
         staff = self._world.staff
         if staff is None or staff.at_station[station] is None:
@@ -133,7 +133,7 @@ class View:
 
     @property
     def split_orders(self) -> Mapping[int, Order]:
-        """Orders with parts of which units are still to be picked, by index."""
+        """Split orders with units still to be picked, by index."""
         return self._world.split_orders
 
     @cached_property
@@ -144,32 +144,32 @@ class View:
 
     @property
     def orders_created(self) -> int:
-        """Orders that have arrived since time zero."""
+        """Number of orders that have arrived since time zero."""
         return self._world.orders_created
 
     @cached_property
     def past_orders(self) -> Sequence[OrderContent]:
-        """Orders from before the run, to learn from (`rmfs.simulation.past`)."""
+        """Orders from before the run, for learning (`rmfs.simulation.past`)."""
         return self._draw_past_orders()
 
     def pod_waypoint(self, pod: int) -> int:
-        """Where a pod is: its place, or the next waypoint at which the robot below it stops."""
+        """Return where a pod is: its place, or the next waypoint at which its robot stops."""
         place = self.storage.place_of[pod]
         return place if place >= 0 else self.travel.robot_waypoint(self.storage.claimed_by[pod])
 
     def work_version(self, station: int) -> tuple[int, ...]:
-        """Changes with new work at a station and with pods that come to hand.
+        """Version of a station's work: changes with new work and with pods that become available.
 
-        If no pod was found for a station, none will be found before this changes.
+        If no pod was found for a station, none will be found until this changes.
         """
         return self.storage.version, *self.all_stations[station].work_version
 
     def has_open_work(self, station: int) -> bool:
-        """Whether there are requests, or bundles, at a station for which no pod is under way."""
+        """Whether a station has open requests or bundles for which no pod is under way."""
         return self.all_stations[station].has_open_work
 
     def robot_target(self, robot: Robot) -> int:
-        """Where a robot's present task takes it first, or where it is."""
+        """Return the first waypoint of a robot's current task, or where it is."""
         task = robot.task
         if task is None or task.pod < 0 or robot.pod >= 0:
             return robot.waypoint

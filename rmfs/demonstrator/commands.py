@@ -196,7 +196,7 @@ def emulate(
         typer.Option(help="JSON file of what really happened.", show_default=False),
     ] = None,
 ) -> None:
-    """Emulate a room with robots that are as unkind as real ones."""
+    """Emulate a room whose robots have the imperfections of physical ones."""
     try:
         from rmfs.demonstrator.emulator.pace import RealTime
         from rmfs.demonstrator.emulator.room import Address, Room

@@ -1,4 +1,4 @@
-"""What a user says about a demonstration, checked."""
+"""Settings of a demonstration, with validation."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def __getattr__(name: str) -> Any:
-    """Import the drawing functions when they are asked for: runs do without matplotlib."""
+    """Import the drawing functions on first use, so that runs need no matplotlib."""
     if name in ("draw", "save_picture"):
         from rmfs.layout import picture
 

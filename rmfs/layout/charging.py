@@ -1,4 +1,4 @@
-"""Kinds of station where robots get energy: plug-in places and battery swap."""
+"""Kinds of station where robots get energy: plug-in places and battery swap stations."""
 
 from __future__ import annotations
 
@@ -11,44 +11,44 @@ from rmfs.layout.kinds import StationKind
 
 
 class ChargerParameters(Model):
-    """What a layout file can say of plug-in places."""
+    """Parameters of plug-in places in a layout file."""
 
     power_w: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 1000.0
-    """W a place gives to the battery of the robot there; its electronics are supplied besides."""
+    """Charging power in W at each place; the robot's electronics are supplied in addition."""
 
 
 class SwapParameters(Model):
-    """What a layout file can say of battery swap."""
+    """Parameters of battery swap stations in a layout file."""
 
     swap_s: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 90.0
-    """s a swap takes."""
+    """Duration of a swap in s."""
     batteries: Annotated[int, Field(ge=1)] = 8
     """Batteries in stock at each station, all full at time zero."""
     power_w: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 500.0
-    """W with which each battery in stock is charged."""
+    """Charging power in W of each battery in stock."""
     ready_share: Annotated[float, Field(gt=0, lt=1)] = 0.9
-    """Level from which a battery in stock may be put in; a robot waits until there is one."""
+    """Level from which a battery in stock may be used; a robot waits until there is one."""
 
 
 class RecoveryKind(StationKind):
-    """A kind of station to which robots go for energy, without pods; the problem CA says when."""
+    """A kind of station where robots without pods get energy; CA decides when they go there."""
 
     task = "rmfs.world.charging:ChargeTask"
     state = "rmfs.world.charging:RecoveryStation"
 
     @property
     def head_w(self) -> float:
-        """W that a robot gets while it stands at the station."""
+        """Power in W that a robot gets at the station."""
         return 0.0
 
     @property
     def long_run_w(self) -> float:
-        """W that a station gives in the long run, at most."""
+        """Maximum average power in W of a station in the long run."""
         raise NotImplementedError
 
 
 class Charger(RecoveryKind):
-    """Plug-in places: a robot stays until its battery has the level it is to have."""
+    """Plug-in places: a robot stays until its battery reaches its target level."""
 
     name = "charger"
     letter = "C"
@@ -64,12 +64,12 @@ class Charger(RecoveryKind):
 
     @property
     def long_run_w(self) -> float:
-        """The power of a place that is always in use."""
+        """The power of a place that is always occupied."""
         return self.head_w
 
 
 class Swap(RecoveryKind):
-    """Battery swap: the robot gets the fullest battery in stock, and leaves its own to charge."""
+    """Battery swap: the robot takes the fullest battery in stock and leaves its own to charge."""
 
     name = "swap"
     letter = "B"
@@ -80,5 +80,5 @@ class Swap(RecoveryKind):
 
     @property
     def long_run_w(self) -> float:
-        """The power of all its batteries."""
+        """The charging power of all its batteries."""
         return float(self.parameters.power_w * self.parameters.batteries)

@@ -1,7 +1,7 @@
-"""The colours of warehouse things, the same in every picture and in the viewer.
+"""The colours of warehouse elements, the same in all figures and in the viewer.
 
-The names people use (pick stations red, replenishment stations yellow, robots green, storage blue)
-in the shades of Okabe and Ito, which stay apart for all common kinds of colour blindness.
+They follow the usual names (pick stations red, replenishment stations yellow, robots green, storage
+blue) in the palette of Okabe and Ito, which is safe for common kinds of colour blindness.
 """
 
 PICK_STATION = "#D55E00"
@@ -26,7 +26,7 @@ STATES = {
     "served": "#F0E442",
     "idle": "#999999",
 }
-"""Of robots by what they are doing."""
+"""Colours of robots by what they are doing."""
 
 LOADS = {"without pod": ROBOT, "with pod": STORAGE}
-"""Of robots by what they carry."""
+"""Colours of robots by what they carry."""

@@ -1,7 +1,6 @@
 """`rmfs layout`: new, list, show, check, import, convert.
 
-The command line prints an `InputError` as one line and exits with code 2; these functions just
-raise it.
+These functions raise `InputError`; the command line prints it as one line and exits with code 2.
 """
 
 from __future__ import annotations
@@ -22,12 +21,13 @@ from rmfs.layout.parameters import LayoutParameters
 from rmfs.layout.toml import to_toml
 from rmfs.rawsimo.layout.writing import SUFFIXES, import_layout
 
-app = typer.Typer(help="Layouts: make, look at, check, import, convert.", no_args_is_help=True)
+app = typer.Typer(help="Generate, draw, check, import and convert layouts.", no_args_is_help=True)
 
 LayoutArgument = Annotated[
     str,
     typer.Argument(
-        metavar="LAYOUT", help="A shipped name, or a .toml, .json, .txt, .map, .xinst or .xlayo."
+        metavar="LAYOUT",
+        help="Shipped layout, or a .toml, .json, .txt, .map, .xinst or .xlayo file.",
     ),
 ]
 Settings = Annotated[
@@ -45,7 +45,7 @@ def new(
     settings: Settings = None,
     force: Force = False,
 ) -> None:
-    """Write a parameter file with all parameters, their defaults and units."""
+    """Write a parameter file with all parameters, their defaults and their units."""
     _suffix(path, ".toml")
     _vacant(path, force=force)
     table = apply_overrides({"name": path.stem}, _overrides(settings))
@@ -80,7 +80,7 @@ def show(
     arrows: Annotated[bool, typer.Option("--arrows", help="Show one-way directions.")] = False,
     settings: Settings = None,
 ) -> None:
-    """Write a picture of a layout."""
+    """Draw a layout."""
     from rmfs.layout.picture import save_picture  # matplotlib is slow to import
 
     loaded, _ = load_with_notes(layout, _overrides(settings))
@@ -98,7 +98,7 @@ def check_command(
         typer.Option("--allow-not-well-formed", help="Fail only if the layout is impossible."),
     ] = False,
 ) -> None:
-    """Say what is wrong with a layout; exit code 2 if a run would refuse it."""
+    """Check a layout; exit code 2 if a run would refuse it."""
     loaded, notes = load_with_notes(layout, _overrides(settings))
     _print_notes(notes)
     violations = check(loaded)
@@ -118,13 +118,13 @@ def check_command(
 
 @app.command("import")
 def import_command(
-    path: Annotated[Path, typer.Argument(metavar="FILE", help="A RAWSim-O .xinst or .xlayo.")],
+    path: Annotated[Path, typer.Argument(metavar="FILE", help="RAWSim-O .xinst or .xlayo file.")],
     out: Annotated[
         Path | None, typer.Option(help="The file to write; default: NAME.json or NAME.toml.")
     ] = None,
     force: Force = False,
 ) -> None:
-    """Turn a RAWSim-O layout into one of ours: .xinst to .json, .xlayo to .toml."""
+    """Convert a RAWSim-O layout: .xinst to .json, .xlayo to .toml."""
     target = out if out is not None else Path(path.stem + SUFFIXES.get(path.suffix.lower(), ""))
     _vacant(target, force=force)
     notes = import_layout(path, target)
@@ -141,7 +141,7 @@ def convert(
     settings: Settings = None,
     force: Force = False,
 ) -> None:
-    """Write any layout waypoint by waypoint: drawn, generated, a map or an import."""
+    """Write any layout as an explicit layout, waypoint by waypoint."""
     loaded, notes = load_with_notes(layout, _overrides(settings))
     target = out if out is not None else Path(f"{Path(layout).stem}.json")
     _suffix(target, ".json")

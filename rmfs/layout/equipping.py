@@ -1,4 +1,4 @@
-"""Pick and replenishment stations from their queues and the parameters of a layout."""
+"""Creates pick and replenishment stations from queues and layout parameters."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     Given = LayoutParameters | Equipment
     Ranked = Iterable[tuple[tuple[int, ...], int]]
-    """The queue of each station, its head first, and when it is switched on."""
+    """The queue of each station, head first, and its activation rank."""
 
 
 def pick_stations(ranked: Ranked, given: Given) -> tuple[PickStation, ...]:

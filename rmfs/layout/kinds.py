@@ -1,8 +1,8 @@
-"""Kinds of station: what belongs to one, from the file of a layout to the colour in the viewer.
+"""Kinds of station: everything that belongs to one, from layout file to viewer colour.
 
-A kind is one class. It names its parts, each by class or by reference (`module:Class`): the layout,
-which holds the kind, is read before there is a world, and knows nothing of it. Pick stations and
-replenishment stations are kinds like any other; others are named in layout files, by
+A kind is one class that names its parts, each by class or by reference (`module:Class`): the
+layout, which holds the kind, is read before the world exists and does not import it. Pick and
+replenishment stations are kinds like any other. Other kinds are named in layout files by
 `module:Class`, by `path/to/file.py:Class`, or by the name under which a distribution registers them
 in the entry-point group `rmfs.stations`.
 """
@@ -17,7 +17,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from rmfs.config import Model, validate
 from rmfs.errors import InputError
 from rmfs.layout import colours
-from rmfs.references import anchored, is_reference, reference_of, resolve
+from rmfs.references import (
+    anchored,
+    is_reference,
+    reference_of,
+    require_allowed,
+    resolve,
+)
 from rmfs.sources import sources
 
 if TYPE_CHECKING:
@@ -31,39 +37,40 @@ T = TypeVar("T")
 
 
 class NoParameters(Model):
-    """A kind that has nothing to set."""
+    """Parameters of a kind that has none."""
 
 
 class StationKind:
-    """A kind of station; derive from it, name the parts, and write it into a layout.
+    """Base class of kinds of station: derive a class, name its parts, and refer to it in a layout.
 
     Parameters
     ----------
     parameters
-        Of all stations of the kind in a layout, and of their controller.
+        Parameters shared by all stations of the kind in a layout, and by their controller.
 
     Attributes
     ----------
     name
-        The word for it in files, tables and the viewer.
+        Its name in files, tables and the viewer.
     letter
-        What stands before the number of a station where there is little room.
+        Prefix of a station's number where there is little room.
     colour
-        Of stations, and of robots on their way to them.
+        Colour of the stations, and of robots on their way to them.
     handles
-        What is counted there, in the viewer.
+        What its stations handle, for counts in the viewer.
     parameters_model
-        The model of the parameters.
+        Model of the parameters.
     task
-        Kind of task that brings a pod there: a `VisitTask` of its own.
+        Kind of task that brings a pod there, as a subclass of `VisitTask`.
     state
-        What a station is and knows during a run: a `Station`.
+        State of a station during a run, as a subclass of `Station`.
     service
-        What happens at the head of the queue: a `Service`.
+        Handling of a pod at the head of the queue, as a subclass of `Service`.
     controller
-        Who says which pod goes there, and when: a `VisitController`; None if decision problems do.
+        Controller that decides which pod goes there and when, as a subclass of `VisitController`;
+        None if the decision problems decide.
     measures
-        Classes of measures whose columns the footprint has wherever there are such stations.
+        Measures whose columns the footprint contains if there are such stations.
     """
 
     name: ClassVar[str]
@@ -81,7 +88,7 @@ class StationKind:
         self.parameters: Any = self.parameters_model() if parameters is None else parameters
 
     def digested(self) -> tuple[object, ...]:
-        """What tells it from other kinds: the files it is written in, and its parameters."""
+        """Identity of the kind for hashing: its source files and its parameters."""
         files = sources([type(self)]).values()
         written = sorted(hashlib.sha256(path.read_bytes()).hexdigest() for path in files)
         return self.name, written, self.parameters.model_dump(mode="json")
@@ -92,12 +99,12 @@ class StationKind:
         Raises
         ------
         InputError
-            If it cannot be imported, or is something else.
+            If it cannot be imported, or is not derived from `base`.
         """
         return resolve(getattr(self, name), base, f"{name} of {self.name} stations")
 
     def busy_s(self, station: Any) -> float:
-        """How long one of what it handles keeps a station busy; 0 if that differs."""
+        """Return how long one item occupies a station; 0 if that varies."""
         return 0.0
 
 
@@ -142,13 +149,13 @@ TASK_COLOURS = {
     "reposition": "#CC79A7",
     "rest": "#999999",
 }
-"""Of robots by what they have to do; a robot bound for another kind of station has its colour."""
+"""Colours of robots by task; a robot bound for another kind of station has that kind's colour."""
 
 _SHIPPED = {
     "charger": "rmfs.layout.charging:Charger",
     "swap": "rmfs.layout.charging:Swap",
 }
-"""Kinds that come with rmfs besides pick and replenishment stations."""
+"""Kinds shipped with rmfs besides pick and replenishment stations."""
 
 _RESERVED = ("pick", "replenish", "replenishment", "elevator", "park", "reposition", "rest")
 
@@ -159,7 +166,7 @@ def find(reference: str) -> type[StationKind]:
     Raises
     ------
     InputError
-        If there is none of that name.
+        If there is no kind of that name.
     """
     if not is_reference(reference):
         known = {**_installed(), **_SHIPPED}
@@ -170,27 +177,29 @@ def find(reference: str) -> type[StationKind]:
                 f"path/to/file.py:Class{there}"
             )
         reference = known[reference]
+    else:
+        require_allowed(reference)
     return resolve(reference, StationKind, "kind of station")
 
 
 def station_kind(
     name: str, reference: str, parameters: Mapping[str, Any], folder: Path | None = None
 ) -> StationKind:
-    """Make a kind of station from what a layout file says of it.
+    """Create a kind of station from its entry in a layout file.
 
     Parameters
     ----------
     name
-        The key of its table below `other_stations`: what it calls itself.
+        Key of its table below `other_stations`, which is its name.
     reference
         Its class.
     folder
-        Where a file is looked for first. Default: the working directory.
+        Folder where a file is looked for first. Default: the working directory.
 
     Raises
     ------
     InputError
-        If there is no such kind, its name is another one, or a parameter is wrong.
+        If there is no such kind, it has another name, or a parameter is wrong.
     """
     key = f"other_stations.{name}"
     try:
@@ -200,9 +209,9 @@ def station_kind(
     told = getattr(found, "name", None)
     if told != name or name in _RESERVED:
         raise InputError(
-            f"{key}: {reference} is named {told!r}: its table is other_stations.{told}"
+            f"{key}: {reference} is named {told!r}: use the table other_stations.{told}"
             if told != name
-            else f"{key}: the name {name} is taken; its class needs another one"
+            else f"{key}: the name {name} is taken; the class needs another name"
         )
     for needed in ("letter", "colour"):
         if not isinstance(getattr(found, needed, None), str):
@@ -211,7 +220,7 @@ def station_kind(
 
 
 def described(kind: StationKind) -> dict[str, Any]:
-    """Return what a layout file says of a kind, its stations left out."""
+    """Return the entry of a kind in a layout file, without its stations."""
     return {
         "kind": reference_of(type(kind)),
         "parameters": kind.parameters.model_dump(mode="json"),

@@ -1,4 +1,4 @@
-"""Loading a layout from any of the files that describe one."""
+"""Loads layouts from any of the supported file formats."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
 
 Override = tuple[list[str], Any]
-"""The path of a key below "layout", and its value."""
+"""The path of a key below "layout", and its new value."""
 
 
 def names() -> list[str]:
-    """Names of the shipped layouts, sorted."""
+    """Return the sorted names of the shipped layouts."""
     return instances.names("layouts")
 
 
@@ -37,27 +37,27 @@ def load(name_or_path: str | Path, overrides: Sequence[Override] = ()) -> Layout
 def load_with_notes(
     name_or_path: str | Path, overrides: Sequence[Override] = ()
 ) -> tuple[Layout, list[str]]:
-    """Load a layout and the remarks of its import.
+    """Load a layout, with notes from its import.
 
     Parameters
     ----------
     name_or_path
         A shipped layout, or a file: `.toml` (parameters), `.json` (explicit layout), `.txt` (drawn
-        as text), `.xlayo` or `.xinst` (RAWSim-O), `.map` (grid map: with the stations and storage
-        places of `NAME.map.toml` beside it, or without any, for traffic alone).
+        as text), `.xlayo` or `.xinst` (RAWSim-O), or `.map` (grid map, with the stations and
+        storage places of `NAME.map.toml` beside it, or without any for traffic experiments).
     overrides
         (path, value) pairs such as `(["robots"], 16)`, applied to the parameters before they are
-        validated. On explicit layouts only the keys of `ExplicitOverrides`; its `FACTORS` serve
-        generated layouts, too.
+        validated. Explicit layouts accept only the keys of `ExplicitOverrides`; its `FACTORS` are
+        also valid for generated layouts.
 
     Returns
     -------
-    The layout, and remarks on what an import left out or filled in.
+    The layout, and notes on what an import left out or added.
 
     Raises
     ------
     InputError
-        If the layout cannot be found, read or generated; one line names every problem.
+        If the layout cannot be found, read or generated; one line lists every problem.
     """
     path = instances.locate("layouts", str(name_or_path))
     source = str(path)
@@ -87,7 +87,7 @@ def load_with_notes(
 
 def _generated(table: Table, overrides: Sequence[Override], path: Path) -> Layout:
     if not table:
-        raise InputError(f'{path}: says nothing; it begins with format = "rmfs-layout/1"')
+        raise InputError(f'{path}: is empty; a layout starts with format = "rmfs-layout/1"')
     own, factors = split_factors(overrides)
     parameters = validate(LayoutParameters, apply_overrides(table, own), str(path))
     try:
@@ -98,7 +98,7 @@ def _generated(table: Table, overrides: Sequence[Override], path: Path) -> Layou
 
 
 def split_factors(overrides: Sequence[Override]) -> tuple[list[Override], list[Override]]:
-    """Part overrides of a generated layout into parameters and what is applied afterwards."""
+    """Separate overrides of a generated layout into parameters and factors applied afterwards."""
     is_factor = [path[0] in FACTORS for path, _ in overrides]
     pairs = list(zip(overrides, is_factor, strict=True))
     return [one for one, late in pairs if not late], [one for one, late in pairs if late]

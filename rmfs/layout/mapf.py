@@ -1,8 +1,8 @@
-"""Grid maps of the path-finding community as layouts (Stern et al. 2019: `.map` and `.scen`).
+"""Grid maps from path-finding benchmarks as layouts (Stern et al. 2019: `.map` and `.scen`).
 
-A free cell is a waypoint, a metre from its neighbours; undirected edges are two-way lanes. There
-are no pods and no stations: robots drive from point to point. Cells count from the top left, rows
-downwards, as in these files; y grows upwards here.
+A free cell is a waypoint, one metre from its neighbours; undirected edges are two-way lanes. There
+are no pods and no stations: robots drive from point to point. As in these files, cells are counted
+from the top left, rows downwards; in the layout y grows upwards.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ BLOCKED = "@OTW"
 """Signs of cells that cannot be entered; all others (`.GSE`) are free."""
 
 KIND = RobotKind(0.35, 1.0, 1.0, 1.5, 2.5, 2.2)
-"""The robot of the default layout: these files say nothing of size and speed."""
+"""The robot of the default layout, since these files specify no size or speed."""
 
 
 def read_map(path: Path, robots: list[int] | None = None) -> Layout:
@@ -39,7 +39,7 @@ def read_map(path: Path, robots: list[int] | None = None) -> Layout:
     Raises
     ------
     InputError
-        If the file is not a grid map, or a robot stands where there is no free cell.
+        If the file is not a grid map, or a robot does not stand on a free cell.
     """
     free = _free(path)
     number = cell_waypoints(free)
@@ -58,7 +58,7 @@ def read_map(path: Path, robots: list[int] | None = None) -> Layout:
     else:
         places = np.array([waypoint_at(number, cell, str(path)) for cell in robots], np.int32)
     if len(set(places.tolist())) < len(places):
-        raise InputError(f"{path}: two robots stand on one cell")
+        raise InputError(f"{path}: two robots stand on the same cell")
     none = np.zeros(0, np.int32)
     return Layout(
         name=path.stem,
@@ -101,7 +101,7 @@ def waypoint_at(number: NDArray[np.int64], cell: int, source: str) -> int:
     Raises
     ------
     InputError
-        If there is none.
+        If there is no such free cell.
     """
     if not 0 <= cell < number.size or number.flat[cell] < 0:
         raise InputError(f"{source}: cell {cell} is not a free cell of the map")
@@ -122,11 +122,11 @@ def read_rows(path: Path) -> list[str]:
         raise InputError(f"{path}: cannot be read ({error})") from None
     head = [line.split() for line in lines[:4]]
     if len(head) < 4 or [words[:1] for words in head] != [["type"], ["height"], ["width"], ["map"]]:
-        raise InputError(f"{path}: must begin with type, height, width and map, a line each")
+        raise InputError(f"{path}: must start with type, height, width and map, one per line")
     try:
         height, width = int(head[1][1]), int(head[2][1])
     except (IndexError, ValueError):
-        raise InputError(f"{path}: height and width must be whole numbers") from None
+        raise InputError(f"{path}: height and width must be integers") from None
     rows = [line.rstrip() for line in lines[4:] if line.strip()]
     if len(rows) != height or any(len(row) != width for row in rows):
         raise InputError(f"{path}: expected {height} rows of {width} cells")
@@ -137,5 +137,5 @@ def _free(path: Path) -> NDArray[np.bool_]:
     rows = read_rows(path)
     free = np.array([[sign not in BLOCKED for sign in row] for row in rows], np.bool_)
     if free.sum() < 2:
-        raise InputError(f"{path}: has no two free cells")
+        raise InputError(f"{path}: has fewer than two free cells")
     return free

@@ -1,7 +1,7 @@
 """The layout: waypoints, stations, elevators, pods and robots as arrays.
 
-Every waypoint, pod, robot and station is named by its index. Stations share one numbering: pick
-stations come first, replenishment stations follow, then those of all other kinds.
+All of them are identified by index. Stations share one numbering: pick stations come first, then
+replenishment stations, then those of all other kinds.
 """
 
 from __future__ import annotations
@@ -41,15 +41,15 @@ class PickStation:
     Attributes
     ----------
     waypoint
-        Where the robot stands while its pod is served.
+        Waypoint of the robot while its pod is served.
     queue
-        Places in front of the station: `queue[0] == waypoint`, the entrance comes last.
+        Waiting places: `queue[0] == waypoint`, and the entrance is last.
     order_slots
-        How many orders may be open at once.
+        Maximum number of open orders.
     unit_transfer_s
-        How long one unit keeps the station busy.
+        How long one unit occupies the station.
     unit_pick_s
-        How long one unit keeps the robot.
+        How long one unit occupies the robot.
     activation
         Rank in which stations are switched on, from 1.
     """
@@ -72,9 +72,9 @@ class ReplenishmentStation:
     Attributes
     ----------
     capacity
-        Space units of bundles that may be assigned to the station at once.
+        Maximum space units of bundles assigned to the station at a time.
     bundle_transfer_s
-        How long one bundle keeps both station and robot.
+        How long one bundle occupies both station and robot.
     """
 
     kind: ClassVar[StationKind] = REPLENISHMENT
@@ -89,7 +89,7 @@ class ReplenishmentStation:
 
 @dataclass(frozen=True, slots=True)
 class OtherStation:
-    """A station of another kind, which says what happens there."""
+    """A station of another kind, which defines what happens there."""
 
     kind: StationKind
     waypoint: int
@@ -104,7 +104,7 @@ class Elevator:
     Attributes
     ----------
     waypoints
-        Where a robot boards and leaves, one per tier.
+        Waypoints where robots board and leave, one per tier.
     travel_s
         Seconds for each ordered pair of these waypoints (keys: waypoint indices).
     queues
@@ -138,7 +138,7 @@ class RobotKind:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """A warehouse before anything happens in it.
+    """A warehouse before a run.
 
     Attributes
     ----------
@@ -157,15 +157,15 @@ class Layout:
     is_queue
         Waypoints that belong to a queue zone (its exit included), shape (N,).
     pod_waypoint
-        Where each of the P pods stands at the start, shape (P,).
+        Initial waypoint of each of the P pods, shape (P,).
     pod_capacity
         Space units of each pod, shape (P,).
     pod_radius_m
         Radius of the pods (the largest, if they differ).
     robot_waypoint
-        Where each of the R robots stands at the start, shape (R,).
+        Initial waypoint of each of the R robots, shape (R,).
     robot_heading_rad
-        Heading of each robot at the start, 0 = +x, growing towards +y, shape (R,).
+        Initial heading of each robot, 0 = +x, growing towards +y, shape (R,).
     robot_kind
         Index into `robot_kinds`, shape (R,).
     """
@@ -198,7 +198,7 @@ class Layout:
 
     @property
     def other_kinds(self) -> tuple[StationKind, ...]:
-        """The kinds of the other stations, in the order of these."""
+        """The kinds of the other stations, in order."""
         return tuple({station.kind.name: station.kind for station in self.other_stations}.values())
 
     @property

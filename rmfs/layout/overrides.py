@@ -1,8 +1,8 @@
-"""Overrides on layouts that are there already: what makes sense without a generator.
+"""Overrides for explicit layouts: those that need no generator.
 
-A layout given waypoint by waypoint has no aisles to lengthen, but its robots and stations can
-still be other ones. The keys are those of layout parameters, and mean the same. Shares of stations
-and robots per station are factors of experiments, and serve generated layouts too.
+The aisles of an explicit layout cannot be lengthened, but its robots and stations can be changed.
+The keys and their meanings are those of the layout parameters. Shares of stations and robots per
+station are factors of experiments and also apply to generated layouts.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ SEED = 0
 
 
 class ExplicitOverrides(Strict):
-    """What can be overridden on an explicit layout; absent keys leave it as it is."""
+    """The values that can be overridden in an explicit layout; missing keys change nothing."""
 
     robots: Count | None = None
     order_slots: Count | None = None
@@ -57,7 +57,7 @@ class ExplicitOverrides(Strict):
 
 
 FACTORS = ("pick_station_share", "replenishment_station_share", "robots_per_pick_station")
-"""Keys that generated layouts have, too; applied when all else is in place."""
+"""Keys that also apply to generated layouts, after everything else."""
 
 
 def override(layout: Layout, overrides: Sequence[tuple[list[str], Any]], source: str) -> Layout:
@@ -66,9 +66,9 @@ def override(layout: Layout, overrides: Sequence[tuple[list[str], Any]], source:
     Parameters
     ----------
     overrides
-        (path, value) pairs; `robots` counts robots per tier, drawn anew from the road waypoints,
-        as are those of `robots_per_pick_station`. Of the stations of a kind a share is kept,
-        rounded down, but one at least: those that are switched on first.
+        (path, value) pairs. `robots` is the number per tier, drawn anew on road waypoints, as are
+        those of `robots_per_pick_station`. A share of the stations of a kind keeps the ones that
+        are switched on first; it is rounded down to at least one.
     source
         Name of the file, for messages.
 
@@ -124,7 +124,7 @@ def _robot_kinds(layout: Layout, overrides: ExplicitOverrides) -> Layout:
 
 
 def _fewer_stations(layout: Layout, overrides: ExplicitOverrides) -> Layout:
-    """Drop stations; the places of their queues become roads."""
+    """Remove stations; the places of their queues become roads."""
     picks = _first(layout.pick_stations, overrides.pick_station_share)
     others = _first(layout.replenishment_stations, overrides.replenishment_station_share)
     fewer = replace(layout, pick_stations=picks, replenishment_stations=others)
@@ -139,10 +139,10 @@ S = TypeVar("S", PickStation, ReplenishmentStation)
 
 
 def _first(stations: tuple[S, ...], share: float | None) -> tuple[S, ...]:
-    """Return the share of stations that are switched on first, in their order."""
+    """Return the share of stations that is switched on first, in the original order."""
     if share is None or not stations:
         return stations
-    # a share such as 0.7 is a little less than seven tenths
+    # a share such as 0.7 is slightly less than seven tenths in binary
     number = max(1, int(share * len(stations) + 1e-9))
     ranks = sorted(range(len(stations)), key=lambda one: (stations[one].activation, one))
     return tuple(stations[one] for one in sorted(ranks[:number]))

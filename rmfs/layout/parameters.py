@@ -1,8 +1,8 @@
-"""The parameters of the default layout: what a `rmfs-layout/1` file may say.
+"""The parameters of the default layout, as in a `rmfs-layout/1` file.
 
 Names and default values follow the layout parameters of RAWSim-O (paper, section 3.1.1; its file
-format .xlayo), in plain words and with the unit as suffix. A `Field` description is the one place
-where a parameter is explained: `rmfs layout new` writes it into the file as a comment.
+format .xlayo), in plain words and with the unit as suffix. Parameters are explained only by their
+`Field` descriptions, which `rmfs layout new` writes as comments.
 """
 
 from __future__ import annotations
@@ -18,51 +18,55 @@ from rmfs.layout.values import Amount, Metres, Radius, Rate, Seconds, Some, Spac
 
 
 class PerSide(Strict):
-    """How many of something stand on each side of a tier."""
+    """Numbers of stations or elevators on each side of a tier."""
 
-    west: Amount = Field(0, description="where x is least")
-    east: Amount = Field(0, description="where x is greatest")
-    south: Amount = Field(0, description="where y is least")
-    north: Amount = Field(0, description="where y is greatest")
+    west: Amount = Field(0, description="on the side of least x")
+    east: Amount = Field(0, description="on the side of greatest x")
+    south: Amount = Field(0, description="on the side of least y")
+    north: Amount = Field(0, description="on the side of greatest y")
 
     @property
     def total(self) -> int:
-        """Index on all four sides of one tier."""
+        """Total number on all four sides of a tier."""
         return self.west + self.east + self.south + self.north
 
 
 class OtherStations(PerSide):
-    """Stations of another kind: how many stand on each side of a tier, and what is set of them.
+    """Stations of another kind: how many stand on each side of a tier, and their parameters.
 
-    Plug-in places may stand within the storage area, too, each in the place of a storage place.
+    Plug-in places may also stand within the storage area, each replacing a storage place.
     """
 
-    within: Amount = Field(0, description="how many stand within the storage area of a tier")
-    kind: str = Field(description="its class: module:Class, path/to/file.py:Class, or a name")
-    parameters: dict[str, Any] = Field(default_factory=dict, description="those of the class")
+    within: Amount = Field(0, description="number within the storage area of a tier")
+    kind: str = Field(
+        description="class: module:Class, path/to/file.py:Class, or a registered name"
+    )
+    parameters: dict[str, Any] = Field(default_factory=dict, description="parameters of the class")
 
 
 class LayoutParameters(Strict):
     """Parameters of a generated layout.
 
-    All problems are reported at once: every wrong value, and every violated condition between
-    values that are right by themselves.
+    All problems are reported together: every invalid value, and every violated condition between
+    values that are valid individually.
     """
 
     format: Literal["rmfs-layout/1"] = Field("rmfs-layout/1", description="version of this format")
     name: str = Field("unnamed", min_length=1, description="name shown in results")
-    seed: Amount = Field(0, description="random seed for the places of pods and robots")
+    seed: Amount = Field(0, description="random seed for the positions of pods and robots")
 
     tiers: Some = Field(1, description="floors; more than one needs elevators")
-    tier_height_m: Metres = Field(4.0, description="m from floor to floor, for drawing only")
+    tier_height_m: Metres = Field(4.0, description="height of a tier in m, for drawing only")
 
     robots: Some = Field(16, description="robots per tier")
     robot_radius_m: Radius = Field(0.35, description="m")
     acceleration_m_s2: Rate = Field(1.0, description="m/s2")
     deceleration_m_s2: Rate = Field(1.0, description="m/s2")
     top_speed_m_s: Rate = Field(1.5, description="m/s")
-    full_turn_s: Seconds = Field(2.5, description="s for a turn of 360 degrees on the spot")
-    pod_transfer_s: Seconds = Field(2.2, description="s to lift or to set down a pod")
+    full_turn_s: Seconds = Field(
+        2.5, description="duration of a turn of 360 degrees on the spot, s"
+    )
+    pod_transfer_s: Seconds = Field(2.2, description="duration of lifting or setting down a pod, s")
 
     pod_share: float = Field(
         0.85, gt=0, lt=1, description="pods per storage place (rounded down per tier)"
@@ -71,22 +75,26 @@ class LayoutParameters(Strict):
     pod_capacity: Space = Field(500.0, description="space units per pod")
 
     station_radius_m: Radius = Field(0.45, description="m")
-    unit_transfer_s: Seconds = Field(10.0, description="s one picked unit keeps the station busy")
-    unit_pick_s: Seconds = Field(3.0, description="s one picked unit keeps the robot")
-    order_slots: Some = Field(12, description="orders open at once at a pick station")
+    unit_transfer_s: Seconds = Field(
+        10.0, description="time in s for which a unit occupies the pick station"
+    )
+    unit_pick_s: Seconds = Field(3.0, description="time in s for which a unit occupies the robot")
+    order_slots: Some = Field(12, description="maximum number of open orders at a pick station")
     bundle_transfer_s: Seconds = Field(
-        10.0, description="s one bundle keeps robot and replenishment station"
+        10.0, description="time in s for which a bundle occupies robot and replenishment station"
     )
     replenishment_station_capacity: Space = Field(
-        1000.0, description="space units of bundles assigned at once to a replenishment station"
+        1000.0, description="maximum space units of bundles assigned to a replenishment station"
     )
-    elevator_s_per_tier: Seconds = Field(10.0, description="s an elevator needs for one tier")
+    elevator_s_per_tier: Seconds = Field(
+        10.0, description="duration of an elevator ride over one tier, s"
+    )
 
     hall_pattern: Literal["tim", "highway"] = Field(
         "tim", description='hall in front of the stations: "tim" (lanes and loops) or "highway"'
     )
-    two_directional_aisles: bool = Field(False, description="all aisles both ways")
-    single_lane: bool = Field(True, description="aisles one tile wide, otherwise two")
+    two_directional_aisles: bool = Field(False, description="whether all aisles are two-way")
+    single_lane: bool = Field(True, description="whether aisles are one tile wide; otherwise two")
     horizontal_aisles: int = Field(
         8, ge=2, le=1000, description='even, unless two-directional with "tim" halls or two lanes'
     )
@@ -98,17 +106,19 @@ class LayoutParameters(Strict):
         ge=2,
         le=1000,
         multiple_of=2,
-        description="tiles (1 m) a storage block is long; it is 2 deep",
+        description="length of a storage block in tiles of 1 m; its depth is 2",
     )
-    hall_width: int = Field(6, ge=2, le=1000, description='tiles; even for "highway"')
+    hall_width: int = Field(
+        6, ge=2, le=1000, description='width of a hall in tiles; even for "highway"'
+    )
     buffer_width: int = Field(
-        4, ge=2, le=1000, description="tiles a segment of a station's queue is long"
+        4, ge=2, le=1000, description="length of a segment of a station's queue, in tiles"
     )
     entry_exit_distance: int = Field(
-        3, ge=1, le=1000, description="tiles from a queue's entrance to its exit; odd"
+        3, ge=1, le=1000, description="distance from a queue's entrance to its exit, in tiles; odd"
     )
     counter_clockwise_ring: bool = Field(
-        True, description="sense of the ring road, seen with x to the right and y upward"
+        True, description="direction of the ring road, seen with x to the right and y upwards"
     )
 
     pick_stations: PerSide = Field(PerSide(east=4), description="pick stations per tier")
@@ -125,7 +135,7 @@ class LayoutParameters(Strict):
     def _report_everything(
         cls, data: Any, handler: pydantic.ModelWrapValidatorHandler[LayoutParameters]
     ) -> LayoutParameters:
-        """Check conditions between values too when some value is wrong by itself."""
+        """Check conditions between values even if some values are invalid."""
         try:
             parameters = handler(data)
             wrong: list[InitErrorDetails] = []
@@ -148,7 +158,7 @@ class LayoutParameters(Strict):
 
 
 def _again(detail: Any) -> InitErrorDetails:
-    """Turn a reported problem back into one that can be raised with others."""
+    """Convert a reported problem into one that can be raised together with others."""
     kept = InitErrorDetails(type=detail["type"], loc=detail["loc"], input=detail["input"])
     if "ctx" in detail:
         kept["ctx"] = detail["ctx"]

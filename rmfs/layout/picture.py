@@ -1,4 +1,4 @@
-"""A picture of a layout, in the manner of the paper's figure 4."""
+"""Draws a layout in the style of the paper's figure 4."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ ELEVATOR_SIDE = 0.9
 ARROW_SHARE = 0.55
 """Length of an arrow as a share of its edge."""
 LARGEST_IN = (12.0, 9.0)
-"""Width and height in inches that the floor plan of a saved picture may have."""
+"""Maximum width and height in inches of the floor plan in a saved figure."""
 LEGEND_IN = 0.45
 """Distance of the legend below the axes in inches."""
 
@@ -56,21 +56,21 @@ def draw(
 ) -> None:
     """Draw a layout.
 
-    Pick stations are red, replenishment stations yellow, stations of other kinds have colours of
-    their own, elevators are purple, robots green; storage places are blue squares, dark where a pod
-    stands. Queue zones are dotted, the hallway between
-    storage area and stations is dashed. Several tiers stand side by side.
+    Pick stations are red, replenishment stations yellow, elevators purple and robots green;
+    stations of other kinds have their own colours. Storage places are blue squares, dark where a
+    pod stands. Queue zones are dotted, and the hallway between storage area and stations is dashed.
+    Tiers are drawn side by side.
 
     Parameters
     ----------
     ax
-        Where to draw; axes are in metres.
+        Axes to draw on, in metres.
     arrows
-        Draw the direction of one-way edges.
+        Whether to draw the direction of one-way edges.
     pods, robots
-        Show where they stand at the start.
+        Whether to show their initial positions.
     legend
-        Explain colours and lines below the picture.
+        Whether to explain colours and lines below the figure.
     """
     points = _points(layout)
     pitch_m = _pitch(layout)
@@ -90,16 +90,16 @@ def draw(
 
 
 def save_picture(layout: Layout, path: Path, *, arrows: bool = False) -> None:
-    """Write a picture of a layout as SVG, PNG or PDF; the same layout gives the same file.
+    """Save a drawing of a layout as SVG, PNG or PDF; equal layouts give equal files.
 
     Raises
     ------
     InputError
-        If the suffix is another one or the file cannot be written.
+        If the suffix is not supported or the file cannot be written.
     """
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
-        raise InputError(f"{path}: pictures are written as {', '.join(FORMATS)}")
+        raise InputError(f"{path}: supported formats: {', '.join(FORMATS)}")
     length_m = _offsets(layout)[-1] - TIER_GAP_M
     width_m = max(tier.width_m for tier in layout.tiers)
     scale = min(LARGEST_IN[0] / length_m, LARGEST_IN[1] / width_m)
@@ -115,7 +115,7 @@ def save_picture(layout: Layout, path: Path, *, arrows: bool = False) -> None:
 
 
 def _offsets(layout: Layout) -> Points:
-    """Return the x position of the west side of each tier, and of one more."""
+    """Return the x position of the west side of each tier, plus one for the end."""
     lengths = np.array([tier.length_m for tier in layout.tiers])
     return np.concatenate([[0.0], np.cumsum(lengths + TIER_GAP_M)])
 
@@ -126,7 +126,7 @@ def _points(layout: Layout) -> Points:
 
 
 def _pitch(layout: Layout) -> float:
-    """Return the usual distance between neighbouring waypoints in m."""
+    """Return the typical distance between neighbouring waypoints in m."""
     tails, heads = edge_sources(layout), layout.edge_target
     if not heads.size:
         return 1.0
@@ -135,7 +135,7 @@ def _pitch(layout: Layout) -> float:
 
 
 def _hallway(layout: Layout, pitch_m: float) -> Mask:
-    """Return the road waypoints outside the storage area and the ring road round it."""
+    """Return the road waypoints outside the storage area and its ring road."""
     hallway = ~layout.is_storage & ~layout.is_queue
     for tier in range(len(layout.tiers)):
         here = layout.tier == tier
@@ -229,7 +229,7 @@ def _xy(point: Points) -> tuple[float, float]:
 
 
 def _outline(places: Points, pitch_m: float, colour: str, style: str) -> LineCollection:
-    """Return the border of the area that the cells round some waypoints cover together."""
+    """Return the border of the area covered by the cells around some waypoints."""
     cells = {(round(x / pitch_m * 2), round(y / pitch_m * 2)): (x, y) for x, y in places}
     half_m = pitch_m / 2
     lines = []

@@ -1,11 +1,11 @@
-"""All problems of a file in one line."""
+"""Collects all problems of a file in one line."""
 
 from __future__ import annotations
 
 from rmfs.errors import InputError
 
 MOST_PROBLEMS = 10
-"""Problems named in one message; more are counted."""
+"""Maximum number of problems listed in a message; the rest are counted."""
 
 
 def stop_if_any(problems: list[str], source: object) -> None:

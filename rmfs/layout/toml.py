@@ -1,4 +1,4 @@
-"""Writing layout parameters as a TOML file that explains itself."""
+"""Writes layout parameters as a self-explanatory TOML file."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _entries(value: pydantic.BaseModel) -> str:
 
 
 def _value(value: Any) -> str:
-    """Return a TOML value; the notation of JSON is valid for strings, numbers and truth values."""
+    """Return a TOML value; JSON notation is valid for strings, numbers and booleans."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{key} = {_value(entry)}" for key, entry in value.items()) + "}"
     return json.dumps(value, ensure_ascii=False)

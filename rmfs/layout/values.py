@@ -1,4 +1,4 @@
-"""Kinds of values that layout files share."""
+"""Value types shared by layout files."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ Index = Amount
 Radius = Annotated[float, Field(ge=0.01, lt=0.5)]
 Metres = Annotated[float, Field(ge=0.01, le=1000)]
 Rate = Annotated[float, Field(ge=0.001, le=1000)]
-"""Speeds and accelerations: what drives; none is as slow as a millimetre, or as fast as sound."""
+"""Speeds and accelerations of robots, within physically sensible limits."""
 Seconds = Annotated[float, Field(ge=1e-6, le=86400)]
-"""Of one motion or one unit: a microsecond, in which times are kept, to a day."""
+"""Durations of one motion or one unit: from a microsecond, the time resolution, to a day."""
 Space = Annotated[float, Field(ge=1e-3, le=1e6)]
-"""Space units: a pod of the largest holds as many units as the smallest take."""
+"""Space units: the largest pod holds a billion units of the smallest size."""
 Some = Annotated[int, Field(ge=1, le=100_000)]
 
 
 class Strict(Model):
-    """Numbers must be written as finite numbers: "16" or true is not taken for 16 or 1."""
+    """Numbers must be finite and written as numbers: "16" or true is not accepted as 16 or 1."""
 
     model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)

@@ -1,7 +1,7 @@
-"""Every decision as an environment: Gymnasium, PettingZoo, rewards, and rules that are trained.
+"""Reinforcement learning: Gymnasium and PettingZoo environments, rewards, and trained rules.
 
-Needs the extra `learning` (`pip install rmfs[learning]`); nothing of the simulator imports this.
-`import rmfs.learning` registers `rmfs/Decision-v0` with Gymnasium.
+Requires the extra `learning` (`pip install rmfs[learning]`); no other part of the simulator imports
+this package. `import rmfs.learning` registers `rmfs/Decision-v0` with Gymnasium.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ __all__ = ["NAME", "DecisionEnv", "DecisionVectorEnv", "Reward", "RobotsEnv", "T
 
 
 def __getattr__(name: str) -> Any:
-    """Load what is exported when it is first used: training needs no Gymnasium."""
+    """Import an exported name on first use: training does not need Gymnasium."""
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     import importlib

@@ -1,4 +1,4 @@
-"""`rmfs learn`: weights of linear rules, trained on simulated runs."""
+"""`rmfs learn`: trains the weights of linear rules on simulated runs."""
 
 from __future__ import annotations
 
@@ -18,19 +18,23 @@ def learn(
     out: Annotated[Path, typer.Option(help="Controllers file to write (.toml).")],
     layout: Annotated[str, typer.Option(help="Layout.")] = "small",
     scenario: Annotated[str, typer.Option(help="Scenario.")] = "small",
-    controllers: Annotated[str, typer.Option(help="Who decides the other problems.")] = "default",
-    problems: Annotated[str, typer.Option(help="Of poa, pps, psa, ta; with commas.")] = "poa,pps",
+    controllers: Annotated[
+        str, typer.Option(help="Controllers of the other problems.")
+    ] = "default",
+    problems: Annotated[
+        str, typer.Option(help="Any of poa, pps, psa, ta; with commas.")
+    ] = "poa,pps",
     objective: Annotated[
-        str, typer.Option(help="Columns of the footprint with weights, COLUMN=W,...; maximised.")
+        str, typer.Option(help="Objective to maximise, as footprint columns: COLUMN=WEIGHT,...")
     ] = "units_picked=1",
     seeds: Annotated[str, typer.Option(help="Seeds of the runs, with commas.")] = "1,2,3",
     generations: Annotated[int, typer.Option(min=1, help="Generations.")] = 20,
-    population: Annotated[int, typer.Option(min=4, help="Sets of weights of each.")] = 10,
+    population: Annotated[int, typer.Option(min=4, help="Weight vectors per generation.")] = 10,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the search.")] = 1,
     jobs: Annotated[int, typer.Option(min=1, help="Processes.")] = 1,
     set_: SetOption = None,
 ) -> None:
-    """Train linear rules by CMA-ES; write a controllers file that `rmfs run` takes."""
+    """Train linear rules by CMA-ES and write a controllers file for `rmfs run`."""
     from rmfs.config import parse_override
     from rmfs.control.toml import to_toml
     from rmfs.files import write_text

@@ -1,4 +1,4 @@
-"""`rmfs/Decision-v0`: decisions of a warehouse as a Gymnasium environment."""
+"""`rmfs/Decision-v0`: the decisions of a warehouse as a Gymnasium environment."""
 
 from __future__ import annotations
 
@@ -32,49 +32,50 @@ LARGEST_SEED = 2**31 - 1
 
 
 class DecisionEnv(gymnasium.Env[Any, np.int64]):
-    """One episode is one run; one step is one decision of the chosen problems.
+    """An environment in which an episode is a run and a step is a decision of the chosen problems.
 
-    Actions: 0 to k - 1 choose the k best candidates in the order of their ranking; k declines (it
-    ends a turn, or says that there is nothing to choose); with `rule`, k + 1 does what the rule
-    does that is installed for the problem. Questions with one possible action are not asked. An
-    action that is not possible counts as declining, and `info["invalid"]` says so.
+    Actions 0 to k - 1 choose one of the k best candidates, in order of their ranking. Action k
+    declines: it ends a turn, or answers that there is nothing to choose. With `rule`, action k + 1
+    follows the installed rule of the problem. Questions with only one possible action are skipped.
+    An impossible action counts as declining and sets `info["invalid"]`.
 
-    Observations are a dictionary: `global`, shape (G,), `candidates`, shape (k, F), and
-    `action_mask`; or, flat, one vector of the first two after each other. What the numbers are is
-    told by `observing.global_features` and `observing.features`.
+    Observations are a dictionary with `global`, shape (G,), `candidates`, shape (k, F), and
+    `action_mask`, or, if flat, one vector with the first two concatenated. The features are
+    described by `observing.global_features` and `observing.features`.
 
-    An episode ends with the run: the warehouse would go on, so it is `truncated`, and
-    `info["footprint"]` has what was measured. Time passes between decisions, more or less:
-    `info["elapsed_s"]` says how much passed, and rewards are amounts of that time.
+    An episode ends with the run. Since the warehouse would continue, the episode is `truncated`;
+    `info["footprint"]` contains the measures. The time between decisions varies:
+    `info["elapsed_s"]` is the simulated time that has passed, and rewards are amounts accumulated
+    over that time.
 
     Parameters
     ----------
     layout, scenario, controllers, set
         As for `rmfs.Simulation`. The controllers decide all other problems.
     problems
-        What the agent decides, such as `["ta", "pps"]`.
+        The problems that the agent decides, such as `["ta", "pps"]`.
     candidates
-        How many are offered (k).
+        Number k of candidates offered.
     rankings
-        Weights by kind of question and column, by which the best candidates are found; in place of
-        those of `rmfs.control.features.RANKINGS`.
+        Weights by kind of question and column for ranking the candidates, instead of those of
+        `rmfs.control.features.RANKINGS`.
     reward
-        A name, weights by name, or a class of one's own (`rmfs.learning.rewards`).
+        A name, weights by name, or a user-defined class (`rmfs.learning.rewards`).
     observation
         `dict` or `flat`.
     rule
-        Whether the rule installed is one of the actions. A rule takes for granted that what it says
-        is done: follow it throughout, or take it as one more piece of advice.
+        Whether following the installed rule is one of the actions. Rules assume that their
+        decisions are carried out: follow the rule throughout, or treat it as advice.
     footprint
-        Whether runs are measured, and `info` has the footprint at the end; without, steps are
-        faster by a twentieth.
+        Whether to measure runs, so that `info` contains the footprint at the end; without it, steps
+        are faster by about 5 %.
     render_mode
-        `rgb_array` or nothing.
+        `rgb_array` or None.
 
     Raises
     ------
     InputError
-        If something given is wrong; names what and says what would be valid.
+        If an argument is wrong; names it and the valid values.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012
@@ -122,12 +123,12 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
 
     @property
     def run(self) -> Episode:
-        """The run of the present episode.
+        """The run of the current episode.
 
         Raises
         ------
         RuntimeError
-            Before the first `reset`.
+            If `reset` has not been called yet.
         """
         if self._run is None:
             raise RuntimeError("reset the environment first")
@@ -139,7 +140,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         return self._options
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Return which actions are possible, shape (actions,), as MaskablePPO wants them."""
+        """Return which actions are possible, shape (actions,), in the form used by MaskablePPO."""
         mask = np.zeros(self.actions, np.bool_)
         if self._options is None:
             mask[self.decline] = True
@@ -151,7 +152,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Begin a run: that of the seed, or of a seed drawn from the one given before."""
+        """Start a run with the given seed, or with one drawn from the previous seed."""
         super().reset(seed=seed)
         if seed is None:
             seed = int(self.np_random.integers(LARGEST_SEED))
@@ -165,7 +166,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         return self._observation(mask), self._info(begun_s, mask)
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Take a decision, and simulate up to the next one."""
+        """Make a decision and simulate up to the next one."""
         run, options = self.run, self._options
         if options is None:
             raise RuntimeError("the run has ended: reset the environment")
@@ -179,7 +180,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         return self._observation(mask), run.reward.take(), False, self._options is None, info
 
     def render(self) -> Any:
-        """Draw the warehouse as it is, shape (height, width, 3)."""
+        """Draw the current state of the warehouse, shape (height, width, 3)."""
         if self.render_mode != "rgb_array":
             return None
         from rmfs.learning.rendering import picture
@@ -187,10 +188,10 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         return picture(self.run)
 
     def advised(self) -> int:
-        """Return the action that does what the rule installed says (only with `rule`).
+        """Return the action that agrees with the installed rule (only with `rule`).
 
-        It is the candidate the rule would choose if that is among the best; else the action of the
-        rule itself.
+        This is the candidate that the rule would choose, if it is offered, and otherwise the action
+        that follows the rule.
         """
         options = self._options
         if options is None or not self._with_rule:
@@ -220,7 +221,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         )
 
     def _go_on(self) -> None:
-        """Simulate to the next question that leaves a choice."""
+        """Simulate to the next question with more than one possible action."""
         run, observing = self.run, self.observing
         while (decision := run.step()) is not None:
             self._advice = None
@@ -228,7 +229,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
             if not options.is_forced:
                 break
             if self._with_rule and not len(options.rows):
-                # the rule may have something to say that is not among the candidates
+                # the rule may choose something that is not among the candidates
                 self._advice = (decision.advice(),)
                 if self._advice[0] is not None:
                     break
@@ -239,7 +240,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         self._options = options
 
     def _take(self, options: Options, action: int) -> bool:
-        """Do what an action says; false if it is not possible."""
+        """Carry out an action; return False if it is impossible."""
         if action == self.decline + 1 and self._with_rule:
             advice = self._advised(options)
             if advice is None:

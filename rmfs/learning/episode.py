@@ -1,4 +1,4 @@
-"""Episodes: simulations with a reward, made quickly one after the other."""
+"""Episodes: simulations with a reward, created quickly one after another."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 
 
 class Episode(Simulation):
-    """A simulation that knows its reward, also when it is copied.
+    """A simulation with a reward, which is copied together with it.
 
     Parameters
     ----------
     reward
-        What observes the run and says what its decisions are worth.
+        Observer that computes the value of decisions.
     arguments
         As for `rmfs.Simulation`.
     """
 
     checks_layout = False
-    """`Episodes` has looked at it, once for all runs."""
+    """The layout is checked once by `Episodes`, for all runs."""
 
     def __init__(self, *arguments: Any, reward: Reward, **named: Any) -> None:
         self.reward = reward
@@ -39,16 +39,16 @@ class Episode(Simulation):
 
 
 class Episodes:
-    """Makes episodes of one warehouse: files are read, and the layout is checked, once.
+    """Creates episodes of one warehouse; files are read and the layout is checked only once.
 
-    A seed that comes again and again gives copies of the run as it was before its first event.
+    A seed that is used repeatedly yields copies of the run before its first event.
 
     Parameters
     ----------
     layout, scenario, controllers, set
         As for `rmfs.Simulation`.
     problems
-        Decided outside.
+        Problems decided outside the simulation.
     reward
         See `rmfs.learning.rewards.reward_of`.
     measured
@@ -56,7 +56,7 @@ class Episodes:
     """
 
     KEPT = 8
-    """Runs that are kept as they were before their first event."""
+    """Number of runs kept in the state before their first event."""
 
     def __init__(
         self,
@@ -79,16 +79,16 @@ class Episodes:
         self._measured = measured
         self._known: dict[int, bool] = {}
         self._kept: dict[int, Episode] = {}
-        reward_of(reward)  # what is wrong is said now
+        reward_of(reward)  # reports errors early
 
     def begin(self, seed: int) -> Episode:
-        """Return a run that is to begin."""
+        """Return a run that has not started yet."""
         if seed in self._kept:
             return self._kept[seed].fork()
         episode = self._made(seed)
         if seed not in self._known:
             self._known[seed] = (
-                True  # most seeds come once: to keep a run takes as long as to make it
+                True  # most seeds are used once, and keeping a run takes as long as creating it
             )
             return episode
         if len(self._kept) == self.KEPT:

@@ -1,4 +1,4 @@
-"""What a policy sees: global features, and the k best candidates of a question."""
+"""Observations of a policy: global features, and the k best candidates of a question."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from rmfs.simulation.decision import Decision
 
 GLOBAL_FEATURES: tuple[Feature, ...] = (
-    Feature("time_left", "share", 1.0, "of the run, what is still to come"),
-    Feature("backlog_orders", "orders", 100.0, "orders that wait for a station"),
+    Feature("time_left", "share", 1.0, "remaining share of the run"),
+    Feature("backlog_orders", "orders", 100.0, "orders waiting for a station"),
     Feature("waiting_bundles", "bundles", 100.0, "bundles without station or pod"),
     Feature("free_slots", "share", 1.0, "slots of active pick stations without an order"),
     Feature("open_units", "units per station", 20.0, "units for which no pod is under way"),
@@ -41,14 +41,14 @@ GLOBAL_FEATURES: tuple[Feature, ...] = (
     Feature("loaded_robots", "share", 1.0, "robots with a pod"),
     Feature("stored_share", "share", 1.0, "space of all pods in use"),
 )
-"""What is told of the whole warehouse; after these, 1 for the kind of the question."""
+"""Features of the whole warehouse; followed by a one-hot encoding of the kind of question."""
 
 _NONE = np.empty(0, np.intp)
 
 
 @dataclass(frozen=True)
 class Options:
-    """The answers a policy is offered.
+    """The answers offered to a policy.
 
     Attributes
     ----------
@@ -69,35 +69,35 @@ class Options:
 
     @property
     def kind(self) -> str:
-        """Of the question, one of `Observing.kinds`."""
+        """Kind of the question, one of `Observing.kinds`."""
         return kind_of(self.decision)
 
     @property
     def is_forced(self) -> bool:
-        """Whether there is one action only."""
+        """Whether only one action is possible."""
         return int(self.mask.sum()) < 2
 
 
 class Observing:
-    """Makes observations for a set of decision problems.
+    """Creates observations for a set of decision problems.
 
     Parameters
     ----------
     problems
-        Whose questions come.
+        The problems whose questions are asked.
     candidates
-        How many are offered (k).
+        Number k of candidates offered.
     rankings
-        Weights of columns by kind of question, in place of `RANKINGS`.
+        Weights of columns by kind of question, instead of `RANKINGS`.
 
     Attributes
     ----------
     kinds
         Kinds of question that may come.
     features
-        Of each candidate, in order.
+        Features of each candidate, in order.
     global_features
-        Of the warehouse and the question, in order.
+        Features of the warehouse and the question, in order.
 
     Raises
     ------
@@ -161,7 +161,7 @@ class Observing:
         if rows is not None:
             columns = {name: values[rows] for name, values in columns.items()}
         best = best_rows(columns, self._rankings[kind], self.k)
-        # a row per feature: few long operations in the place of many short ones
+        # one row per feature: a few long operations instead of many short ones
         block = np.array([values[best] for values in columns.values()])
         places, scales = self._places[kind]
         if len(block):
@@ -201,12 +201,12 @@ class Observing:
 
 
 def kind_of(decision: Decision) -> str:
-    """Return the kind of a question: a turn has the name of its problem."""
+    """Return the kind of a question; that of a turn is the name of its problem."""
     return decision.problem.value if decision.kind == "turn" else decision.kind
 
 
 def _places(kind: str, names: Sequence[str]) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
-    """Return where the features of a kind of question stand among all, and their scales, (F, 1)."""
+    """Return the positions of the features of a kind of question, and their scales, (F, 1)."""
     places = np.array([names.index(name) for name in COLUMNS[kind]], np.intp)
     return places, np.array([[SCALES[name]] for name in COLUMNS[kind]])
 
@@ -222,5 +222,5 @@ def _checked(rankings: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str,
 
 
 def is_same(answer: Any, other: Any) -> bool:
-    """Whether two answers say the same."""
+    """Whether two answers are equal."""
     return type(answer) is type(other) and bool(answer == other)

@@ -1,4 +1,4 @@
-"""Pictures of a run: the floor plan, with pods and robots where they are."""
+"""Images of a run: the floor plan with the current positions of pods and robots."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ DPI = 80
 
 
 def picture(run: Kernel) -> NDArray[np.uint8]:
-    """Draw a run as it is: shape (height, width, 3), red, green and blue.
+    """Draw the current state of a run as an RGB array, shape (height, width, 3).
 
-    Pods stand where they are stored, or on their robots; robots are drawn where they stand, or stop
-    next.
+    Pods are drawn where they are stored, or on their robots; robots where they stand, or where they
+    will stop next.
     """
     world = run.world
     at = [run.traffic.robot_waypoint(robot.index) for robot in world.robots]

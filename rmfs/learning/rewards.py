@@ -1,8 +1,8 @@
-"""Rewards: what has come together since the last decision.
+"""Rewards: amounts accumulated since the last decision.
 
-A reward observes the run as a measure does (`rmfs.observer.Observer`) and is copied with it. Time
-passes between decisions, and not always the same: rewards are amounts (units, orders, metres), and
-`info["elapsed_s"]` says how long they took.
+A reward observes the run like a measure (`rmfs.observer.Observer`) and is copied with it. The time
+between decisions varies; rewards are amounts (units, orders, metres), and `info["elapsed_s"]` is
+the time over which they accumulated.
 """
 
 from __future__ import annotations
@@ -20,25 +20,26 @@ if TYPE_CHECKING:
     from rmfs.world.orders import Order
 
     Wanted = str | type["Reward"] | Mapping[str, float]
-    """A name, a class, how a class is named, or weights by name."""
+    """A name, a class, a reference to a class, or weights by name."""
 
 
 class Reward(Observer):
-    """An amount that grows as the run goes on.
+    """Base class of rewards: an amount that accumulates during the run.
 
-    A user's reward overrides the callbacks it needs and adds to `self.amount`. It holds plain data:
-    it is copied and saved with the run. The class is made without arguments.
+    A user-defined reward overrides the callbacks it needs and adds to `self.amount`. It must hold
+    plain data, because it is copied and saved with the run. The class is instantiated without
+    arguments.
 
     Attributes
     ----------
     amount
-        What has come together since `take` was called last.
+        Amount accumulated since the last call of `take`.
     """
 
     amount: float = 0.0
 
     def take(self) -> float:
-        """Return the amount since the last call, and begin anew."""
+        """Return the amount since the last call, and reset it."""
         amount, self.amount = self.amount, 0.0
         return float(amount)
 
@@ -56,7 +57,7 @@ class Units(Reward):
         station: int,
         late_bound: bool,
     ) -> None:
-        """Count it."""
+        """Count a unit."""
         self.amount += 1.0
 
 
@@ -64,7 +65,7 @@ class Orders(Reward):
     """1 for every order completed."""
 
     def order_completed(self, order: Order) -> None:
-        """Count it."""
+        """Count an order."""
         self.amount += 1.0
 
 
@@ -72,7 +73,7 @@ class Lateness(Reward):
     """Minus the seconds by which an order was late, when it is completed."""
 
     def order_completed(self, order: Order) -> None:
-        """Count its seconds."""
+        """Add the seconds of an order."""
         self.amount -= max(0.0, order.completed_s - order.due_s)
 
 
@@ -80,7 +81,7 @@ class LateOrders(Reward):
     """-1 for every order completed after its due time."""
 
     def order_completed(self, order: Order) -> None:
-        """Count it."""
+        """Count an order."""
         self.amount -= order.completed_s > order.due_s
 
 
@@ -88,7 +89,7 @@ class Turnover(Reward):
     """Minus the seconds from arrival to completion, when an order is completed."""
 
     def order_completed(self, order: Order) -> None:
-        """Count its seconds."""
+        """Add the seconds of an order."""
         self.amount -= order.completed_s - order.created_s
 
 
@@ -99,11 +100,11 @@ class Distance(Reward):
         self._known_m = 0.0
 
     def run_started(self, run: Observed) -> None:
-        """Keep hold of what counts motion."""
+        """Keep a reference to the traffic model, which counts motion."""
         self._traffic = run.traffic
 
     def warmup_ended(self, time_s: float) -> None:
-        """The count begins anew."""
+        """Reset the distance, since counting restarts."""
         self._catch_up()
         self._known_m = 0.0
 
@@ -124,14 +125,14 @@ class Weighted(Reward):
     Parameters
     ----------
     parts
-        Rewards, which observe the run themselves, and their weights.
+        Pairs of a reward, which observes the run itself, and its weight.
     """
 
     def __init__(self, parts: list[tuple[Reward, float]]) -> None:
         self.parts = parts
 
     def take(self) -> float:
-        """Add up what the parts have."""
+        """Return the weighted sum of the parts."""
         return sum(weight * part.take() for part, weight in self.parts)
 
 
@@ -147,12 +148,12 @@ REWARDS: dict[str, type[Reward]] = {
 
 
 def reward_of(wanted: Wanted) -> Reward:
-    """Make a reward.
+    """Create a reward.
 
     Parameters
     ----------
     wanted
-        A name of `REWARDS`; a class derived from `Reward`, or how it is named
+        A name in `REWARDS`; a class derived from `Reward`, or a reference to one
         (`path/to/file.py:Class`); or weights by name, such as `{"units": 1, "distance": 0.01}`.
 
     Raises
@@ -168,7 +169,7 @@ def reward_of(wanted: Wanted) -> Reward:
 
 
 def observers_of(reward: Reward) -> list[Observer]:
-    """Return what has to observe the run."""
+    """Return everything that has to observe the run."""
     return [part for part, _ in reward.parts] if isinstance(reward, Weighted) else [reward]
 
 

@@ -39,25 +39,26 @@ _TURN = Question(Problem.TA, "turn")
 
 
 class RobotsEnv(ParallelEnv[str, Any, np.int64]):
-    """Task allocation with robots as agents; everything else is decided by controllers.
+    """Task allocation with robots as agents; controllers decide everything else.
 
-    All robots are agents all the time. A step is a turn of TA: robots that need a task, or are at
-    rest, say what they do, in the order of their numbers; the others can only wait. Actions of a
-    site with S stations: 0 waits, 1 to S work for a station (PPS chooses the pod), S + 1 stores the
-    pod (PSA chooses the place), S + 2 moves an idle pod, S + 3 rests. An action that is no longer
-    possible, since a robot before took the work, counts as waiting.
+    All robots are agents at all times. A step is a turn of TA: robots that need a task, or are at
+    rest, choose what to do, in order of their numbers; the others can only wait. With S stations,
+    action 0 waits, 1 to S work for a station (PPS chooses the pod), S + 1 stores the pod (PSA
+    chooses the place), S + 2 moves an idle pod, and S + 3 rests. An action that has become
+    impossible, because an earlier robot took the work, counts as waiting.
 
-    An observation has `observation`, shape (3 S + 4,), and `action_mask`. The vector holds for each
-    station the way there in s / 30, units (or pods with bundles) without a robot / 10, and robots
-    at work / 5; then for the robot: 1 if it is asked, 1 if it has a pod; and of the run, time left
-    and orders waiting / 100. Rewards are shared: each robot gets what all have earned.
+    An observation consists of `observation`, shape (3 S + 4,), and `action_mask`. The vector
+    contains for each station the travel time in s / 30, units (or pods with bundles) without a
+    robot / 10, and robots at work / 5; for the robot, whether it is asked and whether it carries a
+    pod; and for the run, the time left and the waiting orders / 100. Rewards are shared: each robot
+    receives the sum.
 
     Parameters
     ----------
     layout, scenario, controllers, set, reward
         As for `DecisionEnv`.
     render_mode
-        `rgb_array` or nothing.
+        `rgb_array` or None.
     """
 
     metadata: ClassVar[dict[str, Any]] = {
@@ -99,7 +100,7 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
 
     @property
     def run(self) -> Episode:
-        """The run of the present episode."""
+        """The run of the current episode."""
         if self._run is None:
             raise RuntimeError("reset the environment first")
         return self._run
@@ -129,7 +130,7 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
     def step(
         self, actions: dict[str, Any]
     ) -> tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Any]]:
-        """Let robots take tasks, and simulate up to the next turn of TA."""
+        """Assign tasks to robots, and simulate up to the next turn of TA."""
         run, agents = self.run, self.agents
         before_s = run.now_s
         for number, agent in enumerate(self.possible_agents):
@@ -160,7 +161,7 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
         return picture(self.run)
 
     def close(self) -> None:
-        """Let the run go."""
+        """Release the run."""
         self._run = None
 
     # --- inside ---------------------------------------------------------------------------------
@@ -172,7 +173,7 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
         answer = self._answer(robot, action)
         if answer is not None and not why_not(answer, _TURN, self.run.view):
             decision.answer(answer)
-            self.run.step()  # what the answer asks of others; the next question of this turn
+            self.run.step()  # questions that the answer causes
 
     def _answer(self, robot: Robot, action: int) -> Any:
         if not 0 < action < self._stations + 4 or not self._mask(robot)[action]:

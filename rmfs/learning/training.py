@@ -1,7 +1,7 @@
-"""Training of linear rules by CMA-ES: weights that make runs good, found without gradients.
+"""Training of linear rules by CMA-ES, an evolution strategy without gradients.
 
-Every set of weights is a controllers file; what it is worth is read off the footprints of runs with
-several seeds, the same for all sets (common random numbers).
+Every weight vector is a controllers file. Its value is computed from the footprints of runs with
+several seeds, which are the same for all vectors (common random numbers).
 """
 
 from __future__ import annotations
@@ -39,25 +39,25 @@ TRAINED: dict[Problem, dict[str, str]] = {
     Problem.PSA: {"weights": "place"},
     Problem.TA: {"weights": "ta"},
 }
-"""Per problem, the parameters of its linear rule that are trained, and their kind of question."""
+"""For each problem, the trained parameters of its linear rule, and their kinds of question."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """What is to be trained, and for what.
+    """A training task.
 
     Attributes
     ----------
     layout, scenario, controllers
-        The runs; the controllers decide all problems that are not trained.
+        The simulated inputs; the controllers decide all problems that are not trained.
     problems
-        Of `TRAINED`.
+        Problems to train, keys of `TRAINED`.
     objective
-        Weights of columns of the footprint; the sum is maximised.
+        Weights of footprint columns, whose sum is maximised.
     seeds
-        Of the runs of every set of weights.
+        Seeds of the runs of each weight vector.
     set
-        Parameters by dotted key, as `rmfs.simulate` takes them.
+        Parameters by dotted key, as for `rmfs.simulate`.
 
     Raises
     ------
@@ -80,14 +80,14 @@ class Task:
                 raise InputError(f"problem {problem}: valid: {', '.join(valid)}")
         for column in self.objective:
             if column not in names("footprint"):
-                raise InputError(f"objective {column}: no column of the footprint")
+                raise InputError(f"objective {column}: is not a column of the footprint")
         if not self.problems or not self.objective or not self.seeds:
             raise InputError("training needs a problem, an objective and a seed")
 
     def start(self) -> NDArray[np.float64]:
-        """Return the weights of the linear rules as they are by default, as one vector.
+        """Return the default weights of the linear rules as one vector.
 
-        Each kind of question counts alike: its weights are divided by the greatest of them.
+        The weights of each kind of question are normalised by the greatest of them.
         """
         found = [list(default_weights(kind).values()) for kind in self._kinds()]
         return np.concatenate([np.array(one) / max(map(abs, one)) for one in found])
@@ -114,10 +114,10 @@ class Task:
         return ControllerSettings("linear", told, choices)
 
     def worth(self, weights: NDArray[np.float64], seed: int) -> float:
-        """Simulate once; return the value of the objective."""
+        """Simulate one run and return the value of the objective."""
         given = {k: v for k, v in self.set.items() if not k.startswith("controllers.")}
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", IdleRuleWarning)  # some of the sets are bad ones
+            warnings.simplefilter("ignore", IdleRuleWarning)  # some weight vectors are bad
             run = simulate(self.layout, self.scenario, self.settings(weights), seed=seed, set=given)
         values = [float(run.footprint[name]) * weight for name, weight in self.objective.items()]
         return sum(value if isfinite(value) else 0.0 for value in values)
@@ -128,14 +128,14 @@ class Task:
 
 @dataclass(frozen=True)
 class Trained:
-    """What training found.
+    """The result of training.
 
     Attributes
     ----------
     settings
-        The controllers, to be written by `rmfs.control.toml.to_toml` and run.
+        The trained controllers, to be written with `rmfs.control.toml.to_toml`.
     value, start_value
-        Mean of the objective over the seeds of the training, at the end and at the start.
+        Mean of the objective over the training seeds, at the end and at the start.
     history
         One row per generation: `generation`, `best`, `mean`, `runs` and `wall_s` so far.
     """
@@ -161,26 +161,27 @@ def train(
     Parameters
     ----------
     generations, population
-        Of the evolution: so many sets of weights are simulated, each with all seeds.
+        Generations of the evolution, and weight vectors per generation; each is simulated with all
+        seeds.
     spread
-        Standard deviation of the first weights around their start, which are 1 at most.
+        Initial standard deviation of the weights, whose initial values are at most 1.
     seed
-        Of the evolution: the same seed, the same weights, whatever the number of processes.
+        Seed of the evolution; the result does not depend on the number of processes.
     jobs
-        Processes.
+        Number of processes.
     told
-        Called with one line per generation.
+        Called with a line of text after each generation.
 
     Raises
     ------
     InputError
-        If a number is out of range, or the package `cma` is not there.
+        If a number is out of range, or the package `cma` is not installed.
     """
     if min(generations, population - 3, jobs) < 1 or not spread > 0:
         raise InputError("training needs 1 generation, a population of 4, 1 process, spread > 0")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of packages that cma would like to have
+            warnings.simplefilter("ignore")  # about optional packages of cma
             import cma
     except ImportError as error:
         raise InputError("training needs the package cma: pip install rmfs[learning]") from error
@@ -205,7 +206,7 @@ def train(
                 told(f"generation {number + 1}: best {max(values):.4g}, mean {mean:.4g}")
         middle = np.asarray(search.result.xfavorite)
         value = _worth(executor, task, [middle])[0]
-    if value >= best_value:  # the middle of the search is less of an accident than one of its sets
+    if value >= best_value:  # the mean is less noisy than single samples
         best, best_value = middle, value
     columns = ["generation", "best", "mean", "runs", "wall_s"]
     history = pd.DataFrame(rows, columns=columns)
@@ -214,14 +215,14 @@ def train(
 
 
 def named(trained: Trained, name: str, description: str) -> ControllerSettings:
-    """Return the controllers under a name."""
+    """Return the controllers with a name and a description."""
     return replace(trained.settings, name=name, description=description)
 
 
 def _worth(
     executor: Executor | None, task: Task, sets: Sequence[NDArray[np.float64]]
 ) -> list[float]:
-    """Return the mean value of sets of weights over all seeds."""
+    """Return the mean value of weight vectors over all seeds."""
     calls = [(weights, seed) for weights in sets for seed in task.seeds]
     each = map if executor is None else executor.map
     values = list(each(_one, [task] * len(calls), *zip(*calls, strict=True)))
@@ -233,7 +234,7 @@ def _one(task: Task, weights: NDArray[np.float64], seed: int) -> float:
 
 
 class _Here:
-    """No processes: everything is done in this one."""
+    """An executor without processes: everything runs in this one."""
 
     def __enter__(self) -> None:
         return None

@@ -1,4 +1,4 @@
-"""Many environments at once, on all cores: a vector environment of Gymnasium's kind."""
+"""Many environments in parallel, as a vector environment of Gymnasium."""
 
 from __future__ import annotations
 
@@ -23,30 +23,31 @@ TOLD = ("action_mask", "elapsed_s", "now_s", "invalid")
 
 
 class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
-    """Several `DecisionEnv` in worker processes; observations lie in shared memory.
+    """Several `DecisionEnv` in worker processes, with observations in shared memory.
 
-    Environments are divided over the processes, and `step` waits for the slowest of these. The time
-    from one decision to the next varies much: with 8 environments or more per process it evens out.
+    Environments are divided among the processes, and `step` waits for the slowest process. The time
+    from one decision to the next varies greatly; with 8 or more environments per process it evens
+    out.
 
-    The step after the last one of an episode begins the next one, whatever its action, with reward
-    0 (Gymnasium's mode `NEXT_STEP`). `info` has arrays of shape (N,): `elapsed_s`, `now_s`,
+    The step after the last one of an episode starts the next episode, whatever its action, with
+    reward 0 (Gymnasium's mode `NEXT_STEP`). `info` has arrays of shape (N,): `elapsed_s`, `now_s`,
     `invalid` and `kind` (one of `kinds`); `action_mask` of shape (N, actions); and, after the last
-    step of episodes, `footprint` with `_footprint`, which says whose. `reset(seed=s)` gives
-    environment i the seed s + i, so that it does what a `DecisionEnv` with that seed does.
+    step of episodes, `footprint` with the mask `_footprint`. `reset(seed=s)` gives environment i
+    the seed s + i, so that it behaves like a `DecisionEnv` with that seed.
 
     Parameters
     ----------
     num_envs
-        How many (N).
+        Number N of environments.
     workers
-        Processes; by default one per core, at most N.
+        Number of processes. Default: one per core, at most N.
     given
         As for `DecisionEnv`.
 
     Raises
     ------
     InputError
-        If something given is wrong.
+        If an argument is wrong.
     """
 
     metadata: dict[str, Any] = {"autoreset_mode": AutoresetMode.NEXT_STEP}  # noqa: RUF012
@@ -55,10 +56,10 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
         count = workers if workers is not None else min(os.cpu_count() or 1, max(num_envs, 1))
         if not 1 <= count <= num_envs:
             raise InputError(
-                f"num_envs {num_envs}, workers {count}: there must be a worker, and an environment "
-                "for each"
+                f"num_envs {num_envs}, workers {count}: there must be at least one worker, and at "
+                "least one environment per worker"
             )
-        env = DecisionEnv(**given)  # what is wrong is said here, and not in a process
+        env = DecisionEnv(**given)  # reports errors here instead of in a process
         self.num_envs = num_envs
         self.kinds: Sequence[str] = env.observing.kinds
         self.single_observation_space = env.observation_space
@@ -85,7 +86,7 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: Any = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Begin a run in every environment."""
+        """Start a run in every environment."""
         seeds: list[int | None]
         if seed is None or isinstance(seed, (int, np.integer)):
             seeds = [None if seed is None else int(seed) + i for i in range(self.num_envs)]
@@ -99,7 +100,7 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     def step(
         self, actions: Any
     ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Take a decision in every environment."""
+        """Make a decision in every environment."""
         board = self._board.arrays
         board["action"][:] = actions
         for pipe in self._pipes:
@@ -120,7 +121,7 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
 
     @property
     def busy_s(self) -> NDArray[np.float64]:
-        """Processor time that each process took for the last step, shape (workers,)."""
+        """Return the processor time of each process for the last step, shape (workers,)."""
         return self._board.arrays["busy_s"][: len(self._processes)].copy()
 
     def close_extras(self, **_: Any) -> None:
@@ -139,7 +140,7 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     # --- inside ---------------------------------------------------------------------------------
 
     def _answers(self) -> dict[int, Any]:
-        """Wait for all processes; returns what they tell besides what is on the board."""
+        """Wait for all processes; return their messages, which complement the shared memory."""
         found: dict[int, Any] = {}
         for pipe, process in zip(self._pipes, self._processes, strict=True):
             try:

@@ -1,4 +1,4 @@
-"""Processes in which environments live; what they see lies in memory that all share."""
+"""Worker processes of environments, which share memory for observations and actions."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 Shapes = dict[str, tuple[tuple[int, ...], str]]
 
 FEW_COLLECTIONS = 50_000
-"""Objects made between two looks for garbage; a run makes hardly any that holds itself."""
+"""Allocations between garbage collections; runs create hardly any reference cycles."""
 
 
 def shapes_of(env: DecisionEnv) -> Shapes:
-    """Return shape and type of what an environment is told and tells, by name."""
+    """Return shape and type of the inputs and outputs of an environment, by name."""
     space = env.observation_space
     parts: dict[str, Any] = dict(space.spaces) if isinstance(space, spaces.Dict) else {"": space}
     return {
@@ -45,12 +45,12 @@ def shapes_of(env: DecisionEnv) -> Shapes:
 
 @dataclass
 class Board:
-    """What N environments are told and tell: an array per name, whose first axis is theirs.
+    """Inputs and outputs of N environments: an array per name with the first axis of length N.
 
     Attributes
     ----------
     shapes
-        Per environment.
+        Shapes for one environment.
     buffers
         Memory by name, from `multiprocessing.RawArray`.
     """
@@ -61,7 +61,7 @@ class Board:
 
     @classmethod
     def made(cls, shapes: Shapes, count: int, context: Any) -> Board:
-        """Make the memory."""
+        """Allocate the memory."""
         sizes = {
             name: max(int(np.prod(shape)) * np.dtype(kind).itemsize * count, 1)
             for name, (shape, kind) in shapes.items()
@@ -81,19 +81,19 @@ class Board:
         return {"shapes": self.shapes, "buffers": self.buffers}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Look at the same memory."""
+        """Attach to the same memory."""
         self.__init__(**state)  # type: ignore[misc]
 
 
 class Stand:
-    """Some environments, and their places on the board.
+    """The environments of one process, and their rows in shared memory.
 
     Parameters
     ----------
     given
-        How environments are made.
+        Arguments for creating environments.
     places
-        Rows of the board.
+        Rows of the shared memory.
     """
 
     def __init__(self, given: Mapping[str, Any], board: Board, places: range) -> None:
@@ -103,17 +103,17 @@ class Stand:
         self._over: set[int] = set()
 
     def reset(self, seeds: Mapping[int, int | None], options: Any) -> dict[int, Any]:
-        """Begin a run in each of them."""
+        """Start a run in each environment."""
         for place, seed in seeds.items():
             self._begin(place, seed, options)
         return {}
 
     def step(self) -> dict[int, Any]:
-        """Take the actions on the board; where a run was over, begin the next one instead.
+        """Carry out the actions in shared memory; start the next run where one had ended.
 
         Returns
         -------
-        The footprints of runs that are over now, by place.
+        Footprints of runs that have just ended, by row.
         """
         board, found, before_s = self._board, {}, process_time()
         for place, env in self._envs.items():
@@ -151,7 +151,7 @@ class Stand:
 
 
 def work(given: Mapping[str, Any], board: Board, places: range, pipe: Connection) -> None:
-    """Do what comes through the pipe, until nothing comes any more: the body of a process."""
+    """Process commands from a pipe until it is closed: the main function of a process."""
     try:
         stand = Stand(given, board, places)
         pipe.send(("made", None))
@@ -161,7 +161,7 @@ def work(given: Mapping[str, Any], board: Board, places: range, pipe: Connection
                 return
             pipe.send(("done", getattr(stand, name)(*arguments)))
             if name == "reset":
-                # what lives as long as the run is not looked through again and again
+                # objects that live as long as the run need not be scanned repeatedly
                 gc.collect()
                 gc.freeze()
                 gc.set_threshold(FEW_COLLECTIONS, 20, 100)

@@ -1,8 +1,7 @@
-"""What a run tells: footprint, tables, heat maps, traces and their independent check.
+"""What a run reports: footprint, tables, heat maps, traces and their independent check.
 
-`Recorder` observes a run; `tables` turns what it wrote down into the tables that `dictionary`
-describes, and `measures` into the footprint; `folder` writes and reads run folders; `checker`
-proves a trace safe.
+`Recorder` observes a run. `tables` turns its logs into the tables that `dictionary` describes, and
+`measures` into the footprint; `folder` writes and reads run folders; `checker` proves a trace safe.
 """
 
 from __future__ import annotations
@@ -25,16 +24,16 @@ if TYPE_CHECKING:
     from rmfs.measure.checker import CheckReport
     from rmfs.measure.ended import Measured
 
-# pandas is imported when a table is wanted, not when a run begins
+# pandas is imported only when a table is needed
 
 
 def footprint(run: Measured, report: CheckReport | None = None) -> pd.Series:
-    """Return the footprint of a run that has ended; see `rmfs.measure.dictionary`.
+    """Return the footprint of a finished run; see `rmfs.measure.dictionary`.
 
     Parameters
     ----------
     report
-        The trace checker's verdict; without it `collisions` is empty.
+        Result of the trace checker; without it `collisions` is empty.
     """
     from rmfs.measure.footprints import some_tables
 
@@ -42,14 +41,14 @@ def footprint(run: Measured, report: CheckReport | None = None) -> pd.Series:
 
 
 def series(run: Measured) -> pd.DataFrame:
-    """Return the course of a run, one row per minute."""
+    """Return the time series of a run, one row per minute."""
     from rmfs.measure import tables
 
     return tables.series(tables.Logs(run.recorder))
 
 
 def decisions(run: Measured) -> pd.DataFrame:
-    """Return the decisions of a run, one row per call of a controller."""
+    """Return the decisions of a run, one row per call of a controller that decided something."""
     from rmfs.measure import tables
 
     return tables.decisions(tables.Logs(run.recorder))

@@ -1,4 +1,4 @@
-"""What a measure is: columns of the footprint, declared beside what observes and computes them."""
+"""The base class of measures, which declare, observe and compute columns of the footprint."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ if TYPE_CHECKING:
 
 
 class Measure(Observer):
-    """Some columns of the footprint.
+    """Base class of measures; each provides some columns of the footprint.
 
-    A measure declares its columns, watches what it needs to by overriding callbacks of `Observer`,
-    and works the columns out when the run has ended. Much is written down for all measures already
-    (`EndedRun.logs`, `EndedRun.tables`): one that is content with that overrides no callback.
+    A measure declares its columns, observes what it needs by overriding callbacks of `Observer`,
+    and computes the columns when the run has ended. A measure that only needs data that is logged
+    anyway (`EndedRun.logs`, `EndedRun.tables`) overrides no callback.
 
-    A run can be copied or saved at any moment, and its measures with it: they hold plain data, and
-    neither functions made on the spot nor open files. The class is made without arguments.
+    A run can be copied or saved at any moment, together with its measures. They must therefore hold
+    plain data, not local functions or open files. The class is instantiated without arguments.
 
     Attributes
     ----------
     columns
-        What it adds to the footprint.
+        The columns that it adds to the footprint.
     """
 
     columns: ClassVar[Sequence[Column]] = ()
 
     def footprint(self, run: EndedRun) -> Mapping[str, Any]:
-        """Return the value of every column by name, for the measured time.
+        """Return the value of every column, by name, for the measured time.
 
         Parameters
         ----------
         run
-            The run that has ended.
+            The finished run.
         """
         raise NotImplementedError

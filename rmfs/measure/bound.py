@@ -1,7 +1,7 @@
-"""The proven bound on a run, which the optimisation package works out.
+"""The proven upper bound on the throughput of a run, computed by the optimisation package.
 
-Nothing of `solvers` is imported here: the bound is found by its name, like the controllers that
-ask optimisers.
+Nothing of `solvers` is imported here: like controllers that ask optimisers, the bound is found by
+name.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ if TYPE_CHECKING:
     from rmfs.world.pickers import Staff
 
 BOUND = "rmfs.solvers.run_bound:units_per_h_bound"
-"""Module and function that work it out."""
+"""Module and function that compute the bound."""
 
 
 class BoundExceededWarning(UserWarning):
-    """A run did more than is possible: a defect of the simulator or of the bound's proof."""
+    """A run did more than is possible: a defect of the simulator or of the proof of the bound."""
 
 
 def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration_s: float) -> float:
-    """Return the units per hour that no run of a warehouse exceeds (docs: bounds).
+    """Return an upper bound on the units per hour of any run of a warehouse (docs: bounds).
 
     Parameters
     ----------
     times
-        Traffic, which knows how long ways take at least.
+        The traffic model, which knows lower bounds of travel times.
     duration_s
         Length of the window in which units are counted.
     """
@@ -41,7 +41,7 @@ def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration
 
 
 def at_best(layout: Layout, staff: Staff | None) -> Layout | None:
-    """Return a layout with the least times that pickers can have; None if there are none.
+    """Return a layout with the shortest times pickers can achieve; None if there is no minimum.
 
     Without pickers it is the layout itself.
     """
@@ -60,14 +60,14 @@ def at_best(layout: Layout, staff: Staff | None) -> Layout | None:
 
 
 def warn_if_exceeded(units_per_h: float, bound: float) -> None:
-    """Warn of a run that picked more than any run can.
+    """Warn if a run picked more than any run can.
 
     Parameters
     ----------
     units_per_h
-        What it picked.
+        Units picked per hour.
     bound
-        What is possible, end effects included; see `units_per_h_bound`.
+        Maximum, including end effects; see `units_per_h_bound`.
     """
     if units_per_h > bound:
         told = f"{units_per_h} units per hour were picked, and no run can pick more than {bound}"

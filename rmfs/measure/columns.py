@@ -1,4 +1,4 @@
-"""What the data dictionary says of one column."""
+"""Descriptions of columns for the data dictionary."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FLAG = "bool"
 
 DTYPES = (INTEGER, COUNT_OR_EMPTY, REAL, TEXT, FLAG)
 NUMBERS = (INTEGER, COUNT_OR_EMPTY, REAL)
-"""The types of which means are taken."""
+"""The types for which means are computed."""
 
 Better = Literal["more", "less", "neither"]
 
@@ -27,22 +27,23 @@ NEITHER: Better = "neither"
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column of a table.
+    """Description of a column of a table.
 
     Attributes
     ----------
     name
-        Ends with the unit where there is one: `_s`, `_m`, `_h` (per hour), `_share` (0 to 1).
+        Name of the column; it ends with the unit if there is one: `_s`, `_m`, `_h` (per hour),
+        `_share` (0 to 1).
     dtype
-        The pandas type it is written in.
+        The pandas type of the column.
     unit
         Unit in words, or empty for names and identifiers.
     meaning
         Definition; empty cells are explained where they can occur.
     measured
-        Whether it depends on the machine and the moment, and so does not repeat.
+        Whether it depends on machine and time, so that it is not reproducible.
     better
-        What a good warehouse has of it: more, less, or neither if it only describes.
+        Which direction is better for a warehouse: more, less, or neither if it is descriptive.
     """
 
     name: str
@@ -54,14 +55,14 @@ class Column:
 
     @property
     def is_number(self) -> bool:
-        """Whether means can be taken of it."""
+        """Whether means can be computed."""
         return self.dtype in NUMBERS
 
     def to_table(self) -> dict[str, Any]:
-        """Everything, as JSON can say it."""
+        """Return all attributes as values for JSON."""
         return asdict(self)
 
     @classmethod
     def from_table(cls, table: Mapping[str, Any]) -> Column:
-        """Read what `to_table` gave."""
+        """Create a column from the result of `to_table`."""
         return cls(**table)

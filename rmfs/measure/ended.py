@@ -1,4 +1,4 @@
-"""A run that has ended, as measures see it."""
+"""A finished run, as measures see it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Measured(Protocol):
-    """What tables are made from: a run that has ended."""
+    """A finished run, from which tables are made."""
 
     @property
     def names(self) -> tuple[str, str, str]:
@@ -37,19 +37,19 @@ class Measured(Protocol):
 
     @property
     def warmup_s(self) -> float:
-        """Simulated time before the measured time."""
+        """Simulated time before the measured time starts."""
 
     @property
     def duration_s(self) -> float:
-        """Measured time."""
+        """Length of the measured time."""
 
     @property
     def recorder(self) -> Recorder:
-        """What was written down."""
+        """The recorded events."""
 
     @property
     def measures(self) -> Sequence[Measure]:
-        """What makes the footprint: the measures of rmfs and those of the user."""
+        """The measures that make up the footprint: those of rmfs and those of the user."""
 
     @property
     def wall_s(self) -> float:
@@ -57,31 +57,31 @@ class Measured(Protocol):
 
 
 class Recorded(Measured, Protocol):
-    """What a run folder is written from."""
+    """A finished run with everything that a run folder contains."""
 
     @property
     def layout(self) -> Layout:
-        """What was simulated, after overrides."""
+        """The simulated layout, after overrides."""
 
     @property
     def scenario(self) -> Scenario:
-        """Likewise."""
+        """The simulated scenario, after overrides."""
 
     @property
     def controllers(self) -> ControllerSettings:
-        """Likewise."""
+        """The controllers, after overrides."""
 
     @property
     def overrides(self) -> list[tuple[list[str], Any]]:
-        """Pairs of path and value."""
+        """Overrides as pairs of key path and value."""
 
     @property
     def notes(self) -> dict[str, list[str]]:
-        """Remarks on files of other systems."""
+        """Notes on imported files of other systems."""
 
     @property
     def pacing(self) -> str:
-        """The pacing as it was given."""
+        """The pacing as specified by the user."""
 
     @property
     def pacing_settings(self) -> BaseModel:
@@ -89,23 +89,23 @@ class Recorded(Measured, Protocol):
 
     @property
     def interventions(self) -> Sequence[tuple[float, Choice]]:
-        """Controllers exchanged by hand, and when (s)."""
+        """Controllers exchanged interactively, with the times (s)."""
 
     @property
     def slow_robots(self) -> list[tuple[int, int, int, float]]:
-        """When which robots were slow: robot, from when to when (us), share of the top speed."""
+        """Periods in which robots were slow: robot, start and end (us), share of the top speed."""
 
     @property
     def trace(self) -> dict[str, NDArray[Any]]:
-        """Every piece of motion; only if the run was asked to record it."""
+        """Every piece of motion; only if recording was requested."""
 
     @property
     def events(self) -> EventLog | None:
-        """What happened; only if the run was asked to record its trace."""
+        """The other events; only if recording of the trace was requested."""
 
 
 class EndedRun:
-    """A run that has ended, as measures see it.
+    """A finished run, as measures see it.
 
     Attributes
     ----------
@@ -114,17 +114,17 @@ class EndedRun:
     seed
         Seed of the run.
     start_s, end_s
-        The measured time, in seconds since the start of the run.
+        Start and end of the measured time, in seconds since the start of the run.
     warmup_s, duration_s
-        Simulated time before the measured time, and its length.
+        Simulated time before the measured time, and length of the measured time.
     wall_s
         Wall time of the simulation.
     recorder
-        What was written down, warm-up included.
+        The recorded events, warm-up included.
     layout, world
-        What was simulated, and how the run left it.
+        The layout, and the world as it was at the end of the run.
     report
-        What the trace checker found; nothing if it did not run.
+        Result of the trace checker; None if it did not run.
     """
 
     def __init__(self, run: Measured, report: CheckReport | None = None) -> None:
@@ -140,14 +140,14 @@ class EndedRun:
 
     @cached_property
     def logs(self) -> Logs:
-        """What happened, as frames."""
+        """The recorded events as frames."""
         return Logs(self.recorder)
 
     @cached_property
     def tables(self) -> Made:
-        """The tables of the run folder but the footprint, by name; made when asked for."""
+        """The tables of the run folder except the footprint, by name; made on first access."""
         return Made(self.logs)
 
     def handled(self, column: str) -> int:
-        """Return the total of a column of the table `stations`: `units_picked` and the like."""
+        """Return the total of a column of the table `stations`, such as `units_picked`."""
         return int(self.tables["stations"][column].sum())

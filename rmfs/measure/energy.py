@@ -1,4 +1,4 @@
-"""What is written down of energy: minute by minute, per robot, and what orders cost."""
+"""Recorded energy: per minute, per robot, and per order."""
 
 from __future__ import annotations
 
@@ -18,22 +18,23 @@ WH = 3600.0
 
 
 class EnergyLog:
-    """What robots draw, if that is counted.
+    """Energy drawn by robots, if the scenario models it.
 
-    What a robot draws between two visits of pick stations is shared by the units that are picked in
-    the second, so that way, wait, storing the pod before and charging are in it.
+    The energy that a robot draws between two visits to pick stations is divided among the units
+    picked in the second visit. It thus includes the trip, waiting, storing the previous pod, and
+    charging.
 
     Attributes
     ----------
     samples
-        Every minute, J since the last reset: drawn and charged by all robots; and J in the mean,
-        and the least, of the batteries, nan without batteries.
+        Per minute, in J since the last reset: energy drawn and charged by all robots; and mean and
+        minimum energy in the batteries in J, nan without batteries.
     per_order
-        J of each order's units so far, by index.
+        Energy in J of each order's units so far, by index.
     final
-        What traffic counted; empty if energy is not counted.
+        Totals counted by traffic; empty if energy is not modelled.
     batteries
-        Of the robots, if they have any.
+        The robots' batteries, if there are any.
     """
 
     def __init__(self) -> None:
@@ -46,12 +47,12 @@ class EnergyLog:
         self.final: dict[str, NDArray[Any]] = {}
 
     def begin(self, traffic: MotionCounts, robots: int, batteries: Batteries | None) -> None:
-        """Count from now on."""
+        """Start counting."""
         self._traffic, self.batteries = traffic, batteries
         self._before = [0.0] * robots
 
     def sampled(self) -> None:
-        """Add up what all robots drew."""
+        """Add the energy drawn by all robots."""
         if self._traffic is not None:
             now = self._traffic.energy()
             levels = now["level_j"]
@@ -62,12 +63,12 @@ class EnergyLog:
             self.samples.append((used, charged, mean, least))
 
     def picked(self, order: int, station: int) -> None:
-        """Note a unit of the visit."""
+        """Record a unit of the current visit."""
         if self._traffic is not None:
             self._units.setdefault(station, []).append(order)
 
     def left(self, station: int, robot: int) -> None:
-        """Divide what the robot has drawn among the units of its visit."""
+        """Divide the energy drawn by the robot among the units of its visit."""
         orders = self._units.pop(station, None)
         if self._traffic is None or not orders:
             return
@@ -78,14 +79,14 @@ class EnergyLog:
             self.per_order[order] = self.per_order.get(order, 0.0) + each
 
     def ended(self) -> None:
-        """Take what traffic has counted."""
+        """Store the totals counted by traffic."""
         if self._traffic is not None:
             self.final = self._traffic.energy()
             if self.batteries is None:
                 self.final["level_j"] = np.full(len(self.final["level_j"]), nan)
 
     def per_interval_wh(self, which: int) -> NDArray[np.float64]:
-        """Wh per minute: drawn (0) or charged (1)."""
+        """Return energy per minute in Wh: drawn (0) or charged (1)."""
         values = [0.0, *(sample[which] for sample in self.samples)]
         wh: NDArray[np.float64] = np.diff(np.array(values)) / WH
         return wh

@@ -1,19 +1,23 @@
-"""What happened in a run besides motion: the events that a viewer replays.
+"""The events of a run besides motion, which a viewer replays.
 
-The log begins with the stock of time zero and covers warm-up and measured time, so that the state
-of every pod, order and station at any time follows from it. The page on the trace format describes
-the columns.
+The log starts with the stock at time zero and covers warm-up and measured time, so that the state
+of every pod, order and station at any time can be reconstructed. The page on the trace format
+describes the columns.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from enum import IntEnum
+from itertools import islice
+from math import isfinite
 from struct import Struct
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rmfs.observer import Observer
+from rmfs.world.tasks import PickTask
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,10 +25,11 @@ if TYPE_CHECKING:
     from rmfs.observer import Observed
     from rmfs.world import World
     from rmfs.world.orders import Bundle, Order
+    from rmfs.world.tasks import Pick
 
 
 class Happening(IntEnum):
-    """Kinds of events; named in brackets which columns say what."""
+    """Kinds of events; brackets list the columns that are used."""
 
     STOCK = 0
     """At time zero, units are on a pod (pod, sku, units)."""
@@ -33,7 +38,7 @@ class Happening(IntEnum):
     ORDER_CREATED = 2
     """An order arrived (order, units)."""
     ORDER_ASSIGNED = 3
-    """An order was put on a pick station (order, station, units)."""
+    """An order was assigned to a pick station (order, station, units)."""
     UNIT_PICKED = 4
     """A unit left a pod (order, sku, pod, robot, station, units: 1)."""
     ORDER_COMPLETED = 5
@@ -53,44 +58,104 @@ class Happening(IntEnum):
     CONTROLLER_EXCHANGED = 12
     """Another controller was installed (detail: problem=name)."""
     BATTERY_LEVEL = 13
-    """What is in a battery, when a task begins and every minute (robot, units: thousandths)."""
+    """Level of a battery, at the start of each task and every minute (robot, units:
+    thousandths)."""
+    ORDER_LINE = 14
+    """An order has a line for units of a SKU (order, sku, units). With a station: the line was
+    assigned there with a part of the split order."""
+    ORDER_DUE = 15
+    """When an order is due (order, units: whole seconds since the start of the run)."""
+    ORDER_CUT = 16
+    """Stock could not serve an order completely (order, units left); its new lines follow."""
+    ORDER_CANCELLED = 17
+    """An order was cancelled because stock could not serve it (order)."""
+    PART_COMPLETED = 18
+    """A part of a split order left its slot (order, station)."""
+    UNITS_BOUND = 19
+    """A pod is brought to a station for units of an order (order, sku, pod, robot, station, units).
+    Picking a unit reduces them by one."""
+    UNITS_UNBOUND = 20
+    """The pod no longer serves these units (columns as in `UNITS_BOUND`)."""
 
 
 COLUMNS = ("time_us", "kind", "robot", "pod", "station", "order", "sku", "units", "detail")
-"""In the log all of them are integers: `kind` is a `Happening`, `detail` an index or -1."""
+"""Columns of the log, all integers: `kind` is a `Happening`, `detail` an index or -1."""
 
 
 ROW = Struct(f"{len(COLUMNS)}q")
-"""An event in the log's memory: its columns as 64-bit integers."""
+"""An event in memory: its columns as 64-bit integers."""
 
 _row = ROW.pack
 
+MOST = 2**31 - 1
+"""Largest number that a column can hold."""
+
 KINDS = [kind.name.lower().replace("_", "-") for kind in Happening]
-"""The kinds as they are written: words in the place of numbers."""
+"""The kinds as words, as they are written to files."""
+
+
+Unit = tuple[int, int]
+"""A unit that is bound to a pod: its order and its SKU."""
+
+
+class _Bound:
+    """Of a pick task: units bound to its pod, those picked or given back, and how many are left."""
+
+    __slots__ = ("bound", "left", "picked", "task")
+
+    def __init__(self, task: PickTask) -> None:
+        self.task = task
+        self.left = 0
+        self.bound: list[Unit] = []
+        self.picked: list[Unit] = []
+
+    def look(self) -> tuple[Happening, dict[Unit, int]]:
+        """Return what was bound, or given back, since the last time: units of each."""
+        picks = self.task.picks
+        count = len(picks) - self.left
+        self.left += count
+        if count < 0:
+            lost = Counter(self.bound)
+            lost.subtract(self.picked)
+            lost.subtract([_unit(pick) for pick in picks])
+            self.picked += lost.elements()
+            return Happening.UNITS_UNBOUND, {unit: n for unit, n in lost.items() if n > 0}
+        found: dict[Unit, int] = {}
+        # what is bound later stands last
+        for pick in islice(reversed(picks), count):
+            unit = _unit(pick)
+            found[unit] = found.get(unit, 0) + 1
+            self.bound.append(unit)
+        return Happening.UNITS_BOUND, found
+
+
+def _unit(pick: Pick) -> Unit:
+    return pick.line.order.index, pick.line.sku
 
 
 class EventLog(Observer):
-    """Writes down all events of a run.
+    """Records all events of a run.
 
     Attributes
     ----------
     details
-        The texts that the column `detail` points at.
+        The texts to which the column `detail` refers.
     """
 
     def __init__(self) -> None:
         self.details: list[str] = []
         self._numbers: dict[str, int] = {}
-        # 72 bytes an event, quick to write, and nothing for the collector to walk
+        # 72 bytes per event, fast to write, and nothing for the garbage collector to traverse
         self._rows = bytearray()
         self._world: World | None = None
+        self._bound: dict[int, _Bound] = {}
 
     def __len__(self) -> int:
         """Return the number of events."""
         return len(self._rows) // ROW.size
 
     def columns(self, known: int = 0) -> dict[str, NDArray[np.int64]]:
-        """Return the events without the first `known`, one array per column."""
+        """Return the events after the first `known`, one array per column."""
         rows = np.frombuffer(self._rows[known * ROW.size :], np.int64).reshape(-1, len(COLUMNS))
         return dict(zip(COLUMNS, rows.T, strict=True))
 
@@ -106,6 +171,7 @@ class EventLog(Observer):
     def run_ended(self, time_s: float) -> None:
         """Let go of what is no record."""
         self._world = None
+        self._bound.clear()
 
     def sampled(self, time_s: float) -> None:
         """What is in all batteries."""
@@ -120,14 +186,53 @@ class EventLog(Observer):
         self._rows.extend(_row(now_us, Happening.TASK, robot, -1, station, -1, -1, 0, detail))
         if self._world is not None and self._world.batteries is not None:
             self._add_level(time_s, robot, self._world.batteries.share(robot))
+        if kind == PickTask.kind:
+            self.picks_changed(time_s, robot)
+
+    def picks_changed(self, time_s: float, robot: int) -> None:
+        """The pod of a robot is to be picked for more, or for less."""
+        if self._world is None:
+            return
+        task = self._world.robots[robot].task
+        if not isinstance(task, PickTask):
+            return
+        known = self._bound.get(robot)
+        if known is None or known.task is not task:
+            known = self._bound[robot] = _Bound(task)
+        kind, changed = known.look()
+        now_us, whom = round(time_s * 1e6), (robot, task.pod, task.station)
+        for (order, sku), units in changed.items():
+            self._rows.extend(_row(now_us, kind, *whom, order, sku, units, -1))
 
     def order_created(self, order: Order) -> None:
         """An order arrived."""
         self._add_order(order.created_s, Happening.ORDER_CREATED, order)
+        self._add_lines(order.created_s, order)
+        if isfinite(order.due_s):
+            due_s, index = min(max(round(order.due_s), 0), MOST), order.index
+            now_us, due = round(order.created_s * 1e6), Happening.ORDER_DUE
+            self._rows.extend(_row(now_us, due, -1, -1, -1, index, -1, due_s, -1))
+
+    def order_cut(self, order: Order) -> None:
+        """Stock could not serve all of an order."""
+        self._add_order(self._now_s, Happening.ORDER_CUT, order)
+        self._add_lines(self._now_s, order)
+
+    def order_cancelled(self, order: Order) -> None:
+        """An order was given up."""
+        self._add_order(order.cancelled_s, Happening.ORDER_CANCELLED, order)
 
     def order_assigned(self, order: Order) -> None:
         """An order is on a station."""
-        self._add_order(order.assigned_s, Happening.ORDER_ASSIGNED, order)
+        # lines may join a part that has been there for a while: its own time is that of the first
+        self._add_order(self._now_s, Happening.ORDER_ASSIGNED, order)
+        if order.whole is not None:
+            self._add_lines(self._now_s, order)
+
+    def slot_freed(self, order: Order) -> None:
+        """A part of an order left its slot."""
+        if order.whole is not None or order.parts:
+            self._add_order(self._now_s, Happening.PART_COMPLETED, order)
 
     def order_completed(self, order: Order) -> None:
         """An order is done."""
@@ -145,6 +250,10 @@ class EventLog(Observer):
     ) -> None:
         """A unit left a pod."""
         now_us, picked = round(time_s * 1e6), Happening.UNIT_PICKED
+        known = self._bound.get(robot)
+        if known is not None:
+            known.left -= 1
+            known.picked.append((order.index, sku))
         self._rows.extend(_row(now_us, picked, robot, pod, station, order.index, sku, 1, -1))
 
     def bundle_created(self, bundle: Bundle) -> None:
@@ -180,15 +289,28 @@ class EventLog(Observer):
         now_us, exchanged = round(time_s * 1e6), Happening.CONTROLLER_EXCHANGED
         self._rows.extend(_row(now_us, exchanged, -1, -1, -1, -1, -1, 0, detail))
 
+    @property
+    def _now_s(self) -> float:
+        assert self._world is not None
+        return self._world.now_s
+
     def _add_level(self, time_s: float, robot: int, share: float) -> None:
         now_us, level = round(time_s * 1e6), Happening.BATTERY_LEVEL
         thousandths = round(1000 * share)
         self._rows.extend(_row(now_us, level, robot, -1, -1, -1, -1, thousandths, -1))
 
     def _add_order(self, time_s: float, kind: Happening, order: Order) -> None:
-        units = sum([line.units for line in order.lines])
+        # a split order is complete with the lines of all its parts
+        lines = order.all_lines if kind is Happening.ORDER_COMPLETED else order.lines
+        units = sum([line.units for line in lines])
         now_us = round(time_s * 1e6)
         self._rows.extend(_row(now_us, kind, -1, -1, order.station, order.index, -1, units, -1))
+
+    def _add_lines(self, time_s: float, order: Order) -> None:
+        now_us, kind = round(time_s * 1e6), Happening.ORDER_LINE
+        of = (order.station, order.index)
+        for line in order.lines:
+            self._rows.extend(_row(now_us, kind, -1, -1, *of, line.sku, line.units, -1))
 
     def _add_bundle(self, time_s: float, kind: Happening, bundle: Bundle, robot: int = -1) -> None:
         now_us, units = round(time_s * 1e6), bundle.units
@@ -204,7 +326,7 @@ class EventLog(Observer):
 
 
 def as_table(log: EventLog) -> dict[str, Any]:
-    """Return the events as they are written: `kind` and `detail` as words."""
+    """Return the events as they are written to files, with `kind` and `detail` as words."""
     import pandas as pd
 
     columns = log.columns()

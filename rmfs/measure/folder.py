@@ -1,4 +1,4 @@
-"""The run folder: written whole or not at all, and read back with clear errors."""
+"""Run folders: written completely or not at all, and read back with clear errors."""
 
 from __future__ import annotations
 
@@ -41,35 +41,35 @@ def write_run(
     trace: bool = False,
     inputs: Mapping[str, str] | None = None,
 ) -> None:
-    """Write a run folder, replacing an older run folder of the same name.
+    """Write a run folder, replacing an older one of the same name.
 
     Parameters
     ----------
     target
-        The folder to make.
+        The folder to create.
     report
-        The trace checker's verdict, for the column `collisions`.
+        Result of the trace checker, for the column `collisions`.
     trace
         Whether to write the trace, which the run must have recorded.
     inputs
-        What the user gave as layout, scenario and controllers; default `run.names`.
+        Layout, scenario and controllers as specified by the user. Default: `run.names`.
 
     Raises
     ------
     InputError
-        If the folder cannot be written or holds something else than a run.
+        If the folder cannot be written or contains something other than a run.
     """
     with reserved(target) as folder:
         fill(folder, run, report=report, trace=trace, inputs=inputs)
 
 
 def reserved(target: Path, *, force: bool = True) -> AbstractContextManager[Path]:
-    """Return the context in which a run folder is written; see `rmfs.files.replacing_folder`.
+    """Return a context in which a run folder is written; see `rmfs.files.replacing_folder`.
 
     Parameters
     ----------
     force
-        Whether an older run folder of the same name is replaced. Default yes.
+        Whether to replace an older run folder of the same name. Default True.
     """
     return replacing_folder(target, PARAMETERS, "run folder", replace=force)
 
@@ -88,7 +88,7 @@ def fill(
     Parameters
     ----------
     tables
-        All tables of the run, if they are made already.
+        All tables of the run, if they have already been made.
     """
     from rmfs.measure.events import as_table
     from rmfs.measure.footprints import all_tables
@@ -128,7 +128,7 @@ def write_csv(run: RunFolder) -> list[Path]:
 
 
 def plain(value: Any) -> Any:
-    """Return a value as JSON can say it: infinite and missing numbers become words."""
+    """Return a value for JSON: infinite and missing numbers become strings."""
     if isinstance(value, dict):
         return {key: plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
@@ -144,14 +144,14 @@ def _write_table(path: Path, frame: pd.DataFrame) -> None:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class RunFolder(Results):
-    """A run read back from its folder; tables are read when asked for.
+    """A run loaded from its folder; tables are read on access.
 
     Attributes
     ----------
     path
         The folder.
     parameters
-        The content of `run.json`.
+        The contents of `run.json`.
     """
 
     path: Path
@@ -159,7 +159,7 @@ class RunFolder(Results):
 
     @property
     def told(self) -> Told:
-        """What `run.json` says of every run, typed."""
+        """The required contents of `run.json`, typed."""
         return Told.model_validate(self.parameters)
 
     @property
@@ -169,7 +169,7 @@ class RunFolder(Results):
 
     @property
     def footprint(self) -> pd.Series:
-        """The footprint."""
+        """The footprint of the run."""
         return self.table("footprint").iloc[0]
 
     @property
@@ -179,28 +179,28 @@ class RunFolder(Results):
         Raises
         ------
         InputError
-            If the run was made without, or the file is cut off or of another version.
+            If the run was made without a trace, or the file is truncated or of another version.
         """
         return read_motion(self.path)
 
     @property
     def events(self) -> pd.DataFrame:
-        """Everything else that happened; raises as `trace` does."""
+        """All other events; raises the same errors as `trace`."""
         return read_events(self.path)
 
     @property
     def layout(self) -> Layout:
-        """The layout of a run with a trace; raises as `trace` does."""
+        """The layout of a run with a trace; raises the same errors as `trace`."""
         return read_layout(self.path)
 
     def check(self) -> CheckReport:
-        """Have the independent checker prove the motion safe; raises as `trace` does.
+        """Have the independent checker verify that the motion is safe.
 
         Raises
         ------
         InputError
-            Also if the trace names robots, waypoints, pods or kinds that are not. Gaps, jumps and
-            impossible times are findings.
+            As for `trace`, and if the trace refers to robots, waypoints, pods or kinds that do not
+            exist. Gaps, jumps and impossible times are findings instead.
         """
         from rmfs.measure.checker import Slow, check
 
@@ -209,13 +209,13 @@ class RunFolder(Results):
         return check(self.layout, trace, until_us=self.told.end_us, slow=slow)
 
     def replayed(self) -> tuple[Layout, pd.DataFrame, pd.DataFrame]:
-        """Return layout, motion and events, which fit each other: all that a replay needs.
+        """Return consistent layout, motion and events, which is all that a replay needs.
 
         Raises
         ------
         InputError
-            If the run was made without a trace, a file is cut off or of another version, or names
-            robots, places, pods, stations, kinds or times that cannot be.
+            If the run was made without a trace, or a file is truncated, of another version, or
+            contains impossible robots, places, pods, stations, kinds or times.
         """
         layout, motion, events = self.layout, self.trace, self.events
         skus = len(self.table("skus"))
@@ -251,12 +251,12 @@ class RunFolder(Results):
 
 
 def load_run(path: str | Path) -> RunFolder:
-    """Open a run folder.
+    """Load a run folder.
 
     Raises
     ------
     InputError
-        If it is not one.
+        If it is not a run folder.
     """
     path = Path(path)
     file = path / PARAMETERS

@@ -1,4 +1,4 @@
-"""From a run that has ended to its footprint and its tables."""
+"""Computes the footprint and the tables of a finished run."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 
 def footprint(run: EndedRun, measures: Sequence[Measure]) -> pd.DataFrame:
-    """Return the table of one row.
+    """Return the footprint as a table with one row.
 
     Raises
     ------
     InputError
-        If a measure returns other columns than it declares, or what does not fit their types.
+        If a measure returns columns that it does not declare, or values of the wrong type.
     """
     values: dict[str, Any] = {}
     for measure in measures:
@@ -46,21 +46,21 @@ def footprint(run: EndedRun, measures: Sequence[Measure]) -> pd.DataFrame:
 
 
 def all_tables(run: Measured, report: CheckReport | None = None) -> dict[str, pd.DataFrame]:
-    """Make every table of a run, by name; `report` fills the footprint's `collisions`."""
+    """Make all tables of a run, by name; `report` fills `collisions` in the footprint."""
     return some_tables(run, MAKERS, report)
 
 
 def some_tables(
     run: Measured, names: Iterable[str], report: CheckReport | None = None
 ) -> dict[str, pd.DataFrame]:
-    """Make the footprint of a run and the tables of these names, and nothing that is not needed."""
+    """Make the footprint of a run and the named tables, and no others."""
     ended = EndedRun(run, report)
     made = {"footprint": footprint(ended, run.measures)}
     return made | {name: ended.tables[name] for name in names}
 
 
 def _values(measure: Measure, told: Mapping[str, Any]) -> dict[str, Any]:
-    """Check that a measure said what it promised to say."""
+    """Check that a measure returned the columns it declares."""
     declared = {column.name for column in measure.columns}
     wrong = sorted(declared ^ set(told))
     if wrong:
@@ -72,7 +72,7 @@ def _values(measure: Measure, told: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _misfits(columns: Sequence[Any], row: Mapping[str, Any]) -> Iterable[str]:
-    """Yield the columns whose value is not of their type."""
+    """Yield the columns whose value has the wrong type."""
     for column in columns:
         try:
             tidy("footprint", [column], {column.name: row[column.name]})

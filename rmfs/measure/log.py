@@ -1,7 +1,8 @@
 """Rows of fixed types in one growing block of memory.
 
-A long run writes down millions of rows. As tuples each would take some 200 bytes and its own
-objects; packed, a row takes the bytes of its values, and becomes columns without a copy per value.
+A long run records millions of rows. As tuples each would take some 200 bytes and objects of its
+own; packed, a row takes the bytes of its values, and columns can be extracted without converting
+each value.
 """
 
 from __future__ import annotations
@@ -19,12 +20,12 @@ _CODES = {"f8": "d", "i4": "i", "i2": "h", "i1": "b", "?": "?"}
 
 
 class Log:
-    """Rows that are only ever added.
+    """An append-only table.
 
     Parameters
     ----------
     columns
-        Name and type of each column: `f8`, `i4`, `i2`, `i1` or `?`, as NumPy says it.
+        Name and type of each column: `f8`, `i4`, `i2`, `i1` or `?`, as in NumPy.
     """
 
     def __init__(self, **columns: str) -> None:
@@ -51,7 +52,7 @@ class Log:
         return len(self._rows) // self._dtype.itemsize
 
     def add(self, *values: Any) -> None:
-        """Add a row: one value per column.
+        """Append a row with one value per column.
 
         Raises
         ------
@@ -61,10 +62,10 @@ class Log:
         self._rows += self._pack(*values)
 
     def columns(self) -> dict[str, NDArray[Any]]:
-        """Return a copy of each column, shape (rows,); whole numbers as int64, to reckon with."""
+        """Return a copy of each column, shape (rows,), with integers as int64."""
         rows = np.frombuffer(self._rows, self._dtype)
         kinds = {"i": np.dtype(np.int64)}
-        # a view would forbid the block to grow
+        # a view would prevent the block from growing
         return {
             name: rows[name].astype(kinds.get(dtype.kind, dtype))
             for name, (dtype, *_) in (self._dtype.fields or {}).items()

@@ -1,4 +1,4 @@
-"""How much memory the process has used."""
+"""Peak memory of the process."""
 
 from __future__ import annotations
 

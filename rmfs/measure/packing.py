@@ -1,4 +1,4 @@
-"""What is written down of orders after the pick stations."""
+"""Recorded data of orders after the pick stations."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class PackingLog:
     Attributes
     ----------
     given
-        What the scenario says of packing; None if it has none.
+        The scenario's packing parameters; None without packing.
     parcels
-        Orders that are packed, and at the end of the run those that are not: `parcel_row`.
+        Packed orders and, at the end of the run, those not yet packed: `parcel_row`.
     totes
-        Theirs; `consolidated_s` is that of the parcel.
+        Totes of these orders; `consolidated_s` is that of the parcel.
     held
-        When which pick station could not let a tote go.
+        Periods in which a tote could not leave its pick station.
     """
 
     def __init__(self) -> None:
@@ -42,18 +42,18 @@ class PackingLog:
         self.held = Log(station="i2", begin_s="f8", end_s="f8")
 
     def begin(self, given: Packing, world: World) -> None:
-        """Write down from now on."""
+        """Start recording."""
         self.given, self._world = given, world
 
     def packed(self, parcel: Parcel) -> None:
-        """Write a parcel and its totes down."""
+        """Record a parcel and its totes."""
         self.parcels.add(*parcel_row(parcel))
         for tote in parcel.totes:
             times = (tote.released_s, tote.arrived_s, parcel.consolidated_s)
             self.totes.add(parcel.order.index, tote.station, *times, tote.by_hand)
 
     def ended(self, time_s: float) -> None:
-        """Write down what is not packed yet."""
+        """Record what is not packed yet."""
         wall = None if self._world is None else self._world.put_wall
         if wall is None:
             return

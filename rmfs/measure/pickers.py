@@ -1,4 +1,4 @@
-"""What is written down of people at pick stations."""
+"""Recorded data of pickers."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class PickerLog:
     staff
         The pickers; None if the scenario has none.
     units
-        As many rows as there are units picked, in their order.
+        One row per picked unit, in order.
     presence
-        When who was at which station.
+        Periods of presence of pickers at stations.
     """
 
     def __init__(self) -> None:
@@ -34,20 +34,20 @@ class PickerLog:
 
     @property
     def given(self) -> Pickers | None:
-        """What the scenario says."""
+        """The scenario's parameters of pickers."""
         return None if self.staff is None else self.staff.given
 
     def begin(self, staff: Staff) -> None:
-        """Write down from now on."""
+        """Start recording."""
         self.staff = staff
 
     def handled(self, one: Handled) -> None:
-        """Write a unit down."""
+        """Record a unit."""
         how = (one.picker, one.seconds, one.layer, one.fatigue, one.error, one.noticed)
         self.units.add(*how, one.face, one.turned)
 
     def ended(self, time_s: float) -> None:
-        """Write down who is there at the end."""
+        """Record which pickers are present at the end."""
         for picker in self.staff.pickers if self.staff is not None else ():
             if picker.station >= 0:
                 self.presence.add(picker.index, picker.station, picker.since_s, time_s)

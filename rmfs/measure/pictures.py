@@ -1,4 +1,4 @@
-"""Pictures of a run folder, by name."""
+"""Plots of a run folder, by name."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ PICTURES: dict[str, tuple[str, Callable[..., None], str]] = {
     "pile-on": ("visits", plots.pile_on, "Units per visit"),
     "warmup": ("series", plots.warmup, "Proposed warm-up"),
 }
-"""Table, function and title of each picture."""
+"""Table, function and title of each plot."""
 
 ALIASES = {"throughput": "progression"}
-"""Other names of pictures."""
+"""Alternative names of plots."""
 
 FORMATS = {"png": "Software", "svg": "Date", "pdf": "CreationDate"}
-"""Suffix, and the entry of its metadata that would make every file another one."""
+"""File suffix, and the metadata entry that would make files differ."""
 
 
 class Picture(Figure):
-    """A figure that shows itself in a notebook, whatever back end is chosen there."""
+    """A figure that displays itself in a notebook with any matplotlib back end."""
 
     def _repr_png_(self) -> bytes:
         content = io.BytesIO()
@@ -49,18 +49,18 @@ class Picture(Figure):
 
 
 def picture(run: Results, what: str) -> Figure:
-    """Draw one picture; the heat map has axes for every tier.
+    """Draw a plot; the heat map has axes for each tier.
 
     Parameters
     ----------
     what
-        A name in `PICTURES`. The heat map may name its count, by task or load:
+        A name in `PICTURES`. For the heat map, a count by task or load can be selected:
         `heat:loaded_visits`, `heat:pick_waiting_s` (columns of the table `heat`).
 
     Raises
     ------
     InputError
-        If there is no such picture, or the run folder lacks what it is drawn from.
+        If there is no such plot, or the run folder lacks the data for it.
     """
     name, _, column = ALIASES.get(what, what).partition(":")
     if name not in PICTURES or (column and name != "heat"):
@@ -78,7 +78,7 @@ def picture(run: Results, what: str) -> Figure:
 
 
 def _more(run: Results, what: str, tier: int, column: str) -> dict[str, Any]:
-    """Return what a picture shows besides its table."""
+    """Return what a plot needs besides its table."""
     if what == "heat":
         return {"tier": tier, **({"column": column} if column else {})}
     if what == "progression":
@@ -87,16 +87,16 @@ def _more(run: Results, what: str, tier: int, column: str) -> dict[str, Any]:
 
 
 def save(run: Results, what: str, path: Path) -> None:
-    """Write one picture as PNG, SVG or PDF; the same run gives the same file.
+    """Save a plot as PNG, SVG or PDF; equal runs give equal files.
 
     Raises
     ------
     InputError
-        If the suffix is another one, there is no such picture, or the file cannot be written.
+        If the suffix is not supported, there is no such plot, or the file cannot be written.
     """
     suffix = path.suffix.lower()[1:]
     if suffix not in FORMATS:
-        raise InputError(f"{path}: pictures are written as {', '.join(FORMATS)}")
+        raise InputError(f"{path}: supported formats: {', '.join(FORMATS)}")
     figure = picture(run, what)
     with replacing(path) as temporary, mpl.rc_context({"svg.hashsalt": "rmfs"}):
         figure.savefig(temporary, format=suffix, dpi=150, metadata={FORMATS[suffix]: None})

@@ -1,4 +1,4 @@
-"""Where a run comes from: parameters, versions, machine and hashes, for `run.json`."""
+"""Provenance of a run: parameters, versions, machine and hashes, for `run.json`."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ PACKAGES = (
     "scipy",
     "typer",
 )
-"""Packages whose version is told: all dependencies, solvers among them."""
+"""Packages whose version is recorded: all dependencies, including solvers."""
 
 MARK = "+"
-"""Stands between the name of a set of controllers and what was exchanged by hand."""
+"""Separates the name of a set of controllers from interactive exchanges."""
 
 KINDS: dict[str, instances.Kind] = {
     "layout": "layouts",
@@ -62,14 +62,14 @@ KINDS: dict[str, instances.Kind] = {
 def describe(
     run: Recorded, report: CheckReport | None = None, inputs: Mapping[str, str] | None = None
 ) -> dict[str, Any]:
-    """Return everything needed to know what was run, and to run it again.
+    """Return everything needed to know what was run, and to repeat it.
 
     Parameters
     ----------
     report
-        The trace checker's verdict, if it ran.
+        Result of the trace checker, if it ran.
     inputs
-        What the user gave as layout, scenario and controllers (names or paths).
+        Layout, scenario and controllers as specified by the user (names or paths).
     """
     names = [name.partition(MARK)[0] if run.interventions else name for name in run.names]
     given = dict(zip(KINDS, names, strict=True)) if inputs is None else dict(inputs)
@@ -115,18 +115,18 @@ def describe(
 
 
 def _sources(classes: Iterable[type]) -> dict[str, Any]:
-    """Return the files of users that classes are made of, and their hashes."""
+    """Return the user's source files that classes depend on, and their hashes."""
     found = sources(classes).items()
     return {module: {"file": str(path), "sha256": _hash(path)} for module, path in found}
 
 
 def own_measures(run: Measured) -> list[type[Measure]]:
-    """Return the measures of a run that are not those of every run."""
+    """Return the measures that the user added to a run."""
     return [type(measure) for measure in run.measures if type(measure) not in SHIPPED]
 
 
 def source(part: str, given: str) -> dict[str, Any]:
-    """Return name, file and hash of an input; nothing but the name if it came from no file."""
+    """Return name, file and hash of an input; only the name if it did not come from a file."""
     try:
         path = instances.locate(KINDS[part], given)
         content = _hash(path)
@@ -149,9 +149,9 @@ def _hash(path: Path) -> str:
 def layout_parameters(
     given: str, overrides: Sequence[tuple[list[str], Any]]
 ) -> dict[str, Any] | None:
-    """Return the parameters a layout was generated from, after overrides and with all defaults.
+    """Return the parameters from which a layout was generated, after overrides, with all defaults.
 
-    Nothing for an explicit layout: that one is identified by its digest.
+    Empty for an explicit layout, which is identified by its digest.
     """
     try:
         path = instances.locate("layouts", given)
@@ -189,21 +189,24 @@ def version() -> str:
 
 
 def commit() -> dict[str, Any]:
-    """Return the commit of the checkout this code runs from, and whether it has been changed.
+    """Return the commit of the checkout that this code runs from, and whether it is modified.
 
-    Both are empty when rmfs is installed from a wheel: a repository that merely contains the
+    Changes in `results` are ignored, so that publishing one table does not mark the next one.
+
+    Both are empty if rmfs is installed from a wheel: a repository that merely contains the
     environment does not track this file.
     """
     here = Path(__file__)
     head = _git(here.parent, "rev-parse", "HEAD")
     if head is None or _git(here.parent, "ls-files", "--error-unmatch", here.name) is None:
         return {"git_commit": None, "git_changed": None}
-    changes = _git(here.parent, "status", "--porcelain", "--untracked-files=no")
+    code = ("--", ":(top)", ":(top,exclude)results")
+    changes = _git(here.parent, "status", "--porcelain", "--untracked-files=no", *code)
     return {"git_commit": head, "git_changed": bool(changes)}
 
 
 def _git(folder: Path, *arguments: str) -> str | None:
-    """Return what git answers, or nothing where it has no answer."""
+    """Return the output of git, or None if it fails."""
     try:
         done = subprocess.run(
             ["git", "-C", str(folder), *arguments],
@@ -218,7 +221,7 @@ def _git(folder: Path, *arguments: str) -> str | None:
 
 
 def machine() -> dict[str, Any]:
-    """Return what the measured columns depend on."""
+    """Return the properties of the machine on which measured columns depend."""
     return {
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.release()}",

@@ -1,8 +1,8 @@
-"""The observer that writes down what happens in a run.
+"""The observer that records a run.
 
-It only adds rows to logs while the run goes on; the tables are made afterwards (`tables`). What
-happened before the end of the warm-up stays in the logs, because work in progress carries over;
-the tables leave it out.
+It only appends rows to logs during the run; the tables are made afterwards (`tables`). Events
+before the end of the warm-up stay in the logs, because work in progress carries over; the tables
+exclude them.
 """
 
 from __future__ import annotations
@@ -35,22 +35,22 @@ if TYPE_CHECKING:
 
 
 TASKS = tuple(task.kind for task in tasks.TASKS)
-"""Kinds of tasks of every warehouse, by the number under which they are written down."""
+"""Kinds of tasks in every warehouse, indexed by their number in the logs."""
 
 
 class Recorder(Observer):
-    """Everything a run's tables are made from.
+    """The recorded data from which a run's tables are made.
 
     Attributes
     ----------
     start_s, end_s
-        The measured time.
+        Start and end of the measured time.
     order_stream, bundle_stream
         The orders and the bundles of a file, if the scenario names one.
     units
         Picked units.
     lines
-        Finished lines, with the robot that brought the last unit, and until when that was handled.
+        Finished lines, with the robot that brought the last unit, and the end of its handling.
     orders
         Completed orders: `order_row`.
     open_orders
@@ -60,40 +60,40 @@ class Recorder(Observer):
     open_bundles
         Bundles not yet stored, by index.
     visits
-        Pods at stations; `end_s` is nan for those that are there at the end.
+        Visits of pods to stations; `end_s` is nan for those that are there at the end.
     busy
-        Stations at work.
+        Periods in which stations handled something.
     tasks
-        Tasks started; `kind` is a place in `TASKS`, or beyond: a visit of a station of another
-        kind.
+        Tasks started; `kind` is an index into `TASKS`, or larger for a visit to a station of
+        another kind.
     lifts
-        Pods lifted.
+        Liftings of pods.
     calls
-        Controllers asked that came to a decision; `problem` is a place in `problems`.
+        Calls of controllers that led to a decision; `problem` is an index into `problems`.
     problems
-        Decision problems in the order in which their controllers first decided.
+        Decision problems in the order in which they were first decided.
     asked
-        Per problem, number and wall time of all calls since the warm-up.
+        Number and wall time of all calls since the warm-up, by problem.
     questions
-        Calls of optimisers, in the order in which they were asked.
+        Questions to optimisers, in order.
     solutions
-        Their solutions as text, by number.
+        Their solutions as text, by number of the question.
     by_rule
-        Per problem whose controller asks optimisers, its decisions without one since the warm-up.
+        Decisions since the warm-up of controllers with optimisers that used none, by problem.
     switches
         Stations switched on or off.
     early_trips
         Trips that ended before the measured time.
     samples
-        Every minute: time, and the fleet's totals of distance and times since the last reset.
+        Per minute: time, and the fleet's totals of distance and times since the last reset.
     energy
-        What robots draw.
+        Energy drawn by robots.
     packing
-        What became of orders after the pick stations.
+        Orders after the pick stations.
     pickers
-        People at the pick stations.
+        Pickers at the pick stations.
     charge_kinds
-        Numbers of the tasks in which robots go for energy.
+        Numbers of the tasks in which robots charge.
     """
 
     def __init__(self) -> None:
@@ -159,7 +159,7 @@ class Recorder(Observer):
         return self.end_s - self.start_s
 
     def run_started(self, run: Observed) -> None:
-        """Keep hold of the world and the traffic."""
+        """Keep references to the world and the traffic."""
         self.layout, self.world, self.traffic = run.layout, run.world, run.traffic
         self.order_stream, self.bundle_stream = run.order_stream, run.bundle_stream
         self._disturbances = run.disturbances
@@ -176,7 +176,7 @@ class Recorder(Observer):
         self.stored_space_start = run.world.inventory.stored_space
 
     def warmup_ended(self, time_s: float) -> None:
-        """Begin to measure."""
+        """Start measuring."""
         self.start_s = time_s
         self.early_trips = self.traffic.trips()
         self.asked.clear()
@@ -184,7 +184,7 @@ class Recorder(Observer):
         self._before = self._order_counts()
 
     def run_ended(self, time_s: float) -> None:
-        """Take what traffic has counted, and close what is still open."""
+        """Store the totals counted by traffic, and close open intervals."""
         self.end_s = time_s
         if not self.samples or self.samples[-1][0] < time_s:
             self.sampled(time_s)
@@ -204,7 +204,7 @@ class Recorder(Observer):
             self.visits.add(station, pod, robot, since, nan)
 
     def _order_counts(self) -> dict[str, int]:
-        """Return what the world has counted of orders since the start of the run."""
+        """Return the world's counts of orders since the start of the run."""
         world = self.world
         return {"order_redraws": world.order_redraws, "orders_short": world.orders_short}
 
@@ -215,24 +215,24 @@ class Recorder(Observer):
         self.energy.sampled()
 
     def order_created(self, order: Order) -> None:
-        """Follow the order."""
+        """Track the order."""
         self.open_orders[order.index] = order
 
     def order_cancelled(self, order: Order) -> None:
-        """Write the order down and let it go."""
+        """Record the order and stop tracking it."""
         self.order_completed(order)
 
     def order_completed(self, order: Order) -> None:
-        """Write the order down and let it go."""
+        """Record the order and stop tracking it."""
         self.orders.add(*order_row(order))
         del self.open_orders[order.index]
 
     def tote_held(self, station: int, from_s: float, to_s: float) -> None:
-        """Write the wait down."""
+        """Record the wait."""
         self.packing.held.add(station, from_s, to_s)
 
     def order_packed(self, parcel: Parcel) -> None:
-        """Write the parcel down."""
+        """Record the parcel."""
         self.packing.packed(parcel)
 
     def unit_picked(
@@ -245,32 +245,32 @@ class Recorder(Observer):
         station: int,
         late_bound: bool,
     ) -> None:
-        """Write the unit down."""
+        """Record the unit."""
         self._picked_by = robot
         self.units.add(time_s, order.index, sku, pod, robot, station, late_bound)
         self.energy.picked(order.index, station)
 
     def unit_handled(self, handled: Handled) -> None:
-        """Write down how the unit was handled."""
+        """Record how the unit was handled."""
         self.pickers.handled(handled)
 
     def picker_left(self, picker: int, station: int, from_s: float, to_s: float) -> None:
-        """Write the presence down."""
+        """Record the presence."""
         self.pickers.presence.add(picker, station, from_s, to_s)
 
     def line_picked(self, time_s: float, order: Order, sku: int, units: int) -> None:
-        """Write the line down."""
+        """Record the line."""
         station = order.station
         handled_s = self._busy_until.get(station, time_s)
         whole = (order.index, self._picked_by, order.assigned_s, handled_s)
         self.lines.add(time_s, sku, station, *whole)
 
     def bundle_created(self, bundle: Bundle) -> None:
-        """Follow the bundle."""
+        """Track the bundle."""
         self.open_bundles[bundle.index] = bundle
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
-        """Write the bundle down and let it go."""
+        """Record the bundle and stop tracking it."""
         self.bundles.add(*bundle_row(bundle), robot)
         del self.open_bundles[bundle.index]
 
@@ -279,26 +279,26 @@ class Recorder(Observer):
         self._at_station[station] = (time_s, pod, robot)
 
     def visit_ended(self, time_s: float, station: int, pod: int, robot: int) -> None:
-        """Write the visit down."""
+        """Record the visit."""
         since = self._at_station.pop(station)[0]
         self.visits.add(station, pod, robot, since, time_s)
         self.energy.left(station, robot)
 
     def station_busy(self, station: int, from_s: float, to_s: float) -> None:
-        """Write the work down."""
+        """Record the work."""
         self.busy.add(station, from_s, to_s)
         self._busy_until[station] = to_s
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
-        """Write the task down."""
+        """Record the task."""
         self.tasks.add(time_s, robot, self._task_number[kind])
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
-        """Write the lift down."""
+        """Record the lift."""
         self.lifts.add(time_s, pod, robot)
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
-        """Write the call down."""
+        """Record the call."""
         try:
             asked = self.asked[problem]
         except KeyError:
@@ -315,7 +315,7 @@ class Recorder(Observer):
         self.by_rule[problem] = self.by_rule.get(problem, 0) + 1
 
     def optimiser_asked(self, call: Call) -> None:
-        """Follow the call."""
+        """Track the call."""
         self.questions.append(call)
 
     def optimiser_answered(self, call: Call) -> None:
@@ -324,7 +324,7 @@ class Recorder(Observer):
             self.solutions[call.number] = to_text(call.solution)
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
-        """Write the switch down."""
+        """Record the switch."""
         self.switches.add(time_s, station, active)
 
 

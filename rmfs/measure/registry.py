@@ -1,7 +1,7 @@
-"""How what a user names becomes a measure.
+"""Finds measures named by users.
 
-A measure is given as a class, as `module:Class` or `path/to/file.py:Class`, or by the name under
-which another distribution offers it as an entry point of the group `rmfs.measures`.
+A measure is given as a class, as `module:Class` or `path/to/file.py:Class`, or by the name of an
+entry point in the group `rmfs.measures` of another distribution.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ GROUP = "rmfs.measures"
 RESERVED = frozenset(
     ("arm", "arm_digest", "code", "cpu_s", "design", "design_hash", "elapsed_s", "finished")
 ) | frozenset(("git_commit", "host", "replication", "rmfs_version", "run", "stage"))
-"""Columns that tables of experiments have beside the footprint's."""
+"""Columns of experiment tables besides those of the footprint."""
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
@@ -39,14 +39,14 @@ def find(given: str | type[Measure]) -> type[Measure]:
     Raises
     ------
     InputError
-        If there is none, or it declares columns that cannot be.
+        If there is no such measure, or it declares invalid columns.
     """
     if isinstance(given, str) and not is_reference(given):
         known = _installed()
         if given not in known:
             near = difflib.get_close_matches(given, known, n=1)
             hint = f"did you mean {near[0]}?" if near else _what_is_valid(sorted(known))
-            raise InputError(f"no measure of the name {given}; {hint}")
+            raise InputError(f"no measure named {given}; {hint}")
         found = resolve(known[given], Measure, "measure")
     else:
         found = resolve(given, Measure, "measure")
@@ -62,7 +62,7 @@ def find_all(given: Iterable[str | type[Measure]]) -> list[type[Measure]]:
     Raises
     ------
     InputError
-        As `find` does; also if two of them have a column of the same name.
+        As for `find`; also if two of them have a column of the same name.
     """
     found = list(dict.fromkeys(find(one) for one in given))
     owners: dict[str, type[Measure]] = {}
@@ -78,13 +78,13 @@ def find_all(given: Iterable[str | type[Measure]]) -> list[type[Measure]]:
 
 
 def described(measures: Iterable[type[Measure]]) -> list[dict[str, Any]]:
-    """Return what a run folder or a plan says of measures of users: enough to find them again."""
+    """Return descriptions of users' measures by which they can be found again."""
     told = []
     for measure in measures:
         file = source_file(measure)
         try:
             reference: str | None = reference_of(measure)
-        except InputError:  # of a notebook: nobody finds it again
+        except InputError:  # defined in a notebook, so it cannot be found again
             reference = None
         told.append(
             {
@@ -98,7 +98,7 @@ def described(measures: Iterable[type[Measure]]) -> list[dict[str, Any]]:
 
 
 def columns_of(told: Sequence[dict[str, Any]]) -> list[Column]:
-    """Read the columns of what `described` wrote, and remember them."""
+    """Create and register the columns described by `described`."""
     columns = [Column.from_table(column) for one in told for column in one["columns"]]
     learn(columns)
     return columns
@@ -115,7 +115,7 @@ def _what_is_valid(known: Sequence[str]) -> str:
 
 
 def _problems(measure: type[Measure]) -> Iterator[str]:
-    """Yield what is wrong with the columns declared."""
+    """Yield what is wrong with the declared columns."""
     columns = list(measure.columns)
     if not columns:
         yield "declares no `columns`"
@@ -123,12 +123,12 @@ def _problems(measure: type[Measure]) -> Iterator[str]:
     seen: set[str] = set()
     for column in columns:
         if not isinstance(column, Column):
-            yield f"columns: {column!r} is no rmfs.measure.Column"
+            yield f"columns: {column!r} is not an rmfs.measure.Column"
             return
         if not _NAME.fullmatch(column.name):
             yield f"column {column.name!r}: must be lower-case letters, digits and _"
         elif column.name in shipped or column.name in RESERVED or column.name in seen:
-            yield f"column {column.name}: there is one of this name already"
+            yield f"column {column.name}: a column of this name exists already"
         if column.dtype not in DTYPES:
             yield f"column {column.name}: type {column.dtype!r}; valid: {', '.join(DTYPES)}"
         if column.better not in get_args(Better):

@@ -1,4 +1,4 @@
-"""A report of a run: one HTML file without a server or anything from elsewhere."""
+"""Report of a run as one self-contained HTML file."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 TEMPLATE = Path(__file__).with_name("report.html.jinja")
 
 SHOWN = ("stations", "controllers")
-"""Tables that are short enough to be shown whole."""
+"""Tables that are short enough to be shown completely."""
 
 INPUTS = ("layout", "scenario", "controllers", "overrides", "notes")
-"""What of `run.json` was simulated; the rest says where it comes from."""
+"""Keys of `run.json` that describe what was simulated; the others describe its provenance."""
 
 
 def write_report(run: RunFolder, path: Path) -> None:
@@ -64,7 +64,7 @@ def render(run: RunFolder) -> str:
 
 
 def _png(run: RunFolder, name: str) -> str:
-    """Return a picture in the letters of a data address."""
+    """Return a plot encoded for a data URL."""
     content = io.BytesIO()
     picture(run, name).savefig(content, format="png", dpi=110, metadata={"Software": None})
     return base64.b64encode(content.getvalue()).decode("ascii")
@@ -77,7 +77,7 @@ def _table(run: RunFolder, name: str) -> tuple[str, list[str], list[list[str]]]:
 
 
 def _text(value: Any) -> str:
-    """Return a value as it is read best; empty for what was not measured."""
+    """Return a value as readable text; empty for what was not measured."""
     import pandas as pd
 
     if pd.isna(value):

@@ -1,4 +1,4 @@
-"""What a run that has just ended and one that is read from its folder have in common."""
+"""Common base of finished runs and runs loaded from a folder."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rmfs.measure.replay import FRAME_HEIGHT, Replay, in_notebook
+
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
     from rmfs.measure.summary import Summary
 
 EXPORT = "rmfs.view.export:export"
-"""Module and function that write a page with a replay: the viewer stands above the measures."""
+"""Module and function that export a replay page; the viewer is a layer above the measures."""
 
 
 class Results(ABC):
@@ -29,7 +31,7 @@ class Results(ABC):
     @property
     @abstractmethod
     def footprint(self) -> pd.Series[Any]:
-        """Measures of the whole run; one row of `footprint.csv`."""
+        """Measures of the whole run, as in the single row of `footprint.csv`."""
 
     @abstractmethod
     def table(self, name: str) -> pd.DataFrame:
@@ -43,7 +45,7 @@ class Results(ABC):
 
     @abstractmethod
     def check(self) -> CheckReport:
-        """Have the independent checker prove the motion safe; the trace must be recorded.
+        """Have the independent checker verify that the motion is safe; needs a recorded trace.
 
         Raises
         ------
@@ -58,39 +60,56 @@ class Results(ABC):
         Parameters
         ----------
         force
-            Whether to replace a run folder that is there already.
+            Whether to replace an existing run folder. Default False.
 
         Raises
         ------
         InputError
-            If the folder is there already or cannot be written.
+            If the folder exists already or cannot be written.
         """
 
     def summary(self) -> Summary:
-        """Return the main figures; they show themselves at a prompt and in a notebook."""
+        """Return the main figures, which display themselves at a prompt and in a notebook."""
         from rmfs.measure.summary import summarised
 
         return summarised(self.footprint)
 
     def plot(self, what: str = "throughput") -> Figure:
-        """Draw a picture: `throughput`, `heat`, `backlog`, `turnover`, `stations`, `robots`, ...
+        """Draw a plot: `throughput`, `heat`, `backlog`, `turnover`, `stations`, `robots`, ...
 
         Raises
         ------
         InputError
-            If there is no such picture.
+            If there is no such plot.
         """
         from rmfs.measure.pictures import picture
 
         return picture(self, what)
 
-    def view(self, path: str | Path | None = None, *, open_browser: bool = True) -> Path:
-        """Write a page with a replay of the run, and open it; the trace must be recorded.
+    def view(
+        self,
+        path: str | Path | None = None,
+        *,
+        open_browser: bool | None = None,
+        height: int = FRAME_HEIGHT,
+    ) -> Replay:
+        """Write a page with a replay of the run, and show it; needs a recorded trace.
+
+        A notebook shows the page in a frame below the cell; elsewhere a browser opens it.
 
         Parameters
         ----------
         path
-            The HTML file. Default: a temporary one.
+            The HTML file to write. Default: a temporary file.
+        open_browser
+            Whether to open it in a browser. Default: unless in a notebook.
+        height
+            Height of the frame in a notebook, in pixels.
+
+        Returns
+        -------
+        Replay
+            The page: `path` is its file, and it can be opened like one.
 
         Raises
         ------
@@ -102,12 +121,12 @@ class Results(ABC):
         export = getattr(importlib.import_module(module), name)
         with tempfile.TemporaryDirectory() as folder:
             export([self._in_folder(Path(folder) / "run")], page)
-        if open_browser:
+        if not in_notebook() if open_browser is None else open_browser:
             webbrowser.open(page.absolute().as_uri())
-        return page
+        return Replay(page, height)
 
     def _in_folder(self, path: Path) -> RunFolder:
-        """Return the run as a folder; `path` is a place to write one."""
+        """Return the run as a folder; `path` is where one can be written."""
         return self.save(path)
 
     def __repr__(self) -> str:

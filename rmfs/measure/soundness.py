@@ -1,7 +1,7 @@
-"""What a trace cannot tell: robots, places, pods and stations that are not, and impossible times.
+"""Validates traces read from files: references to things that do not exist, and impossible times.
 
-A trace that is read back may have been written or edited by anybody. What is wrong with the motion
-as such, and not with the safety of it, is said here in one line; the checker proves the rest.
+A trace file may have been written or edited by anybody. Invalid contents are reported here in one
+line; the checker then verifies the safety of the motion.
 """
 
 from __future__ import annotations
@@ -24,32 +24,33 @@ if TYPE_CHECKING:
 
 KINDS_OF_MOTION = 6
 AFTER_US = 86_400_000_000
-"""Ways that are begun are driven to their end, after the run; none takes a day."""
+"""Robots complete trips that are under way at the end of the run; none takes a day."""
+LARGEST_SPEED_M_S = 1000.0
 LARGEST_ANGLE_RAD = 100.0
-"""Headings are angles: a few turns at most."""
+"""Largest heading: a few full turns."""
 
 
-REALS = ("heading0_rad", "heading1_rad")
+REALS = ("heading0_rad", "heading1_rad", "top_speed_m_s")
 WORDS = ("kind", "detail")
-"""In a trace `kind` is a number; in events it is a word."""
+"""Columns that contain words in events; in a trace, `kind` is a number."""
 
 
 def require_columns(path: Path, table: Any, names: Sequence[str]) -> None:
-    """Make sure that columns hold what they are to hold, and miss nothing but details.
+    """Make sure that columns have the right types, and no missing values except in details.
 
     Parameters
     ----------
     path
         The file, for messages.
     table
-        A table of Arrow.
+        An Arrow table.
     names
-        The columns, all of which the table has.
+        The columns, all of which the table contains.
 
     Raises
     ------
     InputError
-        Naming the first column that does not.
+        Names the first invalid column.
     """
     from pyarrow import types  # type: ignore[import-untyped]
 
@@ -58,7 +59,7 @@ def require_columns(path: Path, table: Any, names: Sequence[str]) -> None:
         if name in REALS:
             what, right = "numbers", types.is_floating(held)
         elif name in WORDS and "detail" in names:
-            # a column of words without any is written as one of nothing
+            # a column of words without any entries is written as a null column
             plain = held.value_type if types.is_dictionary(held) else held
             tests = (types.is_string, types.is_large_string, types.is_null)
             what, right = "words", any(test(plain) for test in tests)
@@ -71,19 +72,19 @@ def require_columns(path: Path, table: Any, names: Sequence[str]) -> None:
 
 
 def require_motion(path: Path, motion: pd.DataFrame, layout: Layout, end_us: int) -> None:
-    """Make sure that motion can have happened in a layout.
+    """Make sure that motion is possible in a layout.
 
     Parameters
     ----------
     path
         The file, for messages.
     end_us
-        End of the run; what begins much later cannot be.
+        End of the run; nothing may start much later.
 
     Raises
     ------
     InputError
-        Naming the first row that cannot be.
+        Names the first impossible row.
     """
     _within(
         path,
@@ -97,28 +98,29 @@ def require_motion(path: Path, motion: pd.DataFrame, layout: Layout, end_us: int
             "t0_us": (0, end_us + AFTER_US),
             "heading0_rad": (-LARGEST_ANGLE_RAD, LARGEST_ANGLE_RAD),
             "heading1_rad": (-LARGEST_ANGLE_RAD, LARGEST_ANGLE_RAD),
+            "top_speed_m_s": (0.0, LARGEST_SPEED_M_S),
         },
     )
     robot, begins, ends = (motion[name].to_numpy() for name in ("robot", "t0_us", "t1_us"))
-    _refuse(path, ends < begins, "it ends (t1_us) before it begins (t0_us)")
+    _refuse(path, ends < begins, "it ends (t1_us) before it starts (t0_us)")
     same = robot[1:] == robot[:-1]
     _refuse(path, np.append(False, robot[1:] < robot[:-1]), "rows are not sorted by robot")
     apart = same & (begins[1:] != ends[:-1])
-    _refuse(path, np.append(False, apart), "it does not begin (t0_us) where the one before ends")
+    _refuse(path, np.append(False, apart), "it does not start (t0_us) where the one before ends")
     lacking = np.setdiff1d(np.arange(layout.robots), robot)
     if len(lacking):
-        raise InputError(f"{path}: nothing is told of robot {lacking[0]}")
+        raise InputError(f"{path}: there are no rows of robot {lacking[0]}")
 
 
 def require_events(
     path: Path, events: pd.DataFrame, layout: Layout, skus: int, end_us: int
 ) -> None:
-    """Make sure that events can have happened in a layout; parameters and error as above.
+    """Make sure that events are possible in a layout; parameters and errors as above.
 
     Parameters
     ----------
     skus
-        Number of SKUs of the run.
+        Number of SKUs in the run.
     """
     unknown = ~events["kind"].isin(KINDS).to_numpy()
     _refuse(path, unknown, f"kind is none of {', '.join(KINDS)}")
@@ -143,7 +145,7 @@ def require_events(
 def _within(path: Path, frame: pd.DataFrame, valid: Mapping[str, tuple[float, float]]) -> None:
     for name, (low, high) in valid.items():
         values = frame[name].to_numpy()
-        wrong = ~((values >= low) & (values <= high))  # numbers that are none, too
+        wrong = ~((values >= low) & (values <= high))  # also true of nan
         if wrong.any():
             row = int(np.argmax(wrong))
             raise InputError(

@@ -19,9 +19,9 @@ class Steps:
     Parameters
     ----------
     time_s
-        When it changes, in any order; nan for a change that has not happened.
+        Times of changes, in any order; nan for a change that has not happened.
     change
-        By how much, one number for all or one for each time.
+        Size of the changes, one number for all or one for each time.
     initial
         Its value before the first change.
     """
@@ -36,7 +36,7 @@ class Steps:
 
     @classmethod
     def between(cls, begin_s: ArrayLike, end_s: ArrayLike) -> Steps:
-        """Count the intervals that are open; nan ends are yet to come."""
+        """Return the number of open intervals over time; nan ends are still open."""
         begins, ends = np.asarray(begin_s, np.float64), np.asarray(end_s, np.float64)
         sign = np.concatenate([np.ones(len(begins)), -np.ones(len(ends))])
         return cls(np.concatenate([begins, ends]), sign)
@@ -56,11 +56,12 @@ class Steps:
             return float("nan")
         inside = (self._times > begin_s) & (self._times < end_s)
         knots = np.concatenate([[begin_s], self._times[inside], [end_s]])
-        # the exact sum: a product of the linear algebra library rounds as the processor has it
+        # exact sum: a product of the linear algebra library is rounded differently on each
+        # processor
         return fsum(self.at(knots[:-1]) * np.diff(knots)) / (end_s - begin_s)
 
     def most(self, begin_s: float, end_s: float) -> float:
-        """Return the greatest value that lasts within an interval; nan if it is empty."""
+        """Return the greatest value within an interval; nan if it is empty."""
         if end_s <= begin_s:
             return float("nan")
         inside = self._times[(self._times > begin_s) & (self._times < end_s)]
@@ -68,7 +69,7 @@ class Steps:
 
 
 def covered(begin_s: Floats, end_s: Floats, at_s: Floats) -> Floats:
-    """Return how long disjoint intervals, sorted by begin, last up to each given time, in s."""
+    """Return the total length of disjoint intervals, sorted by start, up to each time, in s."""
     if not len(begin_s):
         return np.zeros(len(at_s))
     done = np.cumsum(end_s - begin_s)
@@ -78,7 +79,7 @@ def covered(begin_s: Floats, end_s: Floats, at_s: Floats) -> Floats:
 
 
 def counts(time_s: ArrayLike, edges_s: Floats) -> NDArray[np.int64]:
-    """Count events in (edge k, edge k + 1]; the first interval includes its begin."""
+    """Count events in (edge k, edge k + 1]; the first interval includes its start."""
     times = np.sort(np.asarray(time_s, np.float64))
     below = np.searchsorted(times, edges_s, side="right")
     below[0] = np.searchsorted(times, edges_s[0], side="left")

@@ -1,4 +1,4 @@
-"""The few figures of a footprint that are worth a look when a run has ended."""
+"""The main figures of a footprint, for a quick look at a finished run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FIGURES: tuple[tuple[str, str, str], ...] = (
     ("orders per hour", "orders_per_h", "{:,.1f}"),
     ("units picked", "units_picked", "{:,.0f}"),
     ("units per hour", "units_per_h", "{:,.1f}"),
-    ("score (share of what is possible at most)", "units_score", "{:z.1%}"),
+    ("score (share of the upper bound)", "units_score", "{:z.1%}"),
     ("bundles stored", "bundles_stored", "{:,.0f}"),
     ("units per pod visit", "units_per_visit", "{:.2f}"),
     ("distance per unit, m", "distance_per_unit_m", "{:,.1f}"),
@@ -36,23 +36,23 @@ FIGURES: tuple[tuple[str, str, str], ...] = (
 """Label, column and format of each figure."""
 
 MISSING = "-"
-"""What was not measured."""
+"""Placeholder for what was not measured."""
 
 
 LINES = 19
-"""Most lines that a summary takes at a prompt."""
+"""Maximum number of lines of a summary at a prompt."""
 
 
 @dataclass(frozen=True)
 class Summary:
-    """The main figures of a run: plain text, a table of rich, or HTML, as it is asked for.
+    """The main figures of a run as plain text, a rich table, or HTML.
 
     Attributes
     ----------
     title
         What was simulated.
     rows
-        Label and value; those of measures of the user come last.
+        Labels and values; those of users' measures come last.
     """
 
     title: str
@@ -90,7 +90,7 @@ class Summary:
 
 
 def summarised(footprint: pd.Series) -> Summary:
-    """Return the main figures; what was not measured shows as -."""
+    """Return the main figures; `-` marks what was not measured."""
     names = " / ".join(footprint[["layout", "scenario", "controllers"]])
     return Summary(
         f"{names}, seed {footprint['seed']}",
@@ -102,19 +102,19 @@ def summarised(footprint: pd.Series) -> Summary:
 
 
 def own_columns(footprint: pd.Series) -> list[Column]:
-    """Return the columns of a footprint that come from measures of the user."""
+    """Return the columns of a footprint that come from users' measures."""
     return [column for column in learnt() if column.name in footprint]
 
 
 def figure(footprint: pd.Series, column: Column) -> tuple[str, str]:
-    """Return label and value of a column that is not among the main figures."""
+    """Return label and value of a column that is not one of the main figures."""
     label = f"{column.name}, {column.unit}" if column.unit else column.name
     form = "{:,.6g}" if column.is_number else "{}"
     return label, shown(footprint[column.name], column.name, form)
 
 
 def shown(value: Any, column: str, form: str) -> str:
-    """Return a figure in its format, - for what was not measured."""
+    """Return a formatted figure, or `-` for what was not measured."""
     import pandas as pd
 
     if pd.isna(value):

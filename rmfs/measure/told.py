@@ -1,4 +1,4 @@
-"""What `run.json` must say for a run to be read back; it says more, for people."""
+"""The part of `run.json` that is required to read a run back; the rest is informational."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class _Told(pydantic.BaseModel):
 
 
 class Source(_Told):
-    """An input: what it is called. Digests, files and parameters are beside it."""
+    """An input, by name; digests, files and parameters are in other keys."""
 
     name: str
 
@@ -48,12 +48,12 @@ class OwnMeasure(_Told):
 
 
 class Told(_Told):
-    """What a run tells of itself.
+    """The required contents of `run.json`.
 
     Attributes
     ----------
     slow_robots
-        Robot, begin and end (us), and share of the top speed; see `rmfs.measure.checker.Slow`.
+        Robot, start and end (us), and share of the top speed; see `rmfs.measure.checker.Slow`.
     """
 
     layout: Source
@@ -72,12 +72,12 @@ class Told(_Told):
 
 
 def require_told(path: Path, parameters: dict[str, Any]) -> None:
-    """Make sure that a run.json tells of a run.
+    """Make sure that a `run.json` describes a run.
 
     Raises
     ------
     InputError
-        Naming what is missing or cannot be.
+        Names what is missing or invalid.
     """
     lacking = [key for key, field in Told.model_fields.items() if field.is_required()]
     lacking = [key for key in lacking if key not in parameters]

@@ -1,8 +1,8 @@
-"""The files of a trace: motion, events and the layout they happened in, versioned.
+"""The files of a trace: motion, events and the layout, with format versions.
 
-`trace.parquet` holds every piece of motion, `events.parquet` everything else that happened, and
-`layout.json` the explicit layout. Together they are all that is needed to see, or to check, a run
-again; the page on the trace format describes them.
+`trace.parquet` contains every piece of motion, `events.parquet` all other events, and `layout.json`
+the explicit layout. Together they are all that is needed to replay or check a run; the page on the
+trace format describes them.
 """
 
 from __future__ import annotations
@@ -24,11 +24,13 @@ TRACE = "trace.parquet"
 EVENTS = "events.parquet"
 LAYOUT = "layout.json"
 
-FORMATS = {TRACE: "rmfs-trace/1", EVENTS: "rmfs-events/1"}
+FORMATS = {TRACE: "rmfs-trace/2", EVENTS: "rmfs-events/2"}
+EARLIER = {EVENTS: ("rmfs-events/1",)}
+"""Older formats that can also be read; the first version of events had fewer kinds."""
 _KEY = b"rmfs-format"
 
 DELTAS = ("t0_us", "t1_us", "time_us")
-"""Columns that grow from row to row: differences need fewer bytes than the numbers."""
+"""Columns that grow from row to row: differences take fewer bytes than the numbers."""
 
 TRACE_COLUMNS = (
     "robot",
@@ -40,6 +42,7 @@ TRACE_COLUMNS = (
     "heading0_rad",
     "heading1_rad",
     "pod",
+    "top_speed_m_s",
 )
 EVENT_COLUMNS = ("time_us", "kind", "robot", "pod", "station", "order", "sku", "units", "detail")
 _COLUMNS = {TRACE: TRACE_COLUMNS, EVENTS: EVENT_COLUMNS}
@@ -93,18 +96,18 @@ def read_motion(folder: Path) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If the run was made without, or the file is cut off, of another version or no trace.
+        If there is no trace, or the file is truncated, of another version or not a trace.
     """
     return _read(folder / TRACE)
 
 
 def read_events(folder: Path) -> pd.DataFrame:
-    """Read the events of a run; raises as `read_motion` does."""
+    """Read the events of a run; raises the same errors as `read_motion`."""
     return _read(folder / EVENTS)
 
 
 def read_layout(folder: Path) -> Layout:
-    """Read the layout of a run; raises as `read_motion` does."""
+    """Read the layout of a run; raises the same errors as `read_motion`."""
     from rmfs.layout.explicit import read_json
 
     if not (folder / LAYOUT).is_file():
@@ -133,11 +136,11 @@ def _read(path: Path) -> pd.DataFrame:
 
 
 def _check(path: Path, schema: Any) -> None:
-    """Refuse another version, a stranger's file, and one without all columns."""
+    """Refuse other versions, foreign files, and files without all columns."""
     told = (schema.metadata or {}).get(_KEY, b"").decode("utf-8", "replace")
     expected = FORMATS[path.name]
-    if told != expected:
-        what = f"format {told!r}" if told else "no trace of rmfs"
+    if told not in (expected, *EARLIER.get(path.name, ())):
+        what = f"format {told!r}" if told else "not a trace of rmfs"
         raise InputError(f"{path}: {what}, expected {expected!r}")
     missing = [name for name in _COLUMNS[path.name] if name not in schema.names]
     if missing:
@@ -146,5 +149,5 @@ def _check(path: Path, schema: Any) -> None:
 
 def _missing(path: Path) -> InputError:
     return InputError(
-        f"{path.parent}: holds no trace ({path.name} is missing); run with --trace to get one"
+        f"{path.parent}: contains no trace ({path.name} is missing); run with --trace to get one"
     )

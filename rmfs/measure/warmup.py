@@ -1,4 +1,4 @@
-"""Where a series has settled: proposals for the length of a warm-up."""
+"""Convergence of a time series: proposals for the length of a warm-up."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ BATCH = 5
 def mser(values: ArrayLike, batch: int = BATCH) -> int | None:
     """Return how many observations to drop by the marginal standard error rule.
 
-    Of the batch means Z_1 ... Z_n the first d are dropped, with the d <= n / 2 for which
-    sum over j > d of (Z_j - mean)² / (n - d)² is least (White 1997; MSER-5 with batches of five).
+    Of the batch means Z_1 ... Z_n the first d are dropped, where d <= n / 2 minimises
+    sum over j > d of (Z_j - mean)² / (n - d)² (White 1997; MSER-5 with batches of five).
 
     Parameters
     ----------
     values
-        Observations at equal distances; those that do not fill a batch are left out at the end.
+        Equidistant observations; an incomplete batch at the end is ignored.
 
     Returns
     -------
     int | None
-        A multiple of `batch`. None if there are fewer than four batches, or if the least is at the
-        end of the range: the series is too short to tell.
+        A multiple of `batch`. None if there are fewer than four batches, or if the minimum is at
+        the end of the range, so that the series is too short.
     """
     observed = np.asarray(values, np.float64)
     number = len(observed) // batch
@@ -44,8 +44,8 @@ def mser(values: ArrayLike, batch: int = BATCH) -> int | None:
 def welch(values: ArrayLike, window: int) -> NDArray[np.float64]:
     """Return the moving average of Welch's method.
 
-    Observation i is averaged with `window` neighbours on either side, with i on either side near
-    the beginning; the last `window` observations have no average.
+    Observation i is averaged with `window` neighbours on either side, or with i on either side near
+    the start; the last `window` observations have no average.
 
     Raises
     ------
@@ -64,12 +64,12 @@ def welch(values: ArrayLike, window: int) -> NDArray[np.float64]:
 
 
 def settled(smooth: ArrayLike, tolerance: float = 0.05) -> int | None:
-    """Return from which observation on a smoothed series stays near its level.
+    """Return the observation from which a smoothed series stays near its level.
 
     Parameters
     ----------
     tolerance
-        How far from the mean of the second half it may be, as a share of that mean.
+        Largest deviation from the mean of the second half, as a share of that mean.
 
     Returns
     -------

@@ -82,7 +82,7 @@ def import_files(
     target
         The folder to make; one that an earlier import made, or an empty one, is replaced.
     tell
-        Told of every file when it is done.
+        Called for every file when it is done.
 
     Returns
     -------

@@ -212,7 +212,7 @@ def _stations() -> list[Mapped]:
     ours = "`late_bound_units_per_visit` is that of all visits"
     late = "`stations.late_bound_units` / `stations.visits`"
     words = {"Avg": "mean", "Med": "median", "LQ": "first quartile", "UQ": "third quartile"}
-    bundled = "none: bundles added to a task on its way are not told apart"
+    bundled = "none: bundles added to a task on its way are not distinguished"
     pick, replenish = ", pick stations", ", replenishment stations"
     down = " (any time without work: there is no threshold)"
     return [

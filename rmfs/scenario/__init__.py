@@ -1,7 +1,7 @@
-"""Scenarios: SKUs, stock at time zero, demand and replenishment, as pure objects.
+"""Scenarios: SKUs, initial stock, demand and replenishment, independent of the warehouse.
 
-Nothing here knows of pods' places, stations or robots: a scenario says what is asked for, and the
-world is what answers.
+Nothing here knows the places of pods, stations or robots: a scenario defines what is requested, and
+the world responds.
 """
 
 from rmfs.scenario.bundles import BundleContent as BundleContent

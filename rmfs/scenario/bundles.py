@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class BundleContent(NamedTuple):
-    """A bundle before it exists: so many units of one SKU, and the space units they take."""
+    """The content of a bundle: a number of units of one SKU, and the space units they take."""
 
     sku: int
     units: int
@@ -20,7 +20,7 @@ class BundleContent(NamedTuple):
 
 
 class BundleSource:
-    """Draws bundles, the SKU by popularity; bundle k comes from substream (seed, k).
+    """Draws bundles with SKUs by popularity; bundle k comes from substream (seed, k).
 
     Parameters
     ----------
@@ -29,9 +29,9 @@ class BundleSource:
     seed
         The run's seed.
     return_share
-        Probability that a bundle is a return: one unit that a customer sent back.
+        Probability that a bundle is a return of a single unit from a customer.
     path
-        Numbers below the stream, for bundles that are counted apart.
+        Numbers below the stream, for bundles that are counted separately.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class BundleSource:
         self._return_share = return_share
 
     def draw(self, ordinal: int) -> BundleContent:
-        """Draw the bundle of an ordinal, 0 or greater."""
+        """Draw the bundle with an ordinal, 0 or greater."""
         uniform = self._substreams.at(ordinal)
         sku = self._pick(uniform())
         if self._return_share and uniform() < self._return_share:
@@ -53,6 +53,6 @@ class BundleSource:
 
 
 def bundle_of_each(skus: SkuSet) -> list[BundleContent]:
-    """Return the bundle of every SKU, in the order of the SKUs."""
+    """Return one bundle of every SKU, in the order of the SKUs."""
     columns = (skus.bundle_units.tolist(), skus.bundle_space.tolist())
     return [BundleContent(sku, *rest) for sku, rest in enumerate(zip(*columns, strict=True))]

@@ -18,10 +18,10 @@ SCALE = 2**40
 class Categorical:
     """Indices 0, 1, ... with probabilities in proportion to given weights.
 
-    The weights become integers that sum to about `SCALE`, and a uniform number in [0, 1) becomes an
-    integer below their sum. Comparing integers, a draw is the same on every platform: a last-bit
-    difference in a weight, from another mathematics library, vanishes in the rounding. No
-    probability changes by more than 1e-12. A positive weight never becomes zero.
+    Weights are converted to integers that sum to about `SCALE`, and a uniform number in [0, 1) to
+    an integer below their sum. Because integers are compared, a draw is the same on every platform:
+    last-bit differences in a weight, between mathematics libraries, vanish in the rounding. No
+    probability changes by more than 1e-12, and a positive weight never becomes zero.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class Categorical:
     Raises
     ------
     ValueError
-        If the weights are not as said.
+        If the weights are not valid.
     """
 
     def __init__(self, weights: ArrayLike) -> None:
@@ -54,7 +54,7 @@ class Categorical:
         return probabilities
 
     def pick(self, uniform: float) -> int:
-        """Return the index that a number in [0, 1) stands for."""
+        """Return the index for a number in [0, 1)."""
         return bisect_right(self._cumulative, int(uniform * self._total))
 
     def pick_among(self, allowed: NDArray[np.bool_], uniform: float) -> int | None:

@@ -1,7 +1,7 @@
-"""Simulated time in whole microseconds, and times that come again.
+"""Simulated time in whole microseconds, and periodic times.
 
-Whole microseconds add up exactly, are the same on every processor, and survive being written as
-decimals: a stream read from a file is the stream that was written.
+Whole microseconds add up exactly, are the same on every processor, and survive conversion to
+decimals: a stream read from a file equals the stream that was written.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ US_PER_S = 1_000_000
 US_PER_H = 3600 * US_PER_S
 
 NEVER_US = 1 << 62
-"""Later than any event."""
+"""A time later than any event."""
 
 
 def nearest_us(time_s: float) -> int:
@@ -36,14 +36,14 @@ def first_us(time_s: float) -> int:
 
 
 class Cycle:
-    """A cycle of which a part is gone at time zero.
+    """A periodic cycle that may already be under way at time zero.
 
     Parameters
     ----------
     length_s
-        After so long everything comes again.
+        Length of the cycle.
     gone_s
-        Time of the cycle at time zero; may exceed its length.
+        Time by which the cycle has advanced at time zero; may exceed its length.
     """
 
     def __init__(self, length_s: float, gone_s: float) -> None:
@@ -51,22 +51,22 @@ class Cycle:
         self._gone_us = nearest_us(gone_s) % self.length_us
 
     def phase_us(self, time_us: int) -> int:
-        """Return the time of the cycle at a simulated time."""
+        """Return the time within the cycle at a simulated time."""
         return (time_us + self._gone_us) % self.length_us
 
     def times_us(self, phases_us: Sequence[int]) -> Iterator[tuple[int, int]]:
-        """Return when given times of the cycle come, and which it is, without end.
+        """Yield, without end, each time at which a given phase of the cycle occurs, and its index.
 
         Parameters
         ----------
         phases_us
-            Times of the cycle in order, each less than its length, one at least.
+            Phases of the cycle in order, each less than its length; at least one.
         """
         return _Times(list(phases_us), self.length_us, -self._gone_us)
 
 
 class _Times:
-    """Times of a cycle that come again and again: an iterator that can be copied."""
+    """Endlessly repeated times of a cycle, as an iterator that can be copied."""
 
     def __init__(self, phases_us: list[int], length_us: int, start_us: int) -> None:
         self._phases_us = phases_us
@@ -89,25 +89,25 @@ class _Times:
 
 
 class Openings:
-    """Tells when generation is down.
+    """Periods in which generation is down.
 
     Parameters
     ----------
     config
-        Down periods, or None: never down.
+        Down periods. None: never down.
     gone_s
-        Time of all cycles at time zero.
+        Time by which all cycles have advanced at time zero.
     """
 
     def __init__(self, config: DownPeriods | None, gone_s: float) -> None:
         self._borders: list[int] = []
         if config is not None:
             self._cycle = Cycle(config.cycle_s, gone_s)
-            # begin, end, begin, end, ...: down after an odd number of borders
+            # begin, end, begin, end, ...: down after an odd number of boundaries
             self._borders = [nearest_us(s) for period in config.periods_s for s in period]
 
     def is_open(self, time_us: int) -> bool:
-        """Say whether things are generated at a time; a period ends just before its last s."""
+        """Return whether things are generated at a time; a period excludes its end."""
         return self.open_from_us(time_us) == time_us
 
     def open_from_us(self, time_us: int) -> int:
@@ -117,6 +117,6 @@ class Openings:
             passed = bisect_right(self._borders, phase_us)
             if passed % 2 == 0:
                 break
-            # a period that ends with the cycle may be followed by one that begins with it
+            # a period that ends with the cycle may be followed by one at its start
             time_us += self._borders[passed] - phase_us
         return time_us

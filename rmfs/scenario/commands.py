@@ -61,7 +61,7 @@ def show(scenario: Name, settings: Settings = None) -> None:
 
 @app.command()
 def check(scenario: Name, settings: Settings = None) -> None:
-    """Read a scenario and its files, and say what is wrong or what it holds."""
+    """Check a scenario and its files: report what is wrong, or what it contains."""
     config = _loaded(scenario, settings)
     skus = sku_set(config.skus)
     anywhere = Site(1, 1, capacity=math.inf, largest_pod=math.inf)
@@ -80,13 +80,13 @@ def check(scenario: Name, settings: Settings = None) -> None:
 
 @app.command("import")
 def import_command(
-    path: Annotated[Path, typer.Argument(metavar="FILE", help="A RAWSim-O .xsett.")],
+    path: Annotated[Path, typer.Argument(metavar="FILE", help="RAWSim-O scenario (.xsett).")],
     out: Annotated[
         Path | None, typer.Option(help="The .toml file to write; default: NAME.toml.")
     ] = None,
     force: Force = False,
 ) -> None:
-    """Turn a RAWSim-O scenario into one of ours, with its SKUs and orders beside it."""
+    """Convert a RAWSim-O scenario, together with its SKUs and orders."""
     if path.suffix.lower() != ".xsett":
         raise InputError(f"{path}: expected a .xsett file")
     target = out if out is not None else Path(f"{path.stem}.toml")
@@ -100,7 +100,7 @@ def convert(
     layout: Annotated[
         str,
         typer.Argument(
-            metavar="LAYOUT", help="Whose columns: instacart, online-retail, jd or olist."
+            metavar="LAYOUT", help="Format of the files: instacart, online-retail, jd or olist."
         ),
     ],
     files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Its .csv files.")],
@@ -110,20 +110,20 @@ def convert(
     begin: Annotated[
         datetime | None,
         typer.Option(
-            "--from", formats=MOMENTS, help="Take orders from this time on. [default: all]"
+            "--from", formats=MOMENTS, help="Use orders from this time on. [default: all]"
         ),
     ] = None,
     end: Annotated[
         datetime | None,
-        typer.Option("--to", formats=MOMENTS, help="Take orders before this time. [default: all]"),
+        typer.Option("--to", formats=MOMENTS, help="Use orders before this time. [default: all]"),
     ] = None,
     share: Annotated[
-        float, typer.Option(min=1e-6, max=1.0, help="Share of the orders to take, drawn.")
+        float, typer.Option(min=1e-6, max=1.0, help="Share of the orders to use, drawn at random.")
     ] = 1.0,
     seed: Annotated[int, typer.Option(min=0, help="Seed of that draw.")] = 0,
     force: Force = False,
 ) -> None:
-    """Turn a public set of orders, which you have downloaded, into a file of orders of ours."""
+    """Convert a public data set, which you have downloaded, to a file of orders."""
     from rmfs.scenario.datasets import convert as converted
 
     _vacant(out, force=force)
@@ -145,12 +145,13 @@ def twin(
     table: Annotated[
         Path | None,
         typer.Option(
-            help="The .csv file for parameters, intervals and fit to write. [default: none]",
+            help=".csv file for parameters, intervals and fit. [default: none]",
             show_default=False,
         ),
     ] = None,
     weekly: Annotated[
-        bool, typer.Option("--weekly", help="Fit rates of a week's hours, not of a day's.")
+        bool,
+        typer.Option("--weekly", help="Fit rates for each hour of the week instead of the day."),
     ] = False,
     listed: Annotated[
         bool, typer.Option("--listed", help="Keep the popularity of each SKU, without its name.")
@@ -158,7 +159,7 @@ def twin(
     seed: Annotated[int, typer.Option(min=0, help="Seed of the twin's SKUs.")] = 0,
     force: Force = False,
 ) -> None:
-    """Fit a generator to a file of orders: a scenario that can be published in its place."""
+    """Fit a generator to a file of orders, as a scenario that can be published instead of it."""
     from rmfs.scenario.twin import fit_twin
     from rmfs.scenario.twin.telling import told, write_table, write_twin
 
@@ -184,12 +185,12 @@ def export(
         Literal["orders", "bundles"], typer.Option(help="Which stream to write.")
     ] = "orders",
     seed: Annotated[int, typer.Option(min=0, help="Seed of all random streams.")] = 0,
-    pick_stations: Annotated[int, typer.Option(min=1, help="For rates per station.")] = 4,
+    pick_stations: Annotated[int, typer.Option(min=1, help="Number, for rates per station.")] = 4,
     replenishment_stations: Annotated[int, typer.Option(min=1, help="For rates per station.")] = 4,
     settings: Settings = None,
     force: Force = False,
 ) -> None:
-    """Write the orders or bundles of a scenario, where they do not depend on the run."""
+    """Write the orders or bundles of a scenario, if they do not depend on the run."""
     _vacant(path, force=force)
     site = Site(pick_stations, replenishment_stations, capacity=math.inf, largest_pod=math.inf)
     written = export_stream(_loaded(scenario, settings), what, path, site, seed)
@@ -211,7 +212,7 @@ def sku_set_command(
     settings: Settings = None,
     force: Force = False,
 ) -> None:
-    """Describe the SKUs of a scenario or file; write them, or a picture of their popularity."""
+    """Describe the SKUs of a scenario or file; write them, or plot their popularity."""
     skus = _skus(scenario, settings)
     typer.echo(f"{scenario}: {summary(skus)}, digest {skus.digest()}")
     if out is not None:
@@ -249,14 +250,14 @@ def _skus(scenario: str, settings: list[str] | None) -> SkuSet:
 
 
 def _loaded(scenario: str, settings: list[str] | None) -> Scenario:
-    """Load a scenario and print the remarks of its import."""
+    """Load a scenario and print the notes of its import."""
     config, notes = load_with_notes(scenario, [_below_scenario(text) for text in settings or []])
     _print_notes(notes)
     return config
 
 
 def _below_scenario(text: str) -> tuple[list[str], object]:
-    """Read one `--set`; its key starts with `scenario`, as everywhere."""
+    """Parse one `--set`; its key starts with `scenario`, as in `rmfs run`."""
     path, value = parse_override(text)
     if path[0] != "scenario" or len(path) == 1:
         raise InputError(f"--set {text}: expected a key such as scenario.duration_s")
@@ -264,7 +265,7 @@ def _below_scenario(text: str) -> tuple[list[str], object]:
 
 
 def _print_notes(notes: list[str] | tuple[str, ...]) -> None:
-    # beside the output proper, which may be TOML
+    # on standard error: the output proper may be TOML
     for note in notes:
         typer.echo(f"note: {note}", err=True)
 

@@ -1,4 +1,4 @@
-"""Distributions of whole numbers that a scenario can name."""
+"""Distributions of whole numbers in scenarios."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class _Range(Block, ABC):
-    """Whole numbers from `min` to `max`, both included."""
+    """Whole numbers from `min` to `max`, inclusive."""
 
     distribution: str
     min: Count
@@ -54,9 +54,9 @@ class UniformCount(_Range):
 
 
 class NormalCount(_Range):
-    """Normal, cut to [min - 0.5, max + 0.5) and rounded; `mean` and `sd` are those before the cut.
+    """Normal, truncated to [min - 0.5, max + 0.5) and rounded.
 
-    With `sd` = 0 the count is the rounded mean.
+    `mean` and `sd` are those before truncation. With `sd` = 0 the count is the rounded mean.
     """
 
     distribution: Literal["normal"] = "normal"
@@ -76,12 +76,12 @@ class NormalCount(_Range):
         return probabilities
 
     def _mass(self) -> NDArray[np.float64]:
-        """Probability of each count before the cut; it lacks what lies outside [min, max]."""
+        """Probability of each count before truncation."""
         counts = np.arange(self.min, self.max + 1)
         if self.sd == 0:
             return np.equal(counts, np.floor(self.mean + 0.5)).astype(np.float64)
         low, high = (counts - 0.5 - self.mean) / self.sd, (counts + 0.5 - self.mean) / self.sd
-        # above the mean the difference is taken between upper tails, where the digits are
+        # above the mean the difference is taken between upper tails, for precision
         lower = special.ndtr(high) - special.ndtr(low)
         return np.where(low > 0, special.ndtr(-low) - special.ndtr(-high), lower)
 
@@ -92,7 +92,7 @@ Weights = Annotated[
 
 
 class ListedCount(Block):
-    """1, 2, ... with a weight each, up to 1000."""
+    """Values 1, 2, ... with a weight each, up to 1000."""
 
     distribution: Literal["listed"] = "listed"
     weights: Weights

@@ -1,4 +1,4 @@
-"""What must be in stock so that the orders of a file can be served."""
+"""Initial stock needed to serve the orders of a file."""
 
 from __future__ import annotations
 
@@ -15,15 +15,16 @@ if TYPE_CHECKING:
 
 
 def bundles_to_cover(scenario: Scenario, skus: SkuSet) -> list[int]:
-    """Return the SKUs of the bundles that a scenario wants in stock for its file of orders.
+    """Return the SKUs of the bundles to stock initially for a scenario's file of orders.
 
-    Of each SKU as many whole bundles as hold `stock.order_cover` times the units that are ordered
-    until the run ends. The largest bundles come first: the small ones fit into what they leave.
+    For each SKU, as many whole bundles as contain `stock.order_cover` times the units ordered
+    before the end of the run. The largest bundles come first, because small ones fit into the
+    remaining space.
 
     Raises
     ------
     InputError
-        If the file is broken.
+        If the file is invalid.
     """
     cover = scenario.stock.order_cover
     if not cover:

@@ -1,4 +1,4 @@
-"""Departures of trucks, to which due times are moved on."""
+"""Departures of trucks, to which due times are postponed."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 
 
 class Departures:
-    """Moves due times on to the next departure.
+    """Postpones due times to the next departure.
 
     Parameters
     ----------
     given
-        When trucks leave.
+        Departure times.
     gone_s
-        Time of the cycle at time zero.
+        Time by which the cycle has advanced at time zero.
     """
 
     def __init__(self, given: DepartureDue, gone_s: float) -> None:

@@ -1,8 +1,9 @@
-"""Distributions of real numbers that a scenario can name, each cut to a range.
+"""Distributions of real numbers in scenarios, each truncated to a range.
 
-Every distribution is drawn by inversion: `quantile` turns a uniform number into a value, and a cut
-to [min, max] only narrows the range of that number. The values therefore follow the distribution
-*given* that they lie within the range, as with redrawing, at one number per value.
+Every distribution is sampled by inversion: `quantile` converts a uniform number to a value, and
+truncation to [min, max] only narrows the range of that number. The values therefore follow the
+distribution *conditional* on lying within the range, as with rejection, but with one uniform number
+per value.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.floating]
 
 LEAST_MASS = 1e-9
-"""Share of a distribution that its range must hold: with less, inversion has no digits left."""
+"""Minimum probability of the range, below which inversion loses precision."""
 
 
 class Constant(Block):
@@ -54,7 +55,7 @@ class Uniform(Block):
 
 
 class _Cut(Block, ABC):
-    """A distribution of which only the part between `min` and `max` is used."""
+    """A distribution truncated to the range from `min` to `max`."""
 
     distribution: str
     min: NotNegative = 0.0
@@ -84,7 +85,7 @@ class _Cut(Block, ABC):
         if low < 0.5:
             values = self._below_inverse(low + share * (high - low))
         else:
-            # in the upper tail the probability below is 1 but for a rounding error
+            # in the upper tail the probability below is 1 up to rounding
             low, high = self._above(self._limits)
             values = self._above_inverse(low - share * (low - high))
         return np.clip(values, *self._limits).astype(np.float64)
@@ -99,15 +100,15 @@ class _Cut(Block, ABC):
 
     @abstractmethod
     def _below_inverse(self, p: Floats) -> Floats:
-        """Value that another is below with probability p."""
+        """Return the value with probability p below it."""
 
     @abstractmethod
     def _above_inverse(self, p: Floats) -> Floats:
-        """Value that another is above with probability p."""
+        """Return the value with probability p above it."""
 
 
 class Normal(_Cut):
-    """Normal, cut to [min, max]; `mean` and `sd` are those before the cut."""
+    """Normal, truncated to [min, max]; `mean` and `sd` are those before truncation."""
 
     distribution: Literal["normal"] = "normal"
     mean: float
@@ -127,7 +128,7 @@ class Normal(_Cut):
 
 
 class Gamma(_Cut):
-    """Gamma, cut to [min, max]; its mean before the cut is shape x scale."""
+    """Gamma, truncated to [min, max]; its mean before truncation is shape x scale."""
 
     distribution: Literal["gamma"] = "gamma"
     shape: Positive
@@ -147,7 +148,7 @@ class Gamma(_Cut):
 
 
 class Exponential(_Cut):
-    """Exponential, cut to [min, max]; its mean before the cut is 1 / rate."""
+    """Exponential, truncated to [min, max]; its mean before truncation is 1 / rate."""
 
     distribution: Literal["exponential"] = "exponential"
     rate: Positive
@@ -170,7 +171,7 @@ class Exponential(_Cut):
 Popularity = Annotated[
     Constant | Uniform | Normal | Gamma | Exponential, pydantic.Field(discriminator="distribution")
 ]
-"""How often SKUs are ordered relative to each other."""
+"""Relative frequency with which SKUs are ordered."""
 
 Space = Annotated[Constant | Uniform | Normal, pydantic.Field(discriminator="distribution")]
-"""Space units that one unit of a SKU takes."""
+"""Space units taken by one unit of a SKU."""

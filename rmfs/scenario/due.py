@@ -1,4 +1,4 @@
-"""When an order is due, counted from its arrival."""
+"""Due times of orders, relative to their arrival."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class PriorityDue(Block):
     mode: Literal["priority"] = "priority"
     urgent_share: Share = Field(0.2, description="share of orders that are urgent")
     urgent_offset_s: Positive = Field(
-        1800.0, description="s from arrival to due time, urgent orders"
+        1800.0, description="time from arrival to due time of urgent orders, s"
     )
     ordinary_offset_s: Positive = Field(
-        7200.0, description="s from arrival to due time, all others"
+        7200.0, description="time from arrival to due time of all others, s"
     )
 
     def sampler(self) -> Callable[[float], float]:
@@ -36,17 +36,16 @@ class PriorityDue(Block):
 
 
 class OrderClass(Block):
-    """Orders of one priority."""
+    """A class of orders with the same priority."""
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 ._-]{0,39}$")] = Field(
-        description="in tables and files of orders; up to 40 letters, digits, spaces, . _ -"
+        description="name in tables and files of orders; up to 40 letters, digits, spaces, . _ -"
     )
     share: Share = Field(description="share of the orders")
-    offset_s: Positive = Field(description="s from arrival to due time")
+    offset_s: Positive = Field(description="time from arrival to due time, s")
     weight: Annotated[float, Field(ge=0.001, le=1000)] = Field(
         1.0,
-        description="what lateness counts, as a multiple of that of other orders; from 0.001 to "
-        "1000, so that the lightest still count",
+        description="weight of lateness relative to that of other orders, from 0.001 to 1000",
     )
 
 
@@ -55,7 +54,9 @@ class ClassesDue(Block):
 
     mode: Literal["classes"] = "classes"
     classes: Annotated[tuple[OrderClass, ...], pydantic.Strict(strict=False)] = Field(
-        min_length=1, max_length=20, description="the most urgent first; their shares make 1"
+        min_length=1,
+        max_length=20,
+        description="the most urgent class first; the shares must sum to 1",
     )
 
     @pydantic.field_validator("classes")
@@ -64,9 +65,9 @@ class ClassesDue(Block):
         names = [one.name for one in value]
         twice = [name for name in names if names.count(name) > 1]
         if twice:
-            raise ValueError(f"name {twice[0]} comes twice")
+            raise ValueError(f"name {twice[0]} occurs twice")
         if abs((total := sum(one.share for one in value)) - 1.0) > 1e-6:
-            raise ValueError(f"shares must make 1 (they make {total:g})")
+            raise ValueError(f"shares must sum to 1 (their sum is {total:g})")
         return value
 
     @property
@@ -79,22 +80,24 @@ class ClassesDue(Block):
         return partial(_by_class, self._bounds(), tuple(one.offset_s for one in self.classes))
 
     def class_of(self, uniform: float) -> int:
-        """Return the class whose offset the sampler takes for a number."""
+        """Return the class whose offset the sampler returns for the same number."""
         return bisect_right(self._bounds(), uniform)
 
     def _bounds(self) -> tuple[float, ...]:
-        """Sums of shares, without the last: rounding must leave nobody without a class."""
+        """Cumulative shares without the last, so that rounding leaves no order without a class."""
         return tuple(accumulate(one.share for one in self.classes))[:-1]
 
 
 class NormalDue(Block):
-    """Offsets are normal, cut to [min_s, max_s], in whole milliseconds."""
+    """Offsets are normal, truncated to [min_s, max_s], in whole milliseconds."""
 
     mode: Literal["normal"] = "normal"
-    mean_s: Positive = Field(10800.0, description="s from arrival to due time, before the cut")
-    sd_s: Positive = Field(900.0, description="s, before the cut")
-    min_s: Positive = Field(7200.0, description="s, least offset")
-    max_s: Positive = Field(14400.0, description="s, greatest offset")
+    mean_s: Positive = Field(
+        10800.0, description="mean time from arrival to due time before truncation, s"
+    )
+    sd_s: Positive = Field(900.0, description="standard deviation before truncation, s")
+    min_s: Positive = Field(7200.0, description="least offset, s")
+    max_s: Positive = Field(14400.0, description="greatest offset, s")
 
     @pydantic.field_validator("max_s")
     @classmethod
@@ -116,17 +119,22 @@ class NormalDue(Block):
 
 
 class DepartureDue(Block):
-    """Orders are due when a truck leaves: the first that leaves so long after their arrival."""
+    """Orders are due when a truck departs: the first departure at least `lead_s` after arrival."""
 
     mode: Literal["departures"] = "departures"
     times_s: Annotated[tuple[NotNegative, ...], pydantic.Strict(strict=False)] = Field(
-        min_length=1, description="s of the cycle at which trucks leave, in order"
+        min_length=1, description="departure times of trucks, in s of the cycle, in order"
     )
     cycle_s: float = Field(
-        86400.0, ge=1, validate_default=True, description="s after which everything comes again"
+        86400.0,
+        ge=1,
+        validate_default=True,
+        description="length of the cycle in s, after which departures repeat",
     )
     lead_s: NotNegative = Field(
-        3600.0, description="an order that comes less s before a truck leaves goes with the next"
+        3600.0,
+        description="an order that arrives less than this many s before a departure goes with "
+        "the next one",
     )
 
     @pydantic.field_validator("cycle_s")
@@ -134,9 +142,9 @@ class DepartureDue(Block):
     def _in_order(cls, value: float, info: pydantic.ValidationInfo) -> float:
         times_s = info.data.get("times_s", ())
         if any(later <= sooner for sooner, later in pairwise(times_s)):
-            raise ValueError("times_s must be in order")
+            raise ValueError("times_s must be in ascending order")
         if times_s and times_s[-1] >= value:
-            raise ValueError(f"must be more than the last of times_s = {times_s[-1]:g}")
+            raise ValueError(f"must be greater than the last of times_s = {times_s[-1]:g}")
         return value
 
     def sampler(self) -> Callable[[float], float]:
@@ -147,11 +155,11 @@ class DepartureDue(Block):
 Due = Annotated[PriorityDue | ClassesDue | NormalDue | DepartureDue, Field(discriminator="mode")]
 
 NO_CLASS = -1
-"""Of an order in a scenario without classes (`ClassesDue`)."""
+"""Class of an order in a scenario without classes (`ClassesDue`)."""
 
 
 def class_of(due: Due, uniform: float) -> int:
-    """Return the class of the order whose offset is drawn with a number, or `NO_CLASS`."""
+    """Return the class of the order whose offset is drawn with `uniform`, or `NO_CLASS`."""
     return due.class_of(uniform) if isinstance(due, ClassesDue) else NO_CLASS
 
 

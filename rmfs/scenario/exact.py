@@ -1,9 +1,9 @@
-"""Numbers that come out alike on every processor.
+"""Numbers that are equal on every processor.
 
-Additions, products, quotients and square roots are rounded the same way everywhere; logarithms,
-error functions and their inverses are not, and may differ in the last bits. Whatever is computed
-with such a function once (a popularity, a space, a probability) is therefore rounded here to far
-fewer digits before anything is drawn from it. What is left after that are integers and comparisons.
+Sums, products, quotients and square roots are rounded the same way everywhere; logarithms, error
+functions and their inverses may differ in the last bits. Any value computed once with such a
+function (a popularity, a space, a probability) is therefore rounded here to far fewer digits before
+it is used in draws. After that, only integers and comparisons are involved.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ def significant(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def space(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Cut to whole steps of 1 / `SPACE_STEPS` space units, one step at least.
+    """Round down to multiples of 1 / `SPACE_STEPS` space units, but at least one.
 
     Sums and differences of such spaces are exact, so the space used on a pod does not drift and
-    does not depend on the order of what came and went. Cut, not rounded, so that ten units of 0.1
-    fit where one space unit is free.
+    does not depend on the order of operations. Values are rounded down so that ten units of 0.1 fit
+    into one space unit.
     """
     return np.maximum(np.floor(values * SPACE_STEPS), 1.0) / SPACE_STEPS

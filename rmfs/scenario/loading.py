@@ -1,4 +1,4 @@
-"""Reading scenario files."""
+"""Loads scenario files."""
 
 from __future__ import annotations
 
@@ -23,30 +23,30 @@ _FILES = (
     ("replenishment", "file"),
     ("pickers", "unit_time", "file"),
 )
-"""Keys that name files."""
+"""Keys whose values are file names."""
 
 
 def load(name_or_path: str | Path, overrides: Sequence[tuple[Sequence[str], Any]] = ()) -> Scenario:
-    """Read a scenario; see `load_with_notes`."""
+    """Load a scenario; see `load_with_notes`."""
     return load_with_notes(name_or_path, overrides)[0]
 
 
 def load_with_notes(
     name_or_path: str | Path, overrides: Sequence[tuple[Sequence[str], Any]] = ()
 ) -> tuple[Scenario, list[str]]:
-    """Read a scenario and the remarks of its import.
+    """Load a scenario, with notes from its import.
 
     Parameters
     ----------
     name_or_path
         A TOML file, a file of RAWSim-O (.xsett), or the name of a shipped scenario.
     overrides
-        Pairs of a path of keys and a value, for example `(["duration_s"], 7200)`; they replace
-        what the file says before it is checked.
+        Pairs of a key path and a value, for example `(["duration_s"], 7200)`, which replace values
+        of the file before validation.
 
     Returns
     -------
-    The scenario, and remarks on what an import left out or does differently.
+    The scenario, and notes on what an import left out or does differently.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def load_with_notes(
 
 
 def asked_of_layout(name_or_path: str | Path) -> list[tuple[list[str], Any]]:
-    """Return what a scenario of RAWSim-O asks of the layout, as overrides; ours ask nothing.
+    """Return the overrides that a scenario of RAWSim-O implies for the layout; ours imply none.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def asked_of_layout(name_or_path: str | Path) -> list[tuple[list[str], Any]]:
 
 
 def named_files(scenario: Scenario) -> dict[str, Path]:
-    """Return the files that a scenario names, by their keys, such as `demand.file`."""
+    """Return the files that a scenario refers to, by key, such as `demand.file`."""
     found: dict[str, Path] = {}
     for keys in _FILES:
         value: Any = scenario
@@ -94,9 +94,9 @@ def named_files(scenario: Scenario) -> dict[str, Path]:
 
 
 def _anchor_files(table: Table, folder: Path) -> None:
-    """Make paths absolute: in a scenario file they are relative to its folder.
+    """Make paths absolute: those in a scenario file are relative to its folder.
 
-    In an override they are relative to the working directory, as every path on the command line.
+    Those in an override are relative to the working directory, like all paths on the command line.
     """
     for *names, key in _FILES:
         block: Any = table

@@ -1,4 +1,4 @@
-"""Contents of orders that the present stock can serve."""
+"""Contents of orders that the current stock can serve."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from rmfs.scenario.skus import SkuSet
 
 DRAWS_PER_LINE = 32
-"""Draws by popularity for one line before the SKUs that qualify are looked up."""
+"""Number of draws by popularity for a line before the SKUs that qualify are looked up."""
 
 
 class OrderContent(NamedTuple):
-    """An order before it exists.
+    """The content of an order.
 
     Attributes
     ----------
@@ -35,8 +35,8 @@ class OrderContent(NamedTuple):
     due_offset_s
         Time from arrival to due time.
     redraws
-        How often a SKU was drawn of which too little was uncommitted; `DRAWS_PER_LINE` at most for
-        each line.
+        Number of draws of a SKU with too few uncommitted units, at most `DRAWS_PER_LINE` for each
+        line.
     priority
         Its class, or -1 where there are none (`orders.due.mode = "classes"`).
     """
@@ -49,13 +49,13 @@ class OrderContent(NamedTuple):
 
 
 class OrderSource:
-    """Draws orders from SKUs that are in stock (design: backlog demand).
+    """Draws orders of SKUs that are in stock (design: backlog demand).
 
-    Order k is drawn from substream (seed, k), so it depends on nothing but the seed, its ordinal
-    and the stock: two runs with one seed get the same orders until their stock differs. A line
-    whose SKU lacks uncommitted stock takes the next draw of the substream, which is the same as
-    drawing by popularity among the SKUs that qualify. The first draws of all lines come before any
-    redraw, so that a shortage in one line does not shift the others.
+    Order k is drawn from substream (seed, k), so it depends only on the seed, its ordinal and the
+    stock: two runs with the same seed get the same orders until their stock differs. If the SKU of
+    a line lacks uncommitted stock, the next draw of the substream is used, which is equivalent to
+    drawing by popularity among the SKUs that qualify. The first draws of all lines precede all
+    redraws, so that a shortage in one line does not affect the others.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class OrderSource:
     source
         Name of the scenario, for messages.
     path
-        Numbers below the stream, for orders that are counted apart.
+        Numbers below the stream, for orders that are counted separately.
 
     Raises
     ------
@@ -97,20 +97,20 @@ class OrderSource:
         self._by_affinity = None if skus.affinity is None else skus.affinity.samplers(len(skus))
 
     def draw(self, ordinal: int, uncommitted: NDArray[np.int64]) -> OrderContent | None:
-        """Draw the order of an ordinal from the stock there is.
+        """Draw the order with an ordinal, given the stock.
 
         Parameters
         ----------
         ordinal
-            Number k of the order, 0 or greater. Each is to be drawn once: after None, the next
-            attempt is with k + 1.
+            Number k of the order, 0 or greater. Each is drawn only once: after None, the next
+            attempt uses k + 1.
         uncommitted
             Units of each SKU stored and not promised to an order, shape (K,).
 
         Returns
         -------
         OrderContent or None
-            None if some line finds no SKU of which enough is uncommitted.
+            None if there is a line for which no SKU has enough uncommitted units.
         """
         uniform = self._substreams.at(ordinal)
         lines = self._lines(uniform())
@@ -145,7 +145,7 @@ class OrderSource:
         return OrderContent(tuple(chosen), tuple(units), due_offset_s, redraws, priority)
 
     def _related(self, lines: int, uniform: Callable[[], float]) -> list[bool]:
-        """Which lines are drawn by affinity to the line before."""
+        """Return which lines are drawn by affinity to the previous line."""
         if not self._affinity_share:
             return [False] * lines
         return [False, *(uniform() < self._affinity_share for _ in range(lines - 1))]

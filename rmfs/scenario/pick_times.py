@@ -1,4 +1,4 @@
-"""How long a unit keeps a picker: draws, means, and the least that is possible."""
+"""Picking times per unit: draws, means, and lower bounds."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ if TYPE_CHECKING:
     from rmfs.scenario.parameters.pickers import Learning, Pickers, UnitTime
 
 LONGEST_S = 86400.0
-"""No single unit takes a day."""
+"""Maximum time of a single unit: a day."""
 
 
 class UnitTimes:
-    """How long units keep a picker, before anything of the picker counts.
+    """Distribution of picking times, before effects of the picker.
 
     Parameters
     ----------
     given
-        What the scenario says.
+        Parameters of the scenario.
 
     Raises
     ------
     InputError
-        If the file of measured times is broken.
+        If the file of measured times is invalid.
     """
 
     def __init__(self, given: UnitTime) -> None:
@@ -48,7 +48,7 @@ class UnitTimes:
         Parameters
         ----------
         station_s
-            What the layout says of the station: the mean, but of measured times.
+            Time of the station in the layout, which is the mean, except of measured times.
         """
         given = self._given
         if isinstance(given, GammaTime):
@@ -62,18 +62,18 @@ class UnitTimes:
         return station_s
 
     def mean_s(self, station_s: float) -> float:
-        """Return the mean of what is drawn."""
+        """Return the mean of the distribution."""
         return station_s if self._measured is None else float(self._measured.mean())
 
     def least_s(self, station_s: float) -> float:
-        """Return the least that can be drawn; 0 if a draw can be as near to 0 as it likes."""
+        """Return the lower bound of the distribution; 0 if it has no positive one."""
         if isinstance(self._given, GammaTime | LognormalTime):
             return 0.0
         return station_s if self._measured is None else float(self._measured.min())
 
 
 def learned(given: Learning | None, units: float) -> float:
-    """Return what the time of the next unit is multiplied by after so many units.
+    """Return the factor on the time of the next unit after a number of units.
 
     Unit n takes T1 (M + (1 - M) n**-b) with b = -log2(rate): Wright (1936) for M = 0, De Jong
     (1957) with the incompressible share M. The time of unit `standard_units` is the unit.
@@ -87,16 +87,16 @@ def learned(given: Learning | None, units: float) -> float:
 
 
 def least_factor(given: Pickers) -> float:
-    """Return what the drawn time of a unit is multiplied by at least; 0 if there is no least.
+    """Return the minimum factor on the drawn time of a unit; 0 if there is none.
 
-    Fatigue and errors only add to it.
+    Fatigue and errors only increase the time.
     """
     if given.speed_variation:
         return 0.0
     least = 1.0 / max(given.speeds, default=1.0)
     if given.layers is not None:
         least *= min(given.layers.time_factors)
-    # the curve falls: nobody is faster than after more units than a run can have
+    # the curve falls: no picker is faster than after more units than a run can have
     return least * learned(given.learning, 1e300)
 
 
@@ -106,7 +106,7 @@ def measured_s(path: Path) -> NDArray[np.float64]:
     Raises
     ------
     InputError
-        If the file cannot be read, lacks the column, or a time is none; names the line.
+        If the file cannot be read, lacks the column, or contains an invalid time; names the line.
     """
     try:
         text = read_bounded(path).decode("utf-8-sig")

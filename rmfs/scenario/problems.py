@@ -1,15 +1,15 @@
-"""All problems of a file in one line."""
+"""Collects all problems of a file in one line."""
 
 from __future__ import annotations
 
 from rmfs.errors import InputError
 
 MOST_SHOWN = 10
-"""Problems named in one message; the others are counted."""
+"""Maximum number of problems listed in a message; the rest are counted."""
 
 
 class Problems:
-    """Collects what is wrong with a file.
+    """Collects the problems of a file.
 
     Parameters
     ----------
@@ -23,18 +23,18 @@ class Problems:
         self.count = 0
 
     def add(self, problem: str) -> None:
-        """Take note of a problem; memory does not grow with their number."""
+        """Add a problem; memory use does not grow with the number of problems."""
         self.count += 1
         if len(self._shown) < MOST_SHOWN:
             self._shown.append(problem)
 
     def stop_if_any(self) -> None:
-        """Raise an error if there is a problem.
+        """Raise an error if there are problems.
 
         Raises
         ------
         InputError
-            One line with the first problems and the number of the others.
+            One line with the first problems and the number of the rest.
         """
         if self.count:
             more = self.count - len(self._shown)

@@ -1,4 +1,4 @@
-"""Numbers in a scenario file: what each may be, and pairs that must be in order."""
+"""Number types in scenario files, and checks of pairs that must be in order."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ Number = TypeVar("Number", int, float)
 
 
 class Block(Model):
-    """A table of a scenario: numbers must be written as numbers, and be finite."""
+    """A table of a scenario: numbers must be finite and written as numbers."""
 
     model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)
 
 
 def not_below(value: Number, info: pydantic.ValidationInfo, key: str) -> Number:
-    """Return `value` if it reaches that of another key, read before it.
+    """Return `value` if it is not below that of another key, which is read first.
 
-    Checked at the later field, the two are compared even if other keys of the table are wrong, so
-    that one message lists all problems. A key that is wrong itself is not compared.
+    Because the later field is checked, the two are compared even if other keys of the table are
+    wrong, so that one message lists all problems. A key that is wrong itself is not compared.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""From the tables of a scenario to what their files hold."""
+"""Reads the files that the tables of a scenario refer to."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
 
 def sku_set(config: Skus) -> SkuSet:
-    """Return the SKUs that a scenario asks for, drawn or read.
+    """Return the SKUs of a scenario, drawn or read.
 
     Raises
     ------
     InputError
-        If a file is broken.
+        If a file is invalid.
     """
     if isinstance(config, LetterSkus):
         return letter_sku_set(config)
@@ -47,13 +47,13 @@ def sku_set(config: Skus) -> SkuSet:
 
 
 def order_stream(scenario: Scenario, skus: SkuSet) -> OrderStream:
-    """Return the orders of the file that a scenario names as its demand.
+    """Return the orders of the file that a scenario uses as its demand.
 
     Raises
     ------
     InputError
-        If the file is broken, its digest is another one, or its orders have dates and none of
-        them comes in the run.
+        If the file is invalid, its digest differs, or its orders have dates and none of them lies
+        within the run.
     """
     config = scenario.demand
     assert isinstance(config, StreamDemand)
@@ -71,7 +71,7 @@ def order_stream(scenario: Scenario, skus: SkuSet) -> OrderStream:
 
 
 def bundle_stream(scenario: Scenario, skus: SkuSet, largest_pod: float) -> BundleStream:
-    """Return the bundles of the file that a scenario names as its replenishment.
+    """Return the bundles of the file that a scenario uses as its replenishment.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def bundle_stream(scenario: Scenario, skus: SkuSet, largest_pod: float) -> Bundl
     Raises
     ------
     InputError
-        If the file is broken, a bundle fits into no pod, or the digest is another one.
+        If the file is invalid, a bundle fits into no pod, or the digest differs.
     """
     config = scenario.replenishment
     assert isinstance(config, StreamReplenishment)
@@ -94,15 +94,15 @@ def bundle_stream(scenario: Scenario, skus: SkuSet, largest_pod: float) -> Bundl
 
 
 def time_zero(scenario: Scenario) -> datetime | None:
-    """Return the moment of time zero of a scenario; None if nothing in it has a date.
+    """Return the date and time of time zero of a scenario; None if nothing in it has a date.
 
-    It is what the scenario says, or what the clock shows at time zero on the day on which the first
-    row of its files comes. Orders and bundles have the same.
+    It is the start given in the scenario, or the time of day at time zero on the day of the first
+    row of its files. It is the same for orders and bundles.
 
     Raises
     ------
     InputError
-        If only one of two files tells its zone.
+        If only one of two files has a time zone.
     """
     if scenario.start is not None:
         return datetime.fromisoformat(scenario.start)
@@ -118,7 +118,7 @@ def time_zero(scenario: Scenario) -> datetime | None:
 
 
 def _check_comes(first_us: int, scenario: Scenario, zero: datetime) -> None:
-    """Refuse a run that ends before the first order of its file comes."""
+    """Raise an error if a run ends before the first order of its file."""
     assert isinstance(scenario.demand, StreamDemand)
     end_s = scenario.warmup_s + scenario.duration_s
     if first_us > end_s * US_PER_S:
@@ -136,7 +136,7 @@ def _check_digest(config: StreamDemand | StreamReplenishment, found: str | None)
 
 
 def _completed(read: SkuFileContent, config: SkuFile) -> SkuSet:
-    """Draw what the file does not say."""
+    """Draw what is missing in the file."""
     count = len(read.ids)
     space, bundle_units = read.space_per_unit, read.bundle_units
     return SkuSet(

@@ -1,4 +1,4 @@
-"""What the pods hold at time zero."""
+"""Initial stock of the pods."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Place = Callable[[BundleContent, NDArray[np.float64]], int | None]
 
 POD_DRAWS = 32
-"""Pods tried for one bundle before those with room are looked up."""
+"""Number of pods tried for a bundle before those with room are looked up."""
 
 
 @dataclass(frozen=True)
@@ -34,9 +34,9 @@ class InitialStock:
     Attributes
     ----------
     pod, sku, units
-        Of each of the n bundles, shape (n,).
+        Pod, SKU and units of each of the n bundles, shape (n,).
     share
-        Space stored / capacity of all pods: less than asked for only if nothing more fitted.
+        Stored space / capacity of all pods; less than requested only if nothing more fits.
     """
 
     pod: NDArray[np.int64]
@@ -59,10 +59,10 @@ def initial_stock(
     choose: ChoosePod | None = None,
     first: Sequence[int] = (),
 ) -> InitialStock:
-    """Fill the pods with bundles, their SKUs drawn by popularity, until a share is reached.
+    """Fill the pods with bundles, with SKUs drawn by popularity, until a share is reached.
 
-    A bundle that fits into no pod is left out and another one drawn; if no bundle of any SKU fits,
-    the filling ends.
+    A bundle that fits into no pod is dropped and another one drawn; if no bundle of any SKU fits,
+    filling ends.
 
     Parameters
     ----------
@@ -73,15 +73,15 @@ def initial_stock(
     seed
         The run's seed.
     choose
-        Given a bundle and the free space of each pod (P,), returns a pod that has room for it;
-        only asked if there is one. Default: any such pod, all equally likely.
+        Given a bundle and the free space of each pod (P,), returns a pod with room for it; only
+        called if there is one. Default: any such pod, all equally likely.
     first
-        SKUs of which a bundle each is stored before any is drawn; a SKU may come several times.
+        SKUs of bundles to store before any are drawn; a SKU may occur several times.
 
     Raises
     ------
     InputError
-        If a bundle of some SKU fits into no empty pod, or one of the `first` finds no room.
+        If a bundle of some SKU fits into no empty pod, or one of `first` finds no room.
     ValueError
         If `choose` returns a pod without room.
     """

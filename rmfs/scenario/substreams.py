@@ -1,4 +1,4 @@
-"""Random numbers for the k-th thing of a stream, whatever came before it."""
+"""Random numbers for the k-th element of a stream, independent of all others."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 
 
 class Substreams:
-    """One stream of the seed's tree, cut into numbered substreams.
+    """One stream of the seed's tree, divided into numbered substreams.
 
-    A counter-based generator (Philox) computes its numbers from a key and a counter: the key comes
-    from the seed and the stream, the ordinal is a part of the counter. Going to a substream then
-    costs one microsecond, where a new generator per ordinal costs ten. Substreams do not overlap
-    before 2**64 blocks of four numbers.
+    A counter-based generator (Philox) computes its numbers from a key and a counter. The key is
+    derived from the seed and the stream, and the ordinal is part of the counter. Switching to a
+    substream therefore takes one microsecond, whereas a new generator per ordinal takes ten.
+    Substreams do not overlap before 2**64 blocks of four numbers.
 
     Parameters
     ----------
@@ -38,9 +38,9 @@ class Substreams:
         self._counter = self._start["state"]["counter"]
 
     def at(self, ordinal: int) -> Callable[[], float]:
-        """Return a function that yields the uniform numbers in [0, 1) of one substream, in order.
+        """Return a function that returns the uniform numbers in [0, 1) of a substream, in order.
 
-        It serves until the next call of `at`: there is one generator, which moves.
+        It is valid until the next call of `at`, because all substreams share one generator.
         """
         self._counter[1] = ordinal
         self._generator.state = self._start

@@ -1,4 +1,4 @@
-"""Writing a configuration as TOML, its explanations as comments."""
+"""Writes a configuration as TOML, with descriptions as comments."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def to_toml(model: pydantic.BaseModel) -> str:
-    """Write every parameter of a model, defaults included; what is None is left out.
+    """Write every parameter of a model, including defaults but not None.
 
     Reading the text back gives an equal model.
     """

@@ -1,4 +1,4 @@
-"""When a backlog is topped up: pauses by stock level, and a rest after a failure."""
+"""Topping up of a backlog: pauses by stock level, and after failures."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class Hysteresis:
-    """A switch that goes on above one level and off below another.
+    """A switch that turns on above one level and off below another.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ class Hysteresis:
         self.on = on
 
     def update(self, level: float) -> bool:
-        """Take note of the present level and return the state."""
+        """Update the switch with the current level, and return its state."""
         if level > self._on_above:
             self.on = True
         elif level < self._off_below:
@@ -34,16 +34,16 @@ class Hysteresis:
 
 
 class _TopUp:
-    """A backlog that rests for a while after something could not be made.
+    """A backlog that pauses after something could not be generated.
 
     Parameters
     ----------
     capacity
         Space units of all pods together.
     retry_s
-        How long it rests.
+        Length of the pause.
     switch
-        What pauses it, or ends the pause.
+        The switch that pauses it.
     """
 
     def __init__(self, capacity: float, retry_s: float, switch: Hysteresis) -> None:
@@ -53,12 +53,12 @@ class _TopUp:
         self.blocked_until_s = 0.0
 
     def failed(self, time_s: float) -> None:
-        """Take note that nothing could be made: nothing is wanted for a while."""
+        """Start a pause because nothing could be generated."""
         self.blocked_until_s = time_s + self._retry_s
 
 
 class OrderTopUp(_TopUp):
-    """Says when the next order of a constant backlog is to be made.
+    """Determines when the next order of a constant backlog is generated.
 
     Parameters
     ----------
@@ -74,15 +74,15 @@ class OrderTopUp(_TopUp):
         self._config = config
 
     def wants(self, time_s: float, waiting: int, stored: float) -> bool:
-        """Say whether an order is to be made now.
+        """Return whether an order should be generated now.
 
-        To be asked after every change of stock or backlog, since a pause begins when the level is
+        To be called after every change of stock or backlog, since a pause starts when the level is
         crossed.
 
         Parameters
         ----------
         time_s
-            Present simulated time.
+            Current simulated time.
         waiting
             Orders not yet at a station.
         stored
@@ -93,7 +93,7 @@ class OrderTopUp(_TopUp):
 
 
 class BundleTopUp(_TopUp):
-    """Says when the next bundle of a constant backlog is to be made.
+    """Determines when the next bundle of a constant backlog is generated.
 
     All loads are in space units.
 
@@ -111,12 +111,12 @@ class BundleTopUp(_TopUp):
         self._config = config
 
     def wants(self, time_s: float, waiting: int, load: float) -> bool:
-        """Say whether a bundle is to be made now; to be asked like `OrderTopUp.wants`.
+        """Return whether a bundle should be generated now; to be called like `OrderTopUp.wants`.
 
         Parameters
         ----------
         time_s
-            Present simulated time.
+            Current simulated time.
         waiting
             Bundles not yet assigned to a station and a pod.
         load
@@ -126,5 +126,5 @@ class BundleTopUp(_TopUp):
         return not full and waiting < self._config.bundles and time_s >= self.blocked_until_s
 
     def accepts(self, load: float, space: float) -> bool:
-        """Say whether a bundle of so much space may join the load; if not, call `failed`."""
+        """Return whether a bundle of this size may join the load; if not, call `failed`."""
         return load + space <= self._config.load_limit_share * self._capacity

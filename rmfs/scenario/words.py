@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 class WordSource:
-    """Draws words: any word alike, each letter in a colour, each with a number of units.
+    """Draws words, all equally likely, with a colour and a number of units for each letter.
 
-    Order k is drawn from substream (seed, k) and depends on nothing else: words do not look at
-    stock. Equal letters of one colour become one line.
+    Order k is drawn from substream (seed, k) and depends on nothing else, in particular not on
+    stock. Equal letters of one colour form one line.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class WordSource:
     seed
         The run's seed.
     path
-        Numbers below the stream, for orders that are counted apart.
+        Numbers below the stream, for orders that are counted separately.
     """
 
     def __init__(

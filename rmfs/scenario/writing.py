@@ -1,4 +1,4 @@
-"""A scenario as files that need no others."""
+"""Writes a scenario as self-contained files."""
 
 from __future__ import annotations
 
@@ -20,14 +20,13 @@ if TYPE_CHECKING:
 
 
 def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
-    """Write a scenario with the files it names, in formats of ours.
+    """Write a scenario together with the files to which it refers, in our formats.
 
     Parameters
     ----------
     path
-        The .toml file. What belongs to it stands beside: NAME-skus.json, NAME-words.txt,
-        NAME-orders.csv, NAME-bundles.csv,
-        NAME-times.csv.
+        The .toml file. The other files are written beside it: NAME-skus.json, NAME-words.txt,
+        NAME-orders.csv, NAME-bundles.csv, NAME-times.csv.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The agenda: the present time, and what happens when, in a total order, so that a run repeats."""
+"""The agenda: the current time and all future events in a total order, so that runs repeat."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 NEVER_US = 1 << 62
-"""Later than any event, in microseconds."""
+"""A time later than any event, in microseconds."""
 
 LAST = 9
-"""Priority of what only looks: after all that happens at the same time."""
+"""Priority of entries that only observe: after everything else at the same time."""
 
 
 def us_at(time_s: float) -> int:
@@ -25,14 +25,14 @@ def us_at(time_s: float) -> int:
 class Agenda:
     """A heap of callbacks ordered by time, priority and serial number.
 
-    Of entries with equal time the one with the lower priority number comes first; of these the one
-    that was entered first. Callbacks are bound methods, or partials of these: a simulation can be
-    copied and stored with all that is still to come.
+    Entries with equal time are ordered by priority number, the lowest first, and then by insertion.
+    Callbacks are bound methods, or partials of these, so that a simulation can be copied and saved
+    with its future events.
 
     Attributes
     ----------
     now_us
-        Present time in microseconds; the run loop moves it on.
+        Current time in microseconds; the run loop advances it.
     """
 
     def __init__(self) -> None:
@@ -53,21 +53,21 @@ class Agenda:
         return self._heap[0][0] if self._heap else NEVER_US
 
     def at(self, time_us: int, callback: Callable[[], None], priority: int = 0) -> int:
-        """Enter a callback; returns its serial number, by which it can be cancelled."""
+        """Add a callback; return its serial number, by which it can be cancelled."""
         self._serial += 1
         heappush(self._heap, (time_us, priority, self._serial, callback))
         return self._serial
 
     def after(self, us: int, callback: Callable[[], None]) -> int:
-        """Enter a callback so many microseconds from now; returns its serial number."""
+        """Add a callback after a delay in microseconds; return its serial number."""
         return self.at(self.now_us + us, callback)
 
     def cancel(self, serial: int) -> None:
-        """Make an entry that has not been called yet have no effect."""
+        """Cancel an entry that has not been called yet."""
         self._cancelled[serial] = None
 
     def run_due(self) -> None:
-        """Call everything due now, in order, with what the callbacks enter for this time."""
+        """Call everything due now, in order, including entries that callbacks add for this time."""
         heap, now_us = self._heap, self.now_us
         while heap and heap[0][0] <= now_us:
             _, _, serial, callback = heappop(heap)
@@ -77,11 +77,11 @@ class Agenda:
                 callback()
 
     def when_settled(self, callback: Callable[[], None]) -> None:
-        """Call back at this instant, as soon as the controllers have decided."""
+        """Call back at this instant, after the controllers have decided."""
         self._settled.append(callback)
 
     def run_settled(self) -> bool:
-        """Call what waits for the decisions of this instant; returns whether there was any."""
+        """Call what waits for the decisions of this instant; return whether there was anything."""
         if not self._settled:
             return False
         callbacks, self._settled = self._settled, []

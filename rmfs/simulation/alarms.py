@@ -1,4 +1,4 @@
-"""Times at which controllers want to be asked."""
+"""Times at which controllers need to be asked."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ if TYPE_CHECKING:
 
 
 class Alarms:
-    """One entry of the agenda per controller that names a time itself.
+    """Agenda entries of controllers that specify their own times, one per controller.
 
     Parameters
     ----------
     due
-        Told of a problem whose controller is to be asked because its time has come.
+        Notified of a problem whose controller is due.
     outside
-        Problems that are decided outside; their rules still name times.
+        Problems decided outside; their rules still specify times.
 
     Attributes
     ----------
     punctual
-        Problems whose controllers name times.
+        Problems whose controllers specify times.
     overdue
-        Problems whose time has come and whose controller has not been asked since.
+        Problems whose controllers are due and have not been asked yet.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class Alarms:
         self.overdue: set[Problem] = set()
 
     def connect(self, problems: Iterable[Problem]) -> None:
-        """Take note of which of the controllers installed now name times."""
+        """Determine which of the installed controllers specify times."""
         self.punctual = frozenset(
             problem
             for problem in problems
@@ -59,14 +59,14 @@ class Alarms:
         )
 
     def asked(self, problem: Problem) -> None:
-        """Take note that a controller was asked: it may name another time now."""
+        """Update after a controller was asked: it may now specify another time."""
         if self.overdue:
             self.overdue.discard(problem)
         if problem in self.punctual:
             self._enter(problem)
 
     def cancel(self, problem: Problem) -> None:
-        """Forget the time of a controller."""
+        """Cancel the entry of a controller."""
         if problem in self._set:
             self._agenda.cancel(self._set.pop(problem)[1])
 
@@ -78,7 +78,7 @@ class Alarms:
         if problem in self._outside and time_s <= self._agenda.now_us / 1e6:
             return  # the outside has just been asked, and decided otherwise than the rule
         if time_s < inf:
-            # never at the present instant, or a controller could keep it from ending
+            # never at the current instant, or a controller could prevent it from ending
             time_us = max(us_at(time_s), self._agenda.now_us + 1)
             entry = self._agenda.at(time_us, partial(self._ring, problem))
             self._set[problem] = (time_s, entry)

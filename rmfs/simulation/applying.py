@@ -1,4 +1,4 @@
-"""What follows from a decision: the one place where decisions change the world."""
+"""Application of decisions: the only place where decisions change the world."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 
 class Applying:
-    """Applies decisions, each as soon as it is taken.
+    """Applies decisions, each as soon as it is made.
 
     Parameters
     ----------
     prepare, exchange, unplug
-        What is done with tasks prepared ahead, with another controller, and with a robot that is to
-        leave a plug-in place.
+        Callbacks for prepared tasks, for exchanges of controllers, and for robots that must leave a
+        plug-in place.
     """
 
     def __init__(
@@ -59,14 +59,14 @@ class Applying:
         }
 
     def __call__(self, decision: Any, call: Call | None) -> None:
-        """Apply a decision; `call`: whose solution it comes from, if it comes from one.
+        """Apply a decision; `call` is the call whose solution it comes from, if any.
 
         Raises
         ------
         ValueError
-            If it breaks a rule of the world; nothing has changed then.
+            If it violates a rule of the world; nothing has changed then.
         TypeError
-            If it is no decision.
+            If it is not a decision.
         """
         how = self._how.get(type(decision))
         if how is not None:
@@ -74,7 +74,7 @@ class Applying:
         elif type(decision) is say.Prepare:
             self._prepare(decision, call)
         else:
-            raise TypeError(f"{decision!r} is no decision (see rmfs.control.decisions)")
+            raise TypeError(f"{decision!r} is not a decision (see rmfs.control.decisions)")
 
     def _switch_station(self, decision: say.SwitchStation) -> None:
         station = self._world.stations[decision.station]
@@ -87,7 +87,7 @@ class Applying:
         self._events.bundle_promised(decision.bundle)
 
     def release_pod(self, decision: say.ReleasePod) -> None:
-        """Release what was promised to a pod."""
+        """Release the bundles promised to a pod."""
         assigned = self._world.release_bundles(decision.pod)
         self._events.bundles_released(decision.pod)
         for bundle in assigned:
@@ -109,7 +109,10 @@ class Applying:
     def _queue_order(self, decision: say.QueueOrder) -> None:
         order: Order = decision.order
         if decision.station < 0:
+            left = self._world.pick_stations[order.queued_at]
             self._world.unqueue_order(order)
+            for task in left.tasks.values():
+                self._events.picks_changed(self._world.now_s, task.robot)
             return
         self._world.queue_order(order, decision.station)
         self._events.order_queued(order)

@@ -1,4 +1,4 @@
-"""Pickling arrays that share memory: a view stays a view of the copy of its base."""
+"""Pickling of arrays that share memory: a view remains a view of the copied base."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class ArrayPickler(pickle.Pickler):
-    """Pickles views of arrays as views, where NumPy alone makes independent copies of them.
+    """Pickles views of arrays as views, whereas NumPy alone makes independent copies.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Runs that leave checkpoints, from which they go on if they are killed."""
+"""Checkpoints, from which killed runs can be resumed."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ K = TypeVar("K", bound="Kernel")
 
 
 class Checkpoints:
-    """A driver that saves the simulation now and then, and removes the file at the end.
+    """A driver that saves the simulation periodically, and removes the file at the end.
 
     Parameters
     ----------
     path
         The file.
     every_s
-        Simulated seconds between two checkpoints.
+        Simulated seconds between checkpoints.
     """
 
     def __init__(self, path: Path, every_s: float) -> None:
@@ -49,17 +49,17 @@ class Checkpoints:
 
 
 def resumed(path: Path, simulation: K) -> K:
-    """Go on from a checkpoint.
+    """Resume from a checkpoint.
 
     Parameters
     ----------
     simulation
-        A run of the same inputs that has not begun.
+        A run with the same inputs that has not started.
 
     Raises
     ------
     InputError
-        If there is no such file, or it is of another run or another version of the code.
+        If there is no such file, or it is from another run or version of the code.
     """
     if not path.is_file():
         raise InputError(f"{path}: no checkpoint to go on from (is it of another folder or seed?)")

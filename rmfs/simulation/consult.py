@@ -1,4 +1,4 @@
-"""What TA asks the controllers of the other problems."""
+"""Questions of TA to the controllers of the other problems."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class PhaseConsult:
-    """Passes TA's questions on to the controllers installed now, and measures them."""
+    """Passes TA's questions to the installed controllers, and measures their calls."""
 
     def __init__(self, world: World, controllers: ControllerSet, deciding: Deciding) -> None:
         self._world = world

@@ -1,4 +1,4 @@
-"""The controllers of a run: who is installed, who is asked when, and who is told what."""
+"""The controllers of a run, when they are asked, and the events they are notified of."""
 
 from __future__ import annotations
 
@@ -21,28 +21,27 @@ _ORDER = list(Problem)
 
 
 class ControllerSet:
-    """The controllers installed at present, one per problem.
+    """The currently installed controllers, one per problem.
 
-    Whoever needs a controller looks it up here each time, so that any of them can be exchanged
-    while the simulation runs.
+    Controllers are always looked up here, so that they can be exchanged during the simulation.
 
     Parameters
     ----------
     settings
-        The controllers of the beginning.
+        The initial controllers.
     seed
-        The run's seed; each controller has a random stream of its own below it.
+        The run's seed; each controller has its own random stream.
     lookahead
-        For controllers that look ahead.
+        Passed to controllers that look ahead.
 
     Attributes
     ----------
     installed
-        Per problem, the controller; the same mapping throughout the run.
+        The controller of each problem; the same mapping throughout the run.
     calls
-        Per trigger, the problems whose controllers are to be asked after it.
+        For each trigger, the problems whose controllers are asked after it.
     listeners
-        Per trigger, methods that are told of it at once.
+        For each trigger, methods that are called immediately.
     """
 
     def __init__(
@@ -65,10 +64,10 @@ class ControllerSet:
         return self.installed[problem]
 
     def consulted(self, problem: Problem) -> Any:
-        """Look up who answers TA's questions about a problem: whoever decides it.
+        """Return the controller that answers TA's questions about a problem.
 
-        If a dummy is installed, it is the joint controller that takes the dummy's decision; that
-        one must then have the methods of the problem's protocol as well.
+        If a dummy is installed, this is the joint controller that decides in its place, which must
+        then implement the methods of the problem's protocol as well.
         """
         return self._consulted[problem]
 
@@ -78,22 +77,32 @@ class ControllerSet:
         self._connect()
 
     def put(self, problem: Problem, controller: Controller[Any]) -> None:
-        """Let a controller that exists already take over a problem."""
+        """Install an existing controller for a problem."""
         self.installed[problem] = controller
         self._connect()
 
-    def _create(self, choice: Choice) -> None:
+    def made(self, choice: Choice) -> Controller[Any]:
+        """Make the next controller of a problem, and do nothing with it.
+
+        Raises
+        ------
+        InputError
+            If it does not go with the layout or the scenario.
+        """
         problem = choice.problem
         number = self._generations[problem]
-        self._generations[problem] += 1
         rng = generator(self._seed, Stream.CONTROLLERS, _ORDER.index(problem), number)
-        created = choice.controller(choice.parameters, self._view, rng)
+        return choice.controller(choice.parameters, self._view, rng)
+
+    def _create(self, choice: Choice) -> None:
+        created = self.made(choice)
+        self._generations[choice.problem] += 1
         if created.looks_ahead:
             created.lookahead = self._lookahead
-        self.installed[problem] = created
+        self.installed[choice.problem] = created
 
     def _connect(self) -> None:
-        """Work out who is asked after, and told of, each trigger, and who decides what."""
+        """Determine which controllers each trigger asks or notifies, and which one decides what."""
         self._consulted = dict(self.installed)
         for controller in self.installed.values():
             for problem in controller.decides:

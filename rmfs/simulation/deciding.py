@@ -1,4 +1,4 @@
-"""Asking controllers: their decisions are applied one by one, counted, and timed."""
+"""Calls of controllers: decisions are applied one by one, counted and timed."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
 _WRONG = (AttributeError, LookupError, TypeError, ValueError)
-"""What comes of decisions that the world cannot follow."""
+"""Errors caused by decisions that the world cannot carry out."""
 
 LONGEST = 200
-"""Characters of a decision that an error shows, at most."""
+"""Maximum number of characters of a decision shown in an error message."""
 
 
 class Deciding:
-    """Asks controllers, has their decisions applied, and keeps count.
+    """Asks controllers, applies their decisions, and keeps statistics.
 
     Attributes
     ----------
     statistics
-        Per problem whose controllers are asked.
+        Statistics per problem whose controllers are asked.
     """
 
     def __init__(
@@ -68,18 +68,21 @@ class Deciding:
     def connect(
         self, apply: Callable[[Any, Call | None], None], optimisers: OptimiserGateway
     ) -> None:
-        """Say who applies decisions, and who takes questions for optimisers."""
+        """Set who applies decisions, and who takes questions for optimisers."""
         self._apply, self._optimisers = apply, optimisers
 
     def ask(self, problem: Problem, given: Iterable[Any], answer: Call | None = None) -> None:
-        """Apply decisions one by one, and measure the time it takes to come to them.
+        """Apply decisions one by one, and measure the time spent on making them.
 
-        `answer` is the call whose answer the controller was told. It may come while the controller
-        that asked is still deciding: then this is nested.
+        `answer` is the call whose answer was passed to the controller. If it arrives while the
+        controller that asked is still deciding, this call is nested.
         """
         apply, controller = self._apply, self._controllers[problem]
+        asks_optimisers = bool(controller.optimisers)
         if given is None:
-            raise RuleError(f"{self._whose(problem, controller)}: decide returned nothing to go by")
+            raise RuleError(
+                f"{self._whose(problem, controller)}: decide returned None, not decisions"
+            )
         nested_ns, self._nested_ns = self._nested_ns, 0
         count = by_rule = spent_ns = 0
         decision = None
@@ -87,7 +90,10 @@ class Deciding:
         try:
             for told in given:
                 spent_ns += perf_counter_ns() - start
-                decision, call = told if type(told) is By else (told, answer)
+                if type(told) is By:
+                    decision, call = told
+                else:
+                    decision, call = told, answer
                 if type(decision) is Ask:
                     self._optimisers.ask(problem, controller, decision)
                 else:
@@ -97,7 +103,7 @@ class Deciding:
                         self._refuse(problem, controller, decision, error)
                         raise
                     count += 1
-                    if controller.optimisers and controller.is_modelled(decision):
+                    if asks_optimisers and controller.is_modelled(decision):
                         self.decided(problem, call)
                     by_rule += call is None
                 start = perf_counter_ns()
@@ -114,7 +120,7 @@ class Deciding:
             alarms.asked(problem)
 
     def _blame(self, error: Exception, problem: Problem, last: Any) -> None:
-        """Add to an error whose decisions were being taken; the innermost controller is named."""
+        """Add to an error which controller was deciding, the innermost one if nested."""
         if not getattr(error, "__notes__", ()):
             controller = self._controllers[problem]
             error.add_note(
@@ -130,24 +136,24 @@ class Deciding:
         state: RuleState,
         answer: Call | None = None,
     ) -> None:
-        """Ask a rule that asks the outside in the middle of its work, as `ask` does others.
+        """Ask a rule that may be interrupted by questions to the outside, otherwise like `ask`.
 
         Raises
         ------
         Awaits
-            If the outside has to answer first. The rule is as it was after its last decision, and
-            is to be asked again.
+            If the outside has to answer first. The rule is then in its state after its last
+            decision, and must be asked again.
 
         Parameters
         ----------
         decide
-            Asks it for its decisions, or tells it the answer of an optimiser.
+            Asks for decisions, or passes on the answer of an optimiser.
         outside
-            Knows what was answered.
+            Holds the answers given so far.
         state
-            Keeps what the rule remembers.
+            Saves and restores the state of the rule.
         answer
-            The call whose answer it is told.
+            The call whose answer is passed on.
         """
         controller = self._controllers[problem]
         which = -1 if answer is None else answer.number
@@ -189,12 +195,12 @@ class Deciding:
     def _refuse(
         self, problem: Problem, controller: Controller[Any], decision: Any, error: Exception
     ) -> None:
-        """Say what is wrong with a decision of a user's rule; what is ours stays a defect.
+        """Report an impossible decision of a user's rule; one of our own rules is a defect.
 
         Raises
         ------
         RuleError
-            If the rule is not one of rmfs.
+            If the rule is not part of rmfs.
         """
         if not is_foreign(controller):
             return
@@ -207,12 +213,12 @@ class Deciding:
         ) from error
 
     def require_possible(self, controller: Controller[Any], given: Any, question: Question) -> None:
-        """Refuse what a user's rule answers to TA, if it is impossible.
+        """Refuse an impossible answer of a user's rule to TA.
 
         Raises
         ------
         RuleError
-            Problem, rule, simulated time, answer, and why it is impossible.
+            States problem, rule, simulated time, answer, and why it is impossible.
         """
         why = why_not(given, question, controller.view)
         if why:
@@ -234,28 +240,28 @@ class Deciding:
         call: Call | None = None,
         modelled: bool = True,
     ) -> None:
-        """Take note that TA asked another controller; `modelled`: a choice that models take."""
+        """Record that TA asked another controller; `modelled`: a choice that models make."""
         self._nested_ns += wall_ns
         self.record(problem, wall_ns, int(decided), int(decided and call is None))
         if decided and controller.optimisers and (modelled or call is not None):
             self.decided(problem, call)
 
     def decided(self, problem: Problem, call: Call | None) -> None:
-        """Count a decision of a controller that asks optimisers: by a solution or by its rule."""
+        """Count a decision of a controller that asks optimisers, by solution or by rule."""
         if call is None:
             self._events.rule_decided(problem.value, self._world.now_s)
         else:
             call.count()
 
     def record(self, problem: Problem, wall_ns: int, count: int, by_rule: int) -> None:
-        """Take note of a call; decisions by a solution are told with the question."""
+        """Record a call; decisions by a solution are counted with the question."""
         now_s, statistics = self._world.now_s, self.statistics[problem]
         statistics.record(wall_ns, count, now_s)
         self._events.decision(statistics.problem, now_s, wall_ns / 1e9, by_rule)
 
 
 def is_foreign(controller: Controller[Any]) -> bool:
-    """Whether a controller is a user's, not one of rmfs."""
+    """Whether a controller is a user's and not part of rmfs."""
     return type(controller).__module__.partition(".")[0] != "rmfs"
 
 

@@ -1,4 +1,4 @@
-"""A decision that somebody outside takes."""
+"""A decision made outside the simulation."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class ImpossibleError(ValueError):
-    """An answer that is not possible; the message says why, and the question stands."""
+    """An answer is impossible; the message says why, and the question remains open."""
 
 
 class Asking(Protocol):
@@ -33,33 +33,35 @@ class Asking(Protocol):
 
     @property
     def phase(self) -> DecisionPhase:
-        """Where the question is pending."""
+        """The decision phase in which the question is pending."""
         ...
 
     @property
     def deciding(self) -> Deciding:
-        """What keeps count of decisions."""
+        """The statistics of decisions."""
         ...
 
     @property
     def controller_set(self) -> ControllerSet:
-        """The rules that give advice."""
+        """The rules that can give advice."""
         ...
 
 
 class Decision:
-    """One question to the outside, and how to answer it.
+    """One question to the outside, with methods to answer it.
 
-    POA, ROA, RPS, SA, MM and TA are asked in turns: `answer` with one decision after the other, of
-    the kinds in `rmfs.control.decisions`, each applied at once, until `decline` ends the turn. PPS,
-    PSA and repositioning are asked by TA, one thing at a time: a pod, a station, a place, a `Move`.
+    POA, ROA, RPS, SA, MM and TA are asked in turns: call `answer` with one decision after another,
+    of the kinds in `rmfs.control.decisions`, each applied at once, until `decline` ends the turn.
+    PPS, PSA and repositioning are asked by TA, one thing at a time: a pod, a station, a place, or a
+    `Move`.
 
     Attributes
     ----------
     problem
         The decision problem.
     kind
-        `turn`, or what TA asks: `pick pod`, `replenishment pod`, `next station`, `place`, `move`.
+        `turn`, or a question of TA: `pick pod`, `replenishment pod`, `next station`, `place`,
+        `move`.
     view
         The world as controllers see it: to be read, never to be changed.
     """
@@ -83,23 +85,23 @@ class Decision:
 
     @property
     def robot(self) -> Robot | None:
-        """The robot that TA asks about."""
+        """The robot that a question of TA concerns."""
         number = self._question.robot
         return None if number < 0 else self.view.robots[number]
 
     @property
     def stations(self) -> tuple[int, ...]:
-        """The station a pod is wanted for; or those to choose the next one from."""
+        """The station that needs a pod, or the options for the next station."""
         return self._question.stations
 
     @property
     def is_open(self) -> bool:
-        """Whether it still waits for an answer."""
+        """Whether it still needs an answer."""
         return self._simulation.phase.outside.pending is self._question
 
     @property
     def candidates(self) -> Candidates:
-        """Among what a rule would choose, with the numbers rules look at."""
+        """The options, with the attributes that rules compare."""
         if self._candidates is None:
             self._candidates = candidates_for(
                 self.view, self._question, self._simulation.phase.outside.refused
@@ -107,19 +109,20 @@ class Decision:
         return self._candidates
 
     def answer(self, given: Any) -> None:
-        """Answer.
+        """Answer the question.
 
         Parameters
         ----------
         given
-            In a turn a decision of `rmfs.control.decisions`. Otherwise the number of a pod, a
-            station or a waypoint, or a `Move`. A row of `candidates` serves everywhere:
+            In a turn, a decision of `rmfs.control.decisions`. Otherwise the number of a pod,
+            station or waypoint, or a `Move`. A row of `candidates` is always valid:
             `decision.answer(decision.candidates[3])`.
 
         Raises
         ------
         ImpossibleError
-            If that is not possible; says why. Nothing has changed, and the question stands.
+            If the answer is impossible; says why. Nothing has changed, and the question remains
+            open.
         """
         self._refuse_answered()
         reason = why_not(given, self._question, self.view)
@@ -128,12 +131,12 @@ class Decision:
         self._apply(given)
 
     def choose(self, row: int) -> None:
-        """Answer with a row of `candidates`: what is there is possible and not looked at again.
+        """Answer with a row of `candidates`, which is not checked again.
 
         Raises
         ------
         ImpossibleError
-            If the question has been answered.
+            If the question has already been answered.
         IndexError
             If there is no such row.
         """
@@ -141,12 +144,12 @@ class Decision:
         self._apply(self.candidates[row])
 
     def decline(self) -> None:
-        """Decide nothing more now: end a turn, or tell TA that there is nothing to choose.
+        """Make no further decision: end a turn, or answer TA that there is nothing to choose.
 
         Raises
         ------
         ImpossibleError
-            If TA asks for the next of several stations: one of them has to be chosen.
+            If TA asks for the next of several stations, of which one must be chosen.
         """
         self._refuse_answered()
         if self.kind == "next station":
@@ -157,15 +160,15 @@ class Decision:
             self._reply(None if self.kind == "move" else -1, decided=False)
 
     def advice(self) -> Any:
-        """Return what the rule that is installed for the problem would say; None to decline.
+        """Return what the installed rule of the problem would answer; None to decline.
 
-        A rule takes for granted that what it says is done: follow its advice throughout, or not
-        at all. It draws its random numbers as if it had decided.
+        Rules assume that their decisions are carried out: follow the advice throughout, or not at
+        all. The rule draws random numbers as if it had decided.
 
         Raises
         ------
         NotImplementedError
-            If it would ask an optimiser.
+            If the rule would ask an optimiser.
         """
         self._refuse_answered()
         outside = self._simulation.phase.outside
@@ -189,7 +192,7 @@ class Decision:
         return decision
 
     def _apply(self, given: Any) -> None:
-        """Do what was answered."""
+        """Carry out the answer."""
         self._candidates = None
         if self.kind == "turn":
             self._take(given)
@@ -227,4 +230,4 @@ class Decision:
 
     def _refuse_answered(self) -> None:
         if not self.is_open:
-            raise ImpossibleError(f"{self!r} has been answered")
+            raise ImpossibleError(f"{self!r} has already been answered")

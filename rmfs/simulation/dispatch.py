@@ -1,4 +1,4 @@
-"""From tasks to traffic: what robots are commanded, and what follows from what they report."""
+"""Converts tasks to commands for traffic, and reacts to the reports of traffic."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ _DRIVE, _LIFT, _SET_DOWN, _STATION = (
 
 
 class Dispatch:
-    """Starts tasks and follows robots.
+    """Starts tasks and tracks robots.
 
-    A robot is sent to a storage place only if no other keeps it. If one without work stands
-    beneath the pod that is wanted, it is sent elsewhere first; the robot that comes for the pod
-    sets off when the place has been left.
+    A robot is sent to a storage place only if no other robot keeps it. If a robot without work
+    stands beneath a pod that is needed, it is sent elsewhere first; the robot that fetches the pod
+    starts when the place has been left.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class Dispatch:
     # --- decisions of TA ------------------------------------------------------------------------
 
     def start(self, decision: TaskDecision | Charge) -> None:
-        """Let a robot begin what TA, or CA, has decided."""
+        """Let a robot start a task decided by TA or CA."""
         self._begin(decision.task())
 
     def _begin(self, planned: Task) -> None:
@@ -79,7 +79,7 @@ class Dispatch:
             self._command(robot, waypoint, _way(task))
 
     def _fetch(self, robot: Robot) -> None:
-        """Send a robot to its pod as soon as nobody else keeps the place."""
+        """Send a robot to its pod as soon as no other robot keeps the place."""
         task = robot.task
         assert task is not None
         place = self._storage.place_of[task.pod]
@@ -92,7 +92,7 @@ class Dispatch:
         self._command(robot, place, [(_DRIVE, place), (_LIFT, task.pod), *_way(task)])
 
     def _send_away(self, keeper: Robot) -> None:
-        """Let a robot without work make room; with nowhere to go it stays until there is."""
+        """Make a robot without work leave; if it has nowhere to go it stays until it has."""
         place = self._controllers[Problem.TA].rest_place(keeper)
         if place >= 0:
             self._begin(RestTask(keeper.index, place=place))
@@ -114,7 +114,7 @@ class Dispatch:
     # --- tasks prepared ahead -------------------------------------------------------------------
 
     def prepare(self, decision: Prepare, call: Call | None = None) -> None:
-        """Remember what a robot is to do after its present task, and by which solution."""
+        """Store the tasks prepared for a robot, and the solution they come from."""
         robot, tasks = decision
         self.forget_prepared(robot)
         robot.prepared.extend(task.task() for task in tasks)
@@ -122,17 +122,17 @@ class Dispatch:
             self._call_of.update(dict.fromkeys(robot.prepared, call))
 
     def forget_prepared(self, robot: Robot) -> None:
-        """Forget what a robot was to do after its present task."""
+        """Discard the tasks prepared for a robot."""
         for task in robot.prepared:
             self._call_of.pop(task, None)
         robot.prepared.clear()
 
     def start_prepared(self, robot: Robot, consult: Consult) -> None:
-        """Start the first prepared task of a robot that is possible; pass over those before it."""
+        """Start the first possible task prepared for a robot, skipping those before it."""
         while robot.prepared:
             task = robot.prepared[0]
             if task.lacks_place and robot.pod >= 0:
-                # may be asked of somebody outside: until it is answered, nothing has changed
+                # this may ask the outside; until it is answered, nothing has changed
                 task.place = consult.place_for(robot)
             robot.prepared.popleft()
             call = self._call_of.pop(task, None)
@@ -148,7 +148,7 @@ class Dispatch:
     # --- reports of traffic ---------------------------------------------------------------------
 
     def departed(self, index: int, _place: int = -1) -> None:
-        """Give up the places a robot has left, and send off whoever waited for one of them."""
+        """Release the places a robot has left, and start robots that waited for one of them."""
         robot = self._world.robots[index]
         if len(robot.places) < 2 and robot.waypoint in robot.places:
             return
@@ -170,7 +170,7 @@ class Dispatch:
         return self._world.robots[keeper].waypoint == place
 
     def lift_started(self, index: int, pod: int) -> None:
-        """A robot lifts its pod; next it goes to the station, or the place, of its task."""
+        """Handle that a robot lifts its pod, and send it to its station or place."""
         world = self._world
         robot = world.robots[index]
         assert robot.task is not None
@@ -181,7 +181,7 @@ class Dispatch:
         self._events.pod_lifted(world.now_s, pod, index, place)
 
     def at_head(self, index: int, station: int) -> None:
-        """A robot has reached a station: its pod can be served."""
+        """Handle that a robot has reached a station, where its pod can be served."""
         world = self._world
         robot, reached = world.robots[index], world.stations[station]
         robot.station = station
@@ -191,20 +191,20 @@ class Dispatch:
         self._services[station].go_on()
 
     def set_down(self, index: int, pod: int) -> None:
-        """A pod stands at its place and may be claimed by anyone."""
+        """Handle that a pod stands at its place and is available."""
         robot = self._world.robots[index]
         self._world.set_down(robot, robot.waypoint)
         self._events.pod_set_down(self._world.now_s, pod, index, robot.waypoint)
 
     def idle(self, index: int, _waypoint: int) -> None:
-        """A robot has done all it was commanded; one that stored a pod needs a task."""
+        """Handle that a robot has finished its program; if it stored a pod, it needs a task."""
         task = self._world.robots[index].task
         if task is not None and task.stores:
             end_task(self._world, self._events, index)
 
 
 def _way(task: Task) -> list[tuple[int, int]]:
-    """What a robot is commanded once it carries the pod of a task, or if there is none."""
+    """Return the program of a robot that carries the pod of its task, or has none to carry."""
     if task.station >= 0:
         return [(_STATION, task.station)]
     if task.stores:

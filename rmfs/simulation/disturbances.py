@@ -1,4 +1,4 @@
-"""What goes wrong while a warehouse runs, and when: breakdowns, slow robots, late motions."""
+"""Disturbances of a run and their times: breakdowns, slow robots, late motions, ..."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from rmfs.traffic import Traffic
 
 AGAIN_US = 1_000_000
-"""When something cannot begin or end now, it is tried again so much later."""
+"""Delay before retrying to start or end a disturbance that cannot start or end now."""
 
 TRIES = 20
-"""Waypoints looked at for one that can be closed."""
+"""Number of waypoints tried when looking for one that can be closed."""
 
 FOR_EVER_US = 2**62
 
@@ -39,7 +39,7 @@ _LATE_MOTIONS = 4
 
 
 class Disturbance(NamedTuple):
-    """Something that went wrong.
+    """A disturbance.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Disturbance(NamedTuple):
     element
         Robot, waypoint, station or elevator.
     from_us, to_us
-        When.
+        Start and end.
     """
 
     kind: str
@@ -58,17 +58,17 @@ class Disturbance(NamedTuple):
 
 
 class DisturbanceSource:
-    """Disturbs a run as its scenario says; does nothing if that says nothing.
+    """Generates the disturbances that the scenario specifies, if any.
 
     Parameters
     ----------
     seed
-        Of the run.
+        Seed of the run.
 
     Attributes
     ----------
     begun
-        What has gone wrong so far, by its beginning; what has not ended ends far in the future.
+        Disturbances so far, by start; those that have not ended have an end far in the future.
 
     Raises
     ------
@@ -106,13 +106,13 @@ class DisturbanceSource:
 
     @property
     def slow(self) -> list[tuple[int, int, int, float]]:
-        """When which robots were slow: robot, from when to when (us), share of the top speed."""
+        """Periods in which robots were slow: robot, start and end (us), share of the top speed."""
         share = self._given.slow.speed_share if self._given.slow is not None else 1.0
         slow = (one for one in self.begun if one.kind == "slow")
         return [(one.element, one.from_us, one.to_us, share) for one in slow]
 
     def within(self, start_s: float, end_s: float) -> tuple[int, float]:
-        """Return how many were going on in a stretch of time, and their seconds in it."""
+        """Return how many occurred in a time interval, and their total duration within it."""
         start_us, end_us = round(start_s * 1e6), round(end_s * 1e6)
         parts = [
             min(one.to_us, end_us) - max(one.from_us, start_us)
@@ -122,7 +122,7 @@ class DisturbanceSource:
         return len(parts), sum(parts) / 1e6
 
     def begin(self) -> None:
-        """Enter what comes first of each kind."""
+        """Schedule the first disturbance of each kind."""
         for kind, given in enumerate(self._given_by_kind()):
             if given is not None:
                 self._repeat(kind)
@@ -138,7 +138,7 @@ class DisturbanceSource:
             self._agenda.after(round(begin_s * 1e6), stop)
 
     def redraw(self) -> None:
-        """Draw again what comes next of each kind; what has begun goes on."""
+        """Redraw the next disturbance of each kind; those in progress continue."""
         for kind, serial in list(self._next.items()):
             self._agenda.cancel(serial)
             self._repeat(kind)
@@ -151,19 +151,19 @@ class DisturbanceSource:
     def _given_by_kind(
         self,
     ) -> tuple[Breakdowns | SlowRobots | Closures | ChargerFailures | None, ...]:
-        """What the scenario says of each kind, in the order of their numbers."""
+        """Return the parameters of each kind, in the order of their numbers."""
         given = self._given
         return given.breakdowns, given.slow, given.closures, given.chargers
 
     def _repeat(self, kind: int) -> None:
-        """Enter the next of a kind, at a random time."""
+        """Schedule the next disturbance of a kind, at a random time."""
         given = self._given_by_kind()[kind]
         assert given is not None
         gap_us = exponential_us(self._draw[kind].random(), 3600.0 / given.every_s)
         self._next[kind] = self._agenda.after(gap_us, partial(self._come, kind))
 
     def _come(self, kind: int) -> None:
-        """Start one of a kind, and enter the next."""
+        """Start a disturbance of a kind, and schedule the next."""
         given = self._given_by_kind()[kind]
         assert given is not None
         lasting_us = round(given.lasting_s * 1e6 * (0.5 + self._draw[kind].random()))
@@ -178,7 +178,7 @@ class DisturbanceSource:
         self._repeat(kind)
 
     def _note(self, kind: str, element: int, to_us: int = FOR_EVER_US) -> int:
-        """Note that something begins now; returns its number."""
+        """Record the start of a disturbance; return its number."""
         self.begun.append(Disturbance(kind, element, self._agenda.now_us, to_us))
         return len(self.begun) - 1
 
@@ -216,7 +216,7 @@ class DisturbanceSource:
         self._end(self._slow_since.pop(robot))
 
     def _close_somewhere(self, lasting_us: int) -> None:
-        """Close a waypoint without which all can still be served, if there is one."""
+        """Close a waypoint without which everything can still be served, if there is one."""
         traffic, layout = self._fleet, self._layout
         shafts = [place for elevator in layout.elevators for place in elevator.waypoints]
         may_close = ~layout.is_storage & ~layout.is_queue
@@ -233,7 +233,7 @@ class DisturbanceSource:
             traffic.reopen([waypoint])
 
     def _fail(self, lasting_us: int) -> None:
-        """Let a plug-in place that works fail."""
+        """Let a working plug-in place fail."""
         assert self._chargers is not None
         failed = {one.element for one in self._now("charger")}
         working = [number for number in self._chargers.stations if number not in failed]

@@ -1,4 +1,4 @@
-"""Energy of a run: traffic is told what robots and pods weigh, and what they draw."""
+"""Energy model of a run: passes masses and powers of robots and pods to traffic."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def model_of(given: Energy) -> list[float]:
-    """Return the numbers of a scenario in the order in which traffic takes them."""
+    """Return the parameters of a scenario in the order expected by traffic."""
     return [
         given.robot_kg,
         given.rolling_resistance,
@@ -31,14 +31,14 @@ def model_of(given: Energy) -> list[float]:
 
 
 class PodMasses(Observer):
-    """Keeps traffic informed of what each pod weighs: itself and what is on it.
+    """Updates the mass of each pod in traffic: the pod itself and its contents.
 
     Parameters
     ----------
     given
         The masses.
     fleet
-        Told of each change.
+        Traffic, which is notified of each change.
     """
 
     def __init__(self, given: Energy, world: World, fleet: Traffic) -> None:

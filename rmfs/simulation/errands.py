@@ -1,4 +1,4 @@
-"""Decisions of TA from outside that leave a part to PPS, PSA or repositioning."""
+"""Decisions of TA from outside that leave a choice to PPS, PSA or repositioning."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def work(decision: WorkFor, view: View, consult: Consult) -> TaskDecision | None:
-    """Complete a robot's work for a station; None if PPS finds no pod."""
+    """Complete a `WorkFor` decision; None if PPS finds no pod."""
     robot, station = decision
     if robot.pod >= 0:
         return bring(view, robot, robot.pod, station)
@@ -23,13 +23,13 @@ def work(decision: WorkFor, view: View, consult: Consult) -> TaskDecision | None
 
 
 def store(decision: Store, consult: Consult) -> TaskDecision | None:
-    """Complete the storing of a pod; None if PSA finds no place."""
+    """Complete a `Store` decision; None if PSA finds no place."""
     place = consult.place_for(decision.robot)
     return Park(decision.robot, place) if place >= 0 else None
 
 
 def move_pod(decision: MovePod, view: View, consult: Consult) -> TaskDecision | None:
-    """Complete the moving of a pod; None if all pods stand well."""
+    """Complete a `MovePod` decision; None if repositioning finds no move."""
     move = consult.move_for(decision.robot)
     if move is None:
         return None

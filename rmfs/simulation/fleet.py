@@ -1,4 +1,4 @@
-"""What the parts of a run need of the robots: the few calls that traffic serves."""
+"""The interface to the robots: the few calls of traffic that other parts of a run need."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ class Fleet(Protocol):
     """Drives robots (`rmfs.traffic.Traffic`)."""
 
     def command(self, robot: int, program: list[tuple[int, int]], /) -> None:
-        """Give a robot its next steps, each a kind of step and what it refers to."""
+        """Give a robot its next steps, as pairs of a kind of step and its argument."""
         ...
 
     def rest_waypoint(self, robot: int) -> int:

@@ -1,7 +1,7 @@
 """Copies of a running simulation, in memory and in files.
 
-A simulation is data: agenda entries are bound methods, no frame of a controller is alive between
-two steps. A copy is what the pickle of it gives back; what never changes is referred to.
+A simulation is plain data: agenda entries are bound methods, and no generator of a controller is
+alive between two steps. It is copied by pickling; objects that never change are shared.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 K = TypeVar("K", bound="Kernel")
 
 _SHARED: ContextVar[Sequence[Any]] = ContextVar("_SHARED")
-"""What the copy that is being made refers to instead of having it."""
+"""Objects that the copy being made shares with the original."""
 
 _STREAMS: ContextVar[tuple[int, tuple[int, ...]]] = ContextVar("_STREAMS")
-"""Seed and path of the random streams of the copy that is being made."""
+"""Seed and path of the random streams of the copy being made."""
 
 
 def fork(simulation: K) -> K:
@@ -42,14 +42,14 @@ def fork(simulation: K) -> K:
 
 
 class Snapshot(Generic[K]):
-    """A simulation as it was, of which copies are made whose future is drawn anew.
+    """A saved state of a simulation, from which copies with redrawn futures are made.
 
     Parameters
     ----------
     along
-        Copied with the simulation; may refer to parts of it.
+        Copied together with the simulation; may refer to parts of it.
     spectators
-        Observers that have no part in what happens: a copy has empty ones in their place.
+        Observers without influence on the run: copies have empty ones instead.
     """
 
     def __init__(self, simulation: K, along: Any, spectators: Sequence[Observer]) -> None:
@@ -65,12 +65,12 @@ class Snapshot(Generic[K]):
         self._arrays = [_copy(array) for array in arrays]
 
     def __call__(self, path: tuple[int, ...]) -> tuple[K, Any]:
-        """Make a copy, and what came along.
+        """Return a copy of the simulation and of `along`.
 
         Parameters
         ----------
         path
-            Names its random streams: of the same path all copies meet the same future.
+            Identifies the random streams: copies with the same path face the same future.
         """
         shared = list(self._shared)
         shared[self._fleet] = self._shared[self._fleet].fork()
@@ -87,7 +87,7 @@ class Snapshot(Generic[K]):
 
 
 def _never_changing(simulation: Kernel) -> list[Any]:
-    """What all copies of a simulation may share, and the fleet, which copies itself."""
+    """Return the objects that all copies may share, and the fleet, which copies itself."""
     from_files = simulation.arrivals.order_stream, simulation.arrivals.bundle_stream
     return [
         simulation.traffic,
@@ -101,7 +101,7 @@ def _never_changing(simulation: Kernel) -> list[Any]:
 
 
 def _copied(thing: Any, original: Sequence[Any], copied: Sequence[Any]) -> Any:
-    """Copy something; what is in `original` becomes what is at the same place in `copied`."""
+    """Copy an object; anything in `original` is replaced by its counterpart in `copied`."""
     stream = io.BytesIO()
     arrays: list[pickle.PickleBuffer] = []
     _Referring(stream, original, arrays.append).dump(thing)
@@ -113,7 +113,7 @@ def _copied(thing: Any, original: Sequence[Any], copied: Sequence[Any]) -> Any:
 
 
 def _copy(array: pickle.PickleBuffer) -> bytes | bytearray:
-    """Copy the content of an array, the only time that this is done."""
+    """Copy the contents of an array, which happens only here."""
     content = array.raw()
     return bytes(content) if content.readonly else bytearray(content)
 
@@ -138,7 +138,7 @@ class _Referring(ArrayPickler):
 
 
 class _Redrawing(_Referring):
-    """Leaves random streams out: a copy has others in their place."""
+    """Leaves out random streams, which a copy replaces."""
 
     def __init__(
         self,

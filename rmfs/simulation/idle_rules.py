@@ -1,4 +1,4 @@
-"""Rules that decide nothing although work waits: a run that ends so is told of."""
+"""Detects rules that decide nothing although work waits, so that users can be warned."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
 SHARE = 0.5
-"""A rule is idle that decided nothing in this last part of the run."""
+"""A rule is idle if it decided nothing in this last part of the run ..."""
 LEAST_S = 300.0
-"""And in at least so much simulated time."""
+"""... and in at least this much simulated time."""
 
 
 class IdleRuleWarning(UserWarning):
-    """A rule has decided nothing for long although work waits."""
+    """A rule has decided nothing for a long time although work waits."""
 
 
 def idle_rules(
@@ -30,14 +30,14 @@ def idle_rules(
     end_s: float,
     outside: frozenset[Problem] = frozenset(),
 ) -> list[str]:
-    """Say which rules of POA, RPS, ROA and TA have decided nothing for long while work waits.
+    """Describe rules of POA, RPS, ROA and TA that decided nothing for long while work waited.
 
     Parameters
     ----------
     end_s
         Simulated time from the first event to the end, s.
     outside
-        Problems decided outside: their rules cannot be blamed.
+        Problems decided outside, whose rules are exempt.
     """
     found = []
     for problem in (Problem.POA, Problem.RPS, Problem.ROA, Problem.TA):
@@ -56,12 +56,12 @@ def idle_rules(
 
 
 def _waits(problem: Problem, world: World, *, after_rps: bool) -> str:
-    """Say what waits for a decision; nothing if nothing could be decided.
+    """Describe what waits for a decision; empty if nothing could be decided.
 
     Parameters
     ----------
     after_rps
-        Whether bundles can be decided about only when RPS has released them.
+        Whether bundles must be released by RPS before they can be decided.
     """
     if problem is Problem.POA:
         slots = sum(station.free_slots for station in world.pick_stations if station.active)

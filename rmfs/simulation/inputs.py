@@ -1,4 +1,4 @@
-"""What a run is made of: layout, scenario and controllers, from files, names or objects."""
+"""The inputs of a run: layout, scenario and controllers, from files, names or objects."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ Overrides = list[tuple[list[str], Any]]
 
 @dataclass(frozen=True)
 class Inputs:
-    """The parts of a run, after overrides.
+    """The inputs of a run, after overrides.
 
     Attributes
     ----------
     overrides
-        All of them: those that a scenario of RAWSim-O asks of the layout, and those given.
+        All overrides: those given, and those that a scenario of RAWSim-O implies for the layout.
     pacing
-        The ones that are for pacing, without their first key.
+        Overrides of the pacing, without their first key.
     notes
-        Per part, what an import of RAWSim-O's file left out or does differently.
+        For each input, what an import of RAWSim-O files left out or does differently.
     """
 
     layout: Layout
@@ -48,14 +48,14 @@ def load_inputs(
     rules: str | Path | ControllerSettings,
     overrides: Sequence[tuple[list[str], Any]] = (),
 ) -> Inputs:
-    """Load the parts of a run; see `rmfs.simulate`.
+    """Load the inputs of a run; see `rmfs.simulate`.
 
-    What a scenario of RAWSim-O asks of the layout comes before the overrides given, which win.
+    Values that a scenario of RAWSim-O implies for the layout come first; the given overrides win.
 
     Raises
     ------
     InputError
-        If something given is wrong; names what and says what would be valid.
+        If an argument is wrong; names it and the valid values.
     """
     given = _split(overrides)
     asked = [] if isinstance(work, Scenario) else scenario.asked_of_layout(work)
@@ -85,7 +85,7 @@ def load_inputs(
 
 
 def as_overrides(settings: Mapping[str, Any]) -> Overrides:
-    """Return parameters by dotted key as pairs of path and value; classes become their names."""
+    """Return parameters by dotted key as (path, value) pairs; classes become references."""
     if not isinstance(settings, Mapping):
         raise InputError(
             'set: must be a mapping of keys to values, such as {"layout.robots": 16} '
@@ -101,12 +101,12 @@ def as_overrides(settings: Mapping[str, Any]) -> Overrides:
 
 
 def name_of(given: Any) -> str:
-    """Return the name of a part as the user gave it."""
+    """Return the name of an input as specified by the user."""
     return Path(given).stem if isinstance(given, str | Path) else str(given.name)
 
 
 def _split(overrides: Sequence[tuple[list[str], Any]]) -> dict[str, Overrides]:
-    """Sort overrides by the part they are for."""
+    """Sort overrides by input."""
     parts: dict[str, Overrides] = {"layout": [], "scenario": [], "controllers": [], "pacing": []}
     for path, value in overrides:
         if path[0] not in parts or len(path) < 2:
@@ -126,7 +126,7 @@ def _loaded(
     overrides: Overrides,
     notes: dict[str, list[str]],
 ) -> Any:
-    """Load a part unless it is an object already, which overrides cannot change."""
+    """Load an input unless it is already an object, which overrides cannot change."""
     if not isinstance(given, kind):
         loaded, remarks = load(str(given), overrides)
         if remarks:

@@ -54,32 +54,32 @@ if TYPE_CHECKING:
 
 
 class Kernel(Loop):
-    """One run: its parts, each given what it needs of the others; it goes on as `Loop` says.
+    """One run: its parts, each given only what it needs of the others; `Loop` drives it.
 
     Parameters
     ----------
     layout, scenario, controllers
-        What is simulated.
+        The inputs of the simulation.
     seed
         Seed of all random streams, 0 or greater.
     observers
-        Told of everything that happens.
+        Notified of everything that happens.
     outside
-        Decision problems that `step` hands out, such as `["poa", "pps"]`. The controllers of these
-        problems stay installed: they say when they would be asked, and give advice.
+        Decision problems that `step` hands out, such as `["poa", "pps"]`. Their controllers stay
+        installed: they determine when they would be asked, and give advice.
     pacing
-        What the thinking of optimisers costs in simulated time.
+        How simulated time accounts for the computation of optimisers.
     traffic
-        What moves the robots; by default the compiled core without trace.
+        Model of the robots' motion. Default: the compiled core without a trace.
     streams
-        Keeps all orders and bundles that come, so that they can be written and replayed.
+        Records all orders and bundles that arrive, for writing and replay.
 
     Attributes
     ----------
     world, view
-        The warehouse as it is, and as controllers see it.
+        The state of the warehouse, and the same as controllers see it.
     interventions
-        Controllers exchanged by hand, and when (s).
+        Controllers exchanged interactively, with the times (s).
 
     Raises
     ------
@@ -136,7 +136,7 @@ class Kernel(Loop):
         self.dispatch = Dispatch(layout, world, fleet, events, installed, services)
         self.chargers = Chargers(layout, services, fleet)
         visits = Visits(world, self.view, self.dispatch, seed)
-        late_binding = LateBinding(world, travel, installed)
+        late_binding = LateBinding(world, travel, installed, events)
         due = Due(world, installed)
         self.guard: EnergyGuard | None = None
         if scenario.energy is not None and world.batteries is not None:
@@ -225,25 +225,25 @@ class Kernel(Loop):
         self._due.signal(Trigger.START)
 
     def exchange(self, choice: Choice) -> None:
-        """Exchange a controller by hand at this instant; the run remembers it."""
+        """Exchange a controller interactively at this instant; the run records it."""
         self.interventions.append((self.world.now_s, choice))
         self.phase.exchange(choice)
 
     # --- looking ahead --------------------------------------------------------------------------
 
     def _snapshot(self, along: Any) -> Snapshot[Self]:
-        """Keep the run as it is, without those who only look on."""
+        """Save the state of the run, without passive observers."""
         return Snapshot(self, along, self._spectators)
 
     def take_over(
         self, problem: Problem, base: Controller[Any], decision: Any, watch: Observer
     ) -> None:
-        """Take a decision, and let another controller go on from there: in a copy, to try it.
+        """Apply a decision and install another controller: used in copies, to try the decision.
 
         Parameters
         ----------
         watch
-            Observes what comes of it.
+            Observes the consequences.
         """
         *inside, triggers = self.events.observers
         kept = [one for one in inside if type(one) is not Observer]
@@ -253,18 +253,18 @@ class Kernel(Loop):
         self._unsettled = True
 
     def redraw(self) -> None:
-        """Draw again what is to come and is known already: after all streams have been renewed.
+        """Redraw the known future, after all random streams have been replaced.
 
         Raises
         ------
         InputError
-            If what comes stands in a file.
+            If arrivals come from a file.
         """
         self.arrivals.redraw()
         self.disturbances.redraw()
 
     def observed(self) -> Observed:
-        """What is to be seen of the run."""
+        """Return the parts of the run that observers may see."""
         return Observed(
             self.layout,
             self.scenario,
@@ -276,9 +276,9 @@ class Kernel(Loop):
         )
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return everything, unless a solver is at work elsewhere."""
+        """Return the state, unless a solver process may be running."""
         if self.optimisers.waits:
-            raise InputError("a run with pacing wall cannot be copied: a solver may be at work")
+            raise InputError("a run with pacing wall cannot be copied: a solver may be running")
         return vars(self).copy()
 
 

@@ -1,4 +1,4 @@
-"""Late binding: work that comes up while a pod is on its way is added to the pod's task."""
+"""Late binding: adds new work to the task of a pod that is on its way."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from rmfs.control.travel import Travel
     from rmfs.simulation.controller_set import ControllerSet
+    from rmfs.simulation.events import Events
     from rmfs.world import World
     from rmfs.world.orders import Bundle, Order
     from rmfs.world.stations import PickStation
@@ -20,18 +21,21 @@ if TYPE_CHECKING:
 
 
 class LateBinding(Observer):
-    """Looks at what has changed: orders and bundles just assigned, pods just lifted.
+    """Adds new work to tasks after changes: orders and bundles assigned, pods lifted.
 
     A task is extended only while its pod is carried and at least one of its requests is left; a pod
-    that has none left is looked at when its robot asks for a task. Of several pods the one that
-    will be at the station first gets the work. PPS switches this on and off, and says whether
-    requests of queued orders are bound too.
+    without requests is considered when its robot asks for a task. If several pods qualify, the one
+    that reaches the station first gets the work. PPS switches this on and off, and determines
+    whether requests of queued orders are bound as well.
     """
 
-    def __init__(self, world: World, travel: Travel, controllers: ControllerSet) -> None:
+    def __init__(
+        self, world: World, travel: Travel, controllers: ControllerSet, events: Events
+    ) -> None:
         self._world = world
         self._travel = travel
         self._controllers = controllers
+        self._events = events
         self._orders: list[Order] = []
         self._queued: list[Order] = []
         self._bundles: list[Bundle] = []
@@ -56,7 +60,7 @@ class LateBinding(Observer):
             self._pods.append(pod)
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
-        """Give a task that has just begun the requests of queued orders, after all others."""
+        """Bind requests of queued orders to a task that has just started, after all others."""
         task = self._world.robots[robot].task
         if isinstance(task, PickTask):
             queued = self._world.pick_stations[station].queued
@@ -64,7 +68,7 @@ class LateBinding(Observer):
                 self._bind_queued(task, queued.values(), late_bound=False)
 
     def bind(self) -> None:
-        """Extend tasks by what has come up since the last time."""
+        """Extend tasks by the work that has arisen since the last call."""
         given = self._controllers[Problem.PPS].parameters
         if given.late_bundles:
             for bundle in self._bundles:
@@ -95,10 +99,10 @@ class LateBinding(Observer):
             if len(tasks) > 1:
                 self._sort_by_arrival(tasks, station)
             for task in tasks:
-                self._world.extend_pick(task, line.sku)
+                self._tell(task, self._world.extend_pick(task, line.sku))
 
     def _extend(self, pod: int, picks: bool, bundles: bool) -> None:
-        """Look for work for a pod that has just been lifted."""
+        """Find work for a pod that has just been lifted."""
         task = self._world.robots[self._world.storage.claimed_by[pod]].task
         if task is None or task.pod != pod:
             return
@@ -108,8 +112,8 @@ class LateBinding(Observer):
         elif picks and isinstance(task, PickTask) and task.picks:
             requests = self._world.pick_stations[task.station].requests
             available = self._world.inventory.available.item
-            for sku in [sku for sku in requests.lines if available(sku, pod)]:
-                self._world.extend_pick(task, sku)
+            skus = [sku for sku in requests.lines if available(sku, pod)]
+            self._tell(task, sum([self._world.extend_pick(task, sku) for sku in skus]))
             queued = self._world.pick_stations[task.station].queued
             if queued:
                 self._bind_queued(task, queued.values())
@@ -131,8 +135,14 @@ class LateBinding(Observer):
         if mode == "assigned":
             return
         whole = mode == "assigned-and-completable"
-        for order in orders:
-            self._world.extend_queued(task, order, whole=whole, late_bound=late_bound)
+        extend = self._world.extend_queued
+        bound = [extend(task, order, whole=whole, late_bound=late_bound) for order in orders]
+        self._tell(task, sum(bound))
+
+    def _tell(self, task: PickTask, bound: int) -> None:
+        """Notify of requests bound to the pod of a task, if there are any."""
+        if bound:
+            self._events.picks_changed(self._world.now_s, task.robot)
 
     def _extend_replenish(self, station: int, pod: int) -> None:
         task = self._world.stations[station].tasks.get(pod)
@@ -143,6 +153,6 @@ class LateBinding(Observer):
         return self._world.robots[task.robot].pod == task.pod
 
     def _sort_by_arrival(self, tasks: list[PickTask], station: PickStation) -> None:
-        """Sort tasks by the time their robots still need to the station, then by age."""
+        """Sort tasks by the remaining travel time of their robots, then by age."""
         times = self._travel.to(station.waypoint, loaded=True)
         tasks.sort(key=lambda task: times.item(self._travel.robot_waypoint(task.robot)))

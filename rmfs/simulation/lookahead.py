@@ -1,4 +1,4 @@
-"""Trials: copies of a run with another future, in which a decision is tried out."""
+"""Trials: copies of a run with another future, in which decisions are tried out."""
 
 from __future__ import annotations
 
@@ -19,45 +19,45 @@ if TYPE_CHECKING:
 
 
 class Trial(Protocol):
-    """A copy of a run, as far as trying needs it."""
+    """A copy of a run, as needed for a trial."""
 
     world: World
 
     def take_over(
         self, problem: Problem, base: Controller[Any], decision: Any, watch: Observer
     ) -> None:
-        """Take a decision, and let a rule go on from there."""
+        """Apply a decision, and install the rule that continues."""
         ...
 
     def run_until(self, time_s: float) -> Any:
-        """Go on."""
+        """Continue the run up to a time."""
         ...
 
     @property
     def instants(self) -> int:
-        """At how many instants something has happened."""
+        """Number of instants simulated so far."""
         ...
 
     def observed(self) -> Observed:
-        """What is to be seen of it."""
+        """The parts of the run that observers may see."""
         ...
 
 
 class Copies(Protocol):
-    """Makes copies of a run as it was."""
+    """Creates copies of a saved state of a run."""
 
     def __call__(self, path: tuple[int, ...]) -> tuple[Trial, Any]:
-        """Return a copy, with streams of this path, and its copy of what came along."""
+        """Return a copy with the random streams of this path, and its copy of the companion."""
         ...
 
 
 class Forks:
-    """What controllers that look ahead are given.
+    """The look-ahead given to controllers.
 
     Parameters
     ----------
     snapshot
-        Keeps the run as it is, together with something that refers to parts of it.
+        Saves the state of the run, together with an object that refers to parts of it.
     """
 
     def __init__(self, snapshot: Callable[[Any], Copies]) -> None:
@@ -79,7 +79,7 @@ class Forks:
 
 
 class ForkedTrials:
-    """Tries decisions out, each in a fresh copy."""
+    """Tries out decisions, each in a fresh copy."""
 
     def __init__(
         self, copies: Copies, problem: Problem, number: int, horizon_s: float, goal: Goal
@@ -91,7 +91,7 @@ class ForkedTrials:
         self._goal = goal
 
     def __call__(self, which: int, sample: int) -> Tried:
-        """Try one of the decisions in one of the futures."""
+        """Try out one of the decisions in one of the futures."""
         trial, (decisions, base) = self._copies((self._number, sample))
         earnings = Earnings(self._goal, trial.world.now_s, self._horizon_s)
         earnings.run_started(trial.observed())
@@ -102,7 +102,7 @@ class ForkedTrials:
 
 
 class Earnings(Observer):
-    """What a trial is worth."""
+    """Computes the value of a trial."""
 
     def __init__(self, goal: Goal, begin_s: float, horizon_s: float) -> None:
         self._goal = goal
@@ -111,7 +111,7 @@ class Earnings(Observer):
         self._value = 0.0
 
     def run_started(self, run: Observed) -> None:
-        """Keep hold of what counts motion."""
+        """Keep a reference to the traffic model, which counts motion."""
         self._traffic = run.traffic
         self._driven_m = self._metres() if self._goal.distance_m else 0.0
 
@@ -125,21 +125,21 @@ class Earnings(Observer):
         station: int,
         late_bound: bool,
     ) -> None:
-        """Count it, the sooner the more."""
+        """Count the unit, discounted by time."""
         self._value += self._goal.units * self._left(time_s)
 
     def order_completed(self, order: Order) -> None:
-        """Count it, the sooner the more, and how long it was overdue."""
+        """Count the order, discounted by time, and its overdue time."""
         goal = self._goal
         self._value += goal.orders * self._left(order.completed_s)
         self._value -= goal.overdue_s * self._overdue_s(order, order.completed_s)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
-        """Count its units, the sooner the more."""
+        """Count the units, discounted by time."""
         self._value += self._goal.units_stored * bundle.units * self._left(bundle.stored_s)
 
     def value(self, world: World) -> float:
-        """Return what was earned; orders that are overdue still are counted up to now."""
+        """Return the value; orders that are still overdue count up to now."""
         goal, value = self._goal, self._value
         if goal.overdue_s:
             still = list(world.orders)
@@ -150,7 +150,7 @@ class Earnings(Observer):
         return value
 
     def _left(self, time_s: float) -> float:
-        """Return the share of the horizon that is to come."""
+        """Return the remaining share of the horizon."""
         return (self._end_s - time_s) / self._horizon_s
 
     def _overdue_s(self, order: Order, until_s: float) -> float:

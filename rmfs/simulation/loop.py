@@ -1,4 +1,4 @@
-"""The loop of a run: one instant after the other, as far as it is told."""
+"""The main loop of a run, which processes one instant after another."""
 
 from __future__ import annotations
 
@@ -25,13 +25,14 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
     Limit = Callable[[int], int]
-    """Told the present time, says up to which time (us) may be simulated; waits as it likes."""
+    """Given the present time in us, returns the time up to which to simulate; it may block
+    first."""
 
 SAMPLE_S = 60.0
 """Time between two samples."""
 
 STALL_S = 3600.0
-"""So long nothing may move while robots wait for a way before a run is given up."""
+"""A run is given up if nothing has moved for this long while robots wait for a path."""
 
 
 class StalledError(RuntimeError):
@@ -39,21 +40,21 @@ class StalledError(RuntimeError):
 
 
 class Loop:
-    """Lets traffic move, calls what is due, and has decided what that calls for, again and again.
+    """Repeatedly advances traffic, calls what is due, and lets controllers decide.
 
-    All that happens at one instant is handled before the controllers are asked. How often a run
-    stops on its way changes nothing.
+    Everything at an instant is handled before the controllers are asked. Interrupting a run does
+    not change its results.
 
     Attributes
     ----------
     agenda
-        The present time, and what is to come.
+        The current time, and the future events.
     warmup_s, end_s
-        When measuring begins, and when the run ends.
+        Start of the measured time, and end of the run.
     wall_s
-        Wall time of simulating so far.
+        Wall time spent on simulating so far.
     instants
-        At how many instants something has happened so far.
+        Number of instants simulated so far.
     """
 
     agenda: Agenda
@@ -79,17 +80,17 @@ class Loop:
 
     @property
     def now_us(self) -> int:
-        """Present time in microseconds; `world.now_s` is the same in seconds."""
+        """Current time in microseconds; `world.now_s` is the same in seconds."""
         return self.agenda.now_us
 
     @property
     def now_s(self) -> float:
-        """Present simulated time."""
+        """Current simulated time."""
         return self.world.now_s
 
     @property
     def ended(self) -> bool:
-        """Whether the run has come to its end."""
+        """Whether the run has ended."""
         return self._ended
 
     def run(self, progress: Callable[[float, float], None] | None = None) -> None:
@@ -98,18 +99,18 @@ class Loop:
         Parameters
         ----------
         progress
-            Called with the simulated time so far and in total, about a hundred times.
+            Called about a hundred times with the simulated time so far and in total.
 
         Raises
         ------
         RuntimeError
-            If a decision is to be taken outside: `step` hands it out.
+            If a decision must be made outside; use `step` instead.
         StalledError
             If nothing can move any more (only possible in a layout that is not well-formed).
         OptimiserError
-            If an optimiser failed and the pacing is one that repeats.
+            If an optimiser fails and the pacing is a reproducible one.
         ReplayError
-            If the run that is replayed was another one.
+            If a replayed run deviates from the recorded one.
         """
         self.drive(progress)
 
@@ -118,12 +119,12 @@ class Loop:
         progress: Callable[[float, float], None] | None = None,
         limit: Limit | None = None,
     ) -> None:
-        """Simulate to the end, as `run` does, but never past a limit that may move.
+        """Simulate to the end, like `run`, but never beyond a moving limit.
 
         Parameters
         ----------
         limit
-            Asked before every instant: for who watches a run.
+            Called before every instant, for example to watch a run.
         """
         try:
             for percent in range(101 if progress is not None else 0):
@@ -136,21 +137,21 @@ class Loop:
             self.optimisers.end()
 
     def run_until(self, time_s: float) -> Decision | None:
-        """Simulate up to a time, all that happens at that time included.
+        """Simulate up to a time, including everything at that time.
 
         Returns
         -------
-        The decision to be taken outside that comes first, if there is one before that time.
+        The first decision to be made outside, if there is one before that time.
         """
         return self._go_on(min(us_at(time_s), self._end_us))
 
     def step(self) -> Decision | None:
-        """Simulate up to the next decision that is taken outside.
+        """Simulate up to the next decision that is made outside.
 
         Returns
         -------
-        The decision, which is to be answered before the next step; until then it is this one that
-        is handed out. None if the run has come to its end.
+        The decision, which must be answered before the next step; until then the same one is
+        returned. None if the run has ended.
         """
         return self._go_on(self._end_us)
 
@@ -180,7 +181,7 @@ class Loop:
             if not self._unsettled:
                 allowed_us = end_us
                 for one in limits:
-                    # an answer that comes while this waits goes into the agenda
+                    # an answer that arrives during this wait enters the agenda
                     allowed_us = min(allowed_us, one(agenda.now_us))
                 self._move(min(agenda.next_us, allowed_us))
             if not self._settle():
@@ -192,7 +193,7 @@ class Loop:
         return None
 
     def _move(self, until_us: int) -> None:
-        """Let the next instant happen, up to a time."""
+        """Process the next instant, up to a time."""
         self.instants += 1
         agenda, handlers = self.agenda, self._handlers
         events = self.traffic.advance(until_us)
@@ -209,7 +210,7 @@ class Loop:
         self._unsettled = True
 
     def _settle(self) -> bool:
-        """Let all be decided that this instant calls for; false if the outside has to."""
+        """Let controllers decide at this instant; return False if the outside has to."""
         while self.phase.settle():
             if not self.agenda.run_settled():
                 self._unsettled = False
@@ -219,20 +220,20 @@ class Loop:
     def _refuse_pending(self, decision: Decision | None) -> None:
         if decision is not None:
             raise RuntimeError(
-                f"{decision.problem} is decided outside: step() hands its decisions out, "
-                "run() cannot take them"
+                f"{decision.problem} is decided outside: use step(), which returns its decisions, "
+                "instead of run()"
             )
 
     @property
     def decision(self) -> Decision | None:
-        """The decision that waits to be taken outside, if there is one."""
+        """The decision waiting to be made outside, if there is one."""
         question = self.phase.outside.pending
         return None if question is None else Decision(question, self)
 
     # --- what happens at fixed times --------------------------------------------------------------
 
     def _begin(self) -> None:
-        """Let all that comes by itself begin."""
+        """Start all processes."""
         raise NotImplementedError
 
     def _end(self) -> None:
@@ -248,7 +249,7 @@ class Loop:
         self._sample_again(1)
 
     def _sample_again(self, number: int) -> None:
-        """Take the next sample, counted from the end of the warm-up, if it is within the run."""
+        """Schedule the next sample, counted from the end of the warm-up, within the run."""
         time_s = self.warmup_s + number * SAMPLE_S
         if time_s <= self.end_s:
             self.agenda.at(us_at(time_s), partial(self._sample, number), LAST)
@@ -259,13 +260,13 @@ class Loop:
                 f"nothing has moved since {self._moved_us / 1e6:.0f} s\n"
                 f"{self.traffic.state_report()}"
             )
-        self.traffic.motion()  # robots forget the moves they have made
+        self.traffic.motion()  # lets robots discard their past moves
         self.events.sampled(self.world.now_s)
         self._sample_again(number + 1)
 
 
 def _traffic_handlers(dispatch: Dispatch) -> list[Callable[[int, int], None] | None]:
-    """Handler per kind of event; the others matter only to traffic itself."""
+    """Return the handler of each kind of event; other events matter only inside traffic."""
     handlers: list[Callable[[int, int], None] | None] = [None] * len(EventKind)
     handlers[EventKind.DEPARTED] = dispatch.departed
     handlers[EventKind.ARRIVED] = dispatch.departed

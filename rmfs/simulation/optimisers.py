@@ -1,4 +1,4 @@
-"""Questions on their way to optimisers, and answers on their way back."""
+"""Passes questions to optimisers, and their answers back."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 
 class Answers(Protocol):
-    """Where answers go."""
+    """Receives answers."""
 
     def tell(self, call: Call) -> None:
-        """Tell the controller that asked, now."""
+        """Pass the answer to the controller that asked, immediately."""
         ...
 
     def came(self, call: Call) -> None:
-        """Take note that an answer takes effect at this instant."""
+        """Record that an answer takes effect at this instant."""
         ...
 
 
@@ -38,9 +38,9 @@ class OptimiserGateway:
     Parameters
     ----------
     pacing
-        What thinking costs.
+        Determines the simulated time of computations.
     answers
-        Takes the answers as they take effect.
+        Receives the answers as they take effect.
     """
 
     def __init__(
@@ -54,21 +54,21 @@ class OptimiserGateway:
 
     @property
     def waits(self) -> bool:
-        """Whether the pacing may have to wait for a solver at work: then `limit_us` binds."""
+        """Whether the pacing may have to wait for a running solver, so that `limit_us` applies."""
         return self._pacing.waits
 
     def begin(self, modules: Iterable[str]) -> None:
-        """Get ready, before the clock counts.
+        """Prepare, before wall time is measured.
 
         Parameters
         ----------
         modules
-            Modules with the functions that will solve the questions.
+            Modules with the functions that answer the questions.
         """
         self._pacing.begin(dict.fromkeys(modules), self._give)
 
     def ask(self, problem: Problem, controller: Controller[Any], ask: Ask[Any]) -> None:
-        """Hand a question over; if the answer takes no time, it is applied before this returns."""
+        """Submit a question; if the answer takes no time, it is applied before this returns."""
         now_us = self._agenda.now_us
         state = digest((now_us, str(problem), _tracks(self._world), ask.question))
         call = Call(self._asked, problem, controller, ask, now_us, state)
@@ -82,15 +82,15 @@ class OptimiserGateway:
             self._asking = False
 
     def limit_us(self, now_us: int) -> int:
-        """Latest time that may be simulated now."""
+        """Return the latest time up to which may be simulated now."""
         return self._pacing.limit_us(now_us)
 
     def end(self) -> None:
-        """Give up what has no answer yet."""
+        """Abandon unanswered questions."""
         self._pacing.end()
 
     def _give(self, call: Call, at_us: int) -> None:
-        """Let an answer take effect at a time; one that comes at once, at once."""
+        """Let an answer take effect at a time, which may be now."""
         if self._asking and at_us <= self._agenda.now_us:
             self._asking = False
             self._answers.tell(call)
@@ -99,7 +99,7 @@ class OptimiserGateway:
 
 
 def _tracks(world: World) -> tuple[object, ...]:
-    """What tells one state of the world from another, if they come from the same beginning."""
+    """Return what distinguishes states of the world with the same origin."""
     return (
         world.orders_created,
         world.orders_completed,

@@ -1,11 +1,11 @@
-"""Decisions that somebody outside takes: what is asked, and how a run waits for the answer.
+"""Decisions made outside: pending questions, and how a run waits for the answers.
 
-A run that waits holds no frame of a controller: all it needs to go on is data, so that it can be
-copied and stored while it waits. A problem that the phase itself asks about is a *turn*: one
-decision after the other, until the outside declines. A question that a rule for TA asks in the
-middle of its own work ends that work (`Awaits`); when the answer is there, the rule is set back to
-where it was after its last decision, asked again, and given the answers since then in their order.
-So is a rule that is carrying out the answer of an optimiser: it goes on with what is left of it.
+A waiting run has no live generator of a controller: everything it needs to continue is data, so
+that it can be copied and saved while it waits. A problem that the phase itself asks about is a
+*turn*: decisions are made one by one until the outside declines. A question that a TA rule asks in
+the middle of its work interrupts the rule (`Awaits`). When the answer arrives, the rule is restored
+to its state after its last decision, asked again, and given the answers since then in order. The
+same applies to a rule that is carrying out the answer of an optimiser: it continues with the rest.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ ASKED_BY_TA = frozenset({Problem.PPS, Problem.PSA, Problem.REPOSITIONING})
 
 
 def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) -> frozenset[Problem]:
-    """Return the problems of these names, if they can be decided outside.
+    """Return the named problems, if they can be decided outside.
 
     Raises
     ------
@@ -38,8 +38,8 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
     for name in names:
         if name not in valid:
             raise InputError(
-                f"outside {name}: no problem that can be decided outside; valid: "
-                f"{', '.join(valid)} (a path planner is written as docs/write-a-planner.md says)"
+                f"outside {name}: is not a problem that can be decided outside; valid: "
+                f"{', '.join(valid)} (for path planners see docs/write-a-planner.md)"
             )
     problems = frozenset(Problem(name) for name in names)
     for problem in sorted(problems):
@@ -62,7 +62,7 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
 
 
 class Awaits(BaseException):
-    """A question for the outside came up in the middle of a controller's work."""
+    """A question to the outside came up in the middle of a controller's work."""
 
     def __init__(self, question: Question) -> None:
         super().__init__(question)
@@ -71,26 +71,26 @@ class Awaits(BaseException):
 
 @dataclass
 class Outside:
-    """Which problems are decided outside, and what is pending.
+    """The problems decided outside, and what is pending.
 
     Attributes
     ----------
     problems
-        Decided outside.
+        The problems decided outside.
     pending
-        The question that waits for an answer.
+        The question waiting for an answer.
     given
-        Answers to the questions of the present attempt of TA's rule, with the questions.
+        Answers to the questions of the TA rule's current attempt, with the questions.
     taken
-        How many of them the attempt has used.
+        Number of them that the attempt has used.
     decided
-        Decisions so far in the present turn.
+        Number of decisions in the current turn so far.
     doing
         A decision of TA that is applied when PPS, PSA or repositioning have been answered.
     refused
-        Decisions of the present turn that came to nothing: no pod, or no place, was found.
+        Decisions of the current turn that failed because no pod or place was found.
     advisor, advised
-        The rule at work as an adviser, and its last advice.
+        The rule that gives advice, and its last advice.
     """
 
     problems: frozenset[Problem] = frozenset()
@@ -104,31 +104,32 @@ class Outside:
     advised: Any = None
 
     def __getstate__(self) -> dict[str, Any]:
-        """Leave out a rule at work as an adviser: its frames cannot be copied."""
+        """Omit the advising rule, whose generator cannot be copied."""
         return self.__dict__ | {"advisor": None, "advised": None}
 
     def knows(self, question: Question) -> bool:
-        """Whether the next answer that was given is the one to this question of TA's rule."""
+        """Whether the next given answer belongs to this question of the TA rule."""
         return self.taken < len(self.given) and self.given[self.taken][0] == question
 
     def drop_taken(self) -> None:
-        """What was asked about tasks prepared ahead is not asked again by TA's rule."""
+        """Drop answers about prepared tasks, which the TA rule does not ask again."""
         del self.given[: self.taken]
         self.taken = 0
 
     def begin_attempt(self) -> None:
-        """A rule for TA begins, or goes on after a decision of its own was applied."""
+        """Start an attempt of a TA rule, or continue after a decision of its own was applied."""
         if self.given:
             self.given.clear()
         self.taken = 0
 
     def answer_to(self, question: Question, otherwise: Callable[[], Any]) -> Any:
-        """Return the answer to a question of TA's rule.
+        """Return the answer to a question of the TA rule.
 
         Parameters
         ----------
         otherwise
-            Asks the controller inside; its answer is kept as well, so that it is not asked twice.
+            Asks the installed controller; its answer is stored as well, so that it is asked only
+            once.
 
         Raises
         ------

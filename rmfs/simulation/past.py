@@ -1,4 +1,4 @@
-"""Orders from before the run, for rules that learn from what was ordered."""
+"""Orders from before the run, for rules that learn from past orders."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ if TYPE_CHECKING:
     from rmfs.scenario import OrderContent, Scenario, SkuSet
 
 PAST_ORDERS = 5000
-"""So many are remembered."""
+"""Number of past orders."""
 
 _PAST = (1000,)  # below the stream of contents: far from the numbers of orders in the run
 _PLENTY = 2**40
 
 
 def past_orders(scenario: Scenario, skus: SkuSet, seed: int) -> list[OrderContent]:
-    """Draw orders as the scenario draws them, had every SKU been in stock.
+    """Draw orders as in the scenario, assuming that every SKU is in stock.
 
     Parameters
     ----------
     seed
-        The run's seed; they come from substreams of their own, so that drawing them changes
-        nothing else.
+        The run's seed; past orders have separate substreams, so that drawing them has no side
+        effects.
     """
     contents: list[OrderContent | None]
     if isinstance(scenario.orders, WordOrders):
@@ -43,7 +43,7 @@ def past_orders(scenario: Scenario, skus: SkuSet, seed: int) -> list[OrderConten
 
 
 class PastOrders:
-    """Draws the orders from before a run when they are wanted."""
+    """Draws the orders from before a run when they are needed."""
 
     def __init__(self, scenario: Scenario, skus: SkuSet, seed: int) -> None:
         self._scenario, self._skus, self._seed = scenario, skus, seed

@@ -1,4 +1,4 @@
-"""The decision phase: after the events of an instant controllers are asked until all is settled."""
+"""The decision phase: after each instant, controllers are asked until everything is settled."""
 
 from __future__ import annotations
 
@@ -38,19 +38,19 @@ if TYPE_CHECKING:
 
 
 class DecisionPhase:
-    """Goes through the steps that are due.
+    """Processes the steps that are due.
 
-    The order is answers of optimisers, MM, arrivals, SA, RPS, ROA, POA, late binding, PPS, PSA, CA,
-    TA; whatever a step makes due is done before anything later in this order. PPS, PSA and
-    repositioning decide when TA asks them; in steps of their own PPS and PSA may only ask
-    optimisers. TA is also asked when repositioning wants to be.
+    The order is: answers of optimisers, MM, arrivals, SA, RPS, ROA, POA, late binding, PPS, PSA,
+    CA, TA. Anything that a step makes due is done before later steps. PPS, PSA and repositioning
+    decide when TA asks them; in steps of their own, PPS and PSA may only ask optimisers. TA is also
+    asked when repositioning requests it.
 
     Attributes
     ----------
     outside
-        What is decided outside, and what is pending.
+        The problems decided outside, and what is pending.
     choices
-        The controllers installed at present.
+        The currently installed controllers.
     """
 
     def __init__(
@@ -93,22 +93,25 @@ class DecisionPhase:
         self._alarms.connect(steps.STEP_OF)
 
     def connect(self, applying: Applying, arrivals: ArrivalProcess) -> None:
-        """Say who applies decisions, and who makes orders and bundles."""
+        """Set who applies decisions, and who creates orders and bundles."""
         self._applying, self._arrivals = applying, arrivals
         self._steps = self._what_is_done()
 
     def exchange(self, choice: Choice) -> None:
         """Install another controller for a problem; it is asked in the phase of this instant.
 
-        What the former one has promised lives in the world and is carried on with: bundles on pods
-        and at stations, orders and robots at work. Given back is what only the former one knew
-        what to do with: pools of queued orders, tasks prepared ahead, and bundles held back, if
-        nobody is left who would release them.
+        Commitments of the previous controller are part of the world and remain: bundles on pods and
+        at stations, orders and robots at work. What only the previous controller could continue is
+        undone: pools of queued orders, prepared tasks, and bundles held back, if no remaining
+        controller would release them.
         """
         problem, new = choice.problem, choice.controller
         if type(self._controllers[problem]) is not new:
             if problem is Problem.POA:
                 self._world.unqueue_all()
+                for station in self._world.pick_stations:
+                    for task in station.tasks.values():
+                        self._events.picks_changed(self._world.now_s, task.robot)
             elif problem is Problem.TA:
                 for robot in self._world.robots:
                     self._dispatch.forget_prepared(robot)
@@ -128,8 +131,18 @@ class DecisionPhase:
             self._alarms.overdue.add(problem)
             self._due.want(problem)
 
+    def require_possible(self, choice: Choice) -> None:
+        """Make sure that a controller could be installed now, and change nothing.
+
+        Raises
+        ------
+        InputError
+            If it does not go with the layout or the scenario.
+        """
+        self._controllers.made(choice)
+
     def take_over(self, problem: Problem, controller: Controller[Any]) -> None:
-        """Let a controller that exists already decide a problem from now on; none is outside."""
+        """Install an existing controller for a problem; nothing is decided outside any more."""
         self.outside.problems, self.outside.pending = frozenset(), None
         self._controllers.put(problem, controller)
         self._alarms.cancel(problem)
@@ -144,7 +157,7 @@ class DecisionPhase:
     # --- the steps --------------------------------------------------------------------------------
 
     def settle(self) -> bool:
-        """Go through the steps that are due until none is; false if the outside has to decide."""
+        """Process the steps that are due; return False if the outside has to decide."""
         outside, due, storage, what = self.outside, self._due, self._world.storage, self._steps
         if outside.pending is not None or (self._interrupted and not self._go_on()):
             return False
@@ -163,7 +176,7 @@ class DecisionPhase:
                 return False
 
     def _go_on(self) -> bool:
-        """Go on with the step in which the outside was asked; false if it is asked again."""
+        """Resume the step that waited for the outside; return False if it asks again."""
         step, self._interrupted = self._interrupted, 0
         try:
             self._finish()
@@ -173,7 +186,7 @@ class DecisionPhase:
         return self.outside.pending is None
 
     def _what_is_done(self) -> dict[int, Callable[[], None]]:
-        """Return what each step is, by its bit."""
+        """Return the action of each step, by its bit."""
         asked = {step: partial(self._ask, problem) for step, problem in steps.PROBLEM_OF.items()}
         done: dict[int, Callable[[], None]] = {
             **asked,
@@ -186,7 +199,7 @@ class DecisionPhase:
         return {1 << step: what for step, what in done.items()}
 
     def _ask(self, problem: Problem) -> None:
-        """Ask the controller of a problem, or somebody outside."""
+        """Ask the controller of a problem, or the outside."""
         if problem is Problem.CA and self._guard is None:
             return  # robots have as much energy as they need
         if problem in self.outside.problems and problem not in ASKED_BY_TA:
@@ -194,7 +207,7 @@ class DecisionPhase:
         self._deciding.ask(problem, self._controllers.installed[problem].decide())
 
     def _give_tasks(self) -> None:
-        """Start tasks prepared ahead, then ask TA, with whom repositioning is asked as well."""
+        """Start prepared tasks, then ask TA, with which repositioning is asked as well."""
         world, outside = self._world, self.outside
         if outside.doing is not None:
             self.do_outside()
@@ -234,7 +247,7 @@ class DecisionPhase:
             self._dispatch.start_prepared(robot, self._consult)
 
     def prepare(self, decision: say.Prepare, call: Call | None) -> None:
-        """Remember tasks for later, or start the first if the robot has nothing better to do."""
+        """Store tasks for later, or start the first if the robot has nothing better to do."""
         robot = decision.robot
         rule = self._controllers[Problem.TA]
         self._dispatch.prepare(decision, call)
@@ -248,7 +261,7 @@ class DecisionPhase:
     # --- answers of optimisers ------------------------------------------------------------------
 
     def came(self, call: Call) -> None:
-        """Take note of an answer: the controller is told in the phase of this instant."""
+        """Record an answer, which is passed to the controller in the phase of this instant."""
         self._answers.append(call)
         self._due.want_answers()
 
@@ -258,13 +271,13 @@ class DecisionPhase:
             self.tell(self._answers.pop(0))
 
     def tell(self, call: Call) -> None:
-        """Tell the controller that asked what came back, and apply what it makes of it."""
+        """Pass an answer to the controller that asked, and apply its decisions."""
         call.controller.in_flight -= 1
         call.completed_us = self._agenda.now_us
         self._carry_out(call)
 
     def _carry_out(self, call: Call) -> None:
-        """Apply what a controller makes of an answer, or of what is left of it."""
+        """Apply the decisions based on an answer, or on the rest of it."""
         problem, controller = call.problem, call.controller
         if self._controllers[problem] is not controller:
             call.outcome = Outcome.ABANDONED
@@ -282,7 +295,7 @@ class DecisionPhase:
         call.forget()
 
     def _finish(self) -> None:
-        """Go on with what had to wait for the outside before the step in which that was goes on."""
+        """Finish what waited for the outside, before the interrupted step is resumed."""
         outside = self.outside
         if self._starting is not None:
             outside.taken = 0
@@ -301,12 +314,12 @@ class DecisionPhase:
     # --- turns of the outside ---------------------------------------------------------------------
 
     def take(self, decision: Any) -> None:
-        """Apply a decision of a turn; what TA leaves open is asked of PPS, PSA, repositioning.
+        """Apply a decision of a turn; open choices are passed to PPS, PSA or repositioning.
 
         Raises
         ------
         Awaits
-            If one of these is decided outside as well. The decision is applied when it is answered.
+            If one of these is decided outside as well; the decision is applied when it is answered.
         """
         self.outside.doing = decision
         self.outside.begin_attempt()
@@ -334,14 +347,14 @@ class DecisionPhase:
         outside.begin_attempt()
 
     def advice(self, problem: Problem) -> Iterator[Any]:
-        """Ask the rule that is installed for the decisions of a turn."""
+        """Ask the installed rule for the decisions of a turn."""
         rule = self._controllers[problem]
         inside = PhaseConsult(self._world, self._controllers, self._deciding)
         decisions: Iterable[Any] = rule.decide(inside) if problem is Problem.TA else rule.decide()
         return iter(decisions)
 
     def advice_to(self, question: Question) -> Any:
-        """Ask the rule that is installed what TA asks."""
+        """Ask the installed rule a question of TA."""
         rule = self._controllers[question.problem]
         robot = self._world.robots[question.robot]
         found = self._say(rule, robot, question)
@@ -361,7 +374,7 @@ class DecisionPhase:
         return rule.move(robot)
 
     def end_turn(self, problem: Problem) -> None:
-        """End a turn of the outside: whatever was due before its problem has been asked now."""
+        """End a turn of the outside; everything due before its problem has now been asked."""
         self._interrupted = 0
         self.outside.refused.clear()
         self._alarms.asked(problem)

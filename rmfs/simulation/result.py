@@ -1,4 +1,4 @@
-"""`Run`: what a simulation leaves behind when it has come to its end."""
+"""`Run`: the result of a simulation."""
 
 from __future__ import annotations
 
@@ -39,44 +39,45 @@ if TYPE_CHECKING:
 
 @dataclass(repr=False, eq=False)
 class Run(Results):
-    """A run that has ended.
+    """A finished run.
 
-    Sent to another process, it takes its tables and its trace along and leaves behind what can
-    only be used here: `world`, `traffic`, `recorder` and `disturbances`.
+    When sent to another process, it takes its tables and trace along, but not `world`, `traffic`,
+    `recorder` and `disturbances`.
 
     Attributes
     ----------
     layout, scenario, controllers
-        What was simulated, after overrides.
+        The simulated inputs, after overrides.
     names
-        Layout, scenario and controllers as the user named them; behind the controllers stands
-        what was exchanged by hand.
+        Layout, scenario and controllers as specified by the user; interactive exchanges are
+        appended to the controllers.
     overrides
-        As pairs of path and value: those given, and what a scenario of RAWSim-O asks of the layout.
+        (path, value) pairs: those given, and those that a scenario of RAWSim-O implies for the
+        layout.
     notes
-        Per part, what an import of RAWSim-O's file left out or does differently.
+        For each input, what an import of RAWSim-O files left out or does differently.
     pacing, pacing_settings
-        The pacing as it was given, and with all its parameters.
+        The pacing as specified by the user, and with all its parameters.
     warmup_s, duration_s, end_s
-        Simulated first and not measured; measured; both together.
+        Length of the warm-up, length of the measured time, and both together.
     wall_s
         Wall time of the simulation, without loading.
     world, traffic
-        Their last state.
+        Their final state.
     statistics
-        Per decision problem, how often its controller was asked and how long it took.
+        For each decision problem, how often its controller was asked and how long it took.
     recorder
-        What was written down.
+        The recorded data.
     measures
-        What makes the footprint of it.
+        The measures that make up the footprint.
     disturbances
-        What went wrong.
+        The disturbances that occurred.
     events
-        What happened; only if the run was asked to record its trace.
+        The recorded events; only if the trace was recorded.
     interventions
-        Controllers exchanged by hand, and when (s); `names` tells of them, too.
+        Controllers exchanged interactively, with the times (s); `names` includes them.
     idle_rules
-        Which rules decided nothing for long although work waited, in words.
+        Descriptions of rules that decided nothing for a long time although work waited.
     """
 
     layout: Layout
@@ -107,13 +108,13 @@ class Run(Results):
 
     @cached_property
     def footprint(self) -> pd.Series[Any]:
-        """Measures of the whole run; one row of `footprint.csv`."""
+        """Measures of the whole run, as in the single row of `footprint.csv`."""
         row: pd.Series[Any] = self.table("footprint").iloc[0]
         return row
 
     @property
     def series(self) -> pd.DataFrame:
-        """Measures minute by minute."""
+        """Measures per minute."""
         return self.table("series")
 
     @property
@@ -132,7 +133,7 @@ class Run(Results):
         return self._ended.tables[name]
 
     def check(self) -> CheckReport:
-        """Have the independent checker prove the motion safe; `collisions` tells of it then."""
+        """Have the independent checker verify that the motion is safe; fills `collisions`."""
         until_us = round(self.end_s * 1e6)
         slow = [Slow(*one) for one in self.slow_robots]
         self._require_trace()
@@ -150,12 +151,12 @@ class Run(Results):
 
     @property
     def trace(self) -> dict[str, NDArray[Any]]:
-        """Every piece of motion; only if the run was asked to record it."""
+        """Every piece of motion; only if the trace was recorded."""
         return self.traffic.trace() if self._sent is None else self._sent.trace
 
     @property
     def slow_robots(self) -> list[tuple[int, int, int, float]]:
-        """When which robots were slow: robot, from when to when (us), share of the top speed."""
+        """Periods in which robots were slow: robot, start and end (us), share of the top speed."""
         return self.disturbances.slow if self._sent is None else self._sent.slow_robots
 
     def _tables(self) -> dict[str, pd.DataFrame]:
@@ -184,13 +185,13 @@ class Run(Results):
 
     def __getattr__(self, name: str) -> Any:
         if name in _STAYS:
-            raise AttributeError(f"{name} was left behind when the run was sent to this process")
+            raise AttributeError(f"{name} was not sent with the run from its process")
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
 
 @dataclass(frozen=True)
 class _Sent:
-    """What a run takes along to another process in place of what it was made from."""
+    """The parts of a run that are sent to another process."""
 
     tables: dict[str, pd.DataFrame]
     trace: dict[str, NDArray[Any]]
@@ -198,4 +199,4 @@ class _Sent:
 
 
 _STAYS = frozenset(("world", "traffic", "recorder", "disturbances", "_ended", "_footprint"))
-"""What of a run cannot travel."""
+"""The parts of a run that cannot be sent."""

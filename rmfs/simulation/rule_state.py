@@ -34,9 +34,9 @@ class Kept(NamedTuple):
 class RuleState:
     """Keeps copies of what controllers remember.
 
-    Robots, orders, pods and all else of the world is referred to, not copied; so are the view, the
-    parameters, and trackers, which hear of events and do not change when a rule decides. Of a call
-    what the rule counts and how far it has come is kept.
+    Robots, orders, pods and everything else in the world are referred to, not copied. So are the
+    view, the parameters, and trackers, which follow events and do not change when a rule decides.
+    For a call, the rule's counts and its progress are kept.
     """
 
     def keep(self, controller: Controller[Any], answer: Call | None) -> Kept:

@@ -1,4 +1,4 @@
-"""`simulate` and `Simulation`: from names to results, in one call or step by step."""
+"""`simulate` and `Simulation`: run a simulation in one call or step by step."""
 
 from __future__ import annotations
 
@@ -64,47 +64,47 @@ def simulate(
     Parameters
     ----------
     layout, scenario, controllers
-        Names of shipped instances, paths, or the objects themselves.
+        Names of shipped instances, paths, or objects.
     seed
         Seed of all random streams, 0 or greater.
     set
-        Parameters by dotted key, as `--set` has them: `{"layout.robots": 16}`. Where a rule is
-        named, its class will do: `{"controllers.psa.name": MyRule}`.
+        Parameters by dotted key, as for `--set`: `{"layout.robots": 16}`. A rule can also be given
+        as a class: `{"controllers.psa.name": MyRule}`.
     overrides
-        The same as pairs of path and value, for example `(["layout", "robots"], 16)`; `set` wins.
+        The same as (path, value) pairs, for example `(["layout", "robots"], 16)`; `set` wins.
     observers
-        Told of everything that happens, besides the recorder of the usual measures.
+        Notified of everything that happens, in addition to the recorder of the standard measures.
     measures
-        What is measured besides: classes derived from `rmfs.Measure`, or how they are named
+        Additional measures: classes derived from `rmfs.Measure`, or references to them
         (`module:Class`, `path/to/file.py:Class`, the name of an installed one).
     driver
-        Takes the simulation from its first event to its last: for who lets a run wait for somebody.
-        By default it goes on without a stop.
+        Function that drives the simulation from its first event to its last, for example to make it
+        wait for something. By default it runs without interruption.
     pacing
-        What the thinking of optimisers costs in simulated time: `instant` for nothing, `wall`,
-        `work`, `fixed=SECONDS` or `replay=RUN_DIR` (docs: optimisers in the loop).
+        How simulated time accounts for the computation of optimisers: `instant` (not at all),
+        `wall`, `work`, `fixed=SECONDS` or `replay=RUN_DIR` (docs: optimisers in the loop).
     trace
-        Whether every piece of motion and everything that happens is kept.
+        Whether to record every piece of motion and all events.
     events
-        Where what happens is kept, for who reads it while the run goes on; means `trace`.
+        Where to record events, to read them during the run; implies `trace`.
     streams
-        Keeps all orders and bundles that come, to be written by `rmfs.scenario.write_stream`.
+        Records all arriving orders and bundles, for `rmfs.scenario.write_stream`.
     progress
-        Called with the simulated time so far and in total, about a hundred times.
+        Called about a hundred times with the simulated time so far and in total.
     remark
-        Called, before the run begins, with part (`layout`, ...) and text of each remark on a file
-        of RAWSim-O: what is left out or done differently.
+        Called before the run with the input (`layout`, ...) and the text of each note on a file of
+        RAWSim-O: what is left out or done differently.
     allow_not_well_formed
-        Whether to run a layout in which robots may block each other for ever.
+        Whether to accept a layout in which robots may block each other forever.
     traffic_maker
-        Makes the traffic layer, from what `Traffic` is made from: the demonstrator has its own.
+        Creates the traffic layer from the arguments of `Traffic`; used by the demonstrator.
     resume
-        A file that `Simulation.save` has written in a run of the same inputs, to go on from.
+        File written by `Simulation.save` in a run with the same inputs, from which to resume.
 
     Raises
     ------
     InputError
-        If something given is wrong; names what and says what would be valid.
+        If an argument is wrong; names it and the valid values.
     """
     simulation = Simulation(
         layout,
@@ -130,7 +130,7 @@ def simulate(
 
 
 class Simulation(Kernel):
-    """A run that goes on as far as it is told: the same as `simulate`, step by step.
+    """A run that is simulated step by step, with the same results as `simulate`.
 
     Parameters
     ----------
@@ -140,16 +140,16 @@ streams, remark, allow_not_well_formed, traffic_maker
     outside
         Decision problems that `step` hands out, such as `["poa", "pps"]`.
     measured
-        Whether the run is measured; without, it is a little faster and has no result.
+        Whether to measure the run; without measuring it is slightly faster and has no result.
 
     Raises
     ------
     InputError
-        If something given is wrong; names what and says what would be valid.
+        If an argument is wrong; names it and the valid values.
     """
 
     checks_layout: ClassVar[bool] = True
-    """Whether the layout is looked at before the run."""
+    """Whether to check the layout before the run."""
 
     def __init__(
         self,
@@ -217,20 +217,20 @@ streams, remark, allow_not_well_formed, traffic_maker
         )
 
     def fork(self) -> Self:
-        """Copy the simulation as it is, a decision that waits included.
+        """Copy the simulation in its current state, including a pending decision.
 
-        The copy goes on as this one would, bit for bit, and neither changes the other. Layout,
-        scenario and tables of travel times, which never change, are shared.
+        The copy continues exactly as the original would, bit for bit, and the two are independent.
+        Layout, scenario and tables of travel times, which never change, are shared.
 
         Raises
         ------
         InputError
-            If the pacing is `wall`: a solver at work cannot be copied.
+            If the pacing is `wall`, because a running solver cannot be copied.
         """
         return forking.fork(self)
 
     def save(self, path: str | Path) -> None:
-        """Write the simulation as it is into a file, from which `load` goes on.
+        """Save the simulation in its current state to a file, from which `load` resumes.
 
         Raises
         ------
@@ -241,30 +241,30 @@ streams, remark, allow_not_well_formed, traffic_maker
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """Go on from a file that `save` has written, to the same end, bit for bit.
+        """Resume a simulation from a file written by `save`, with identical results.
 
-        The file holds pickled objects, which can run any code: load only what you trust.
+        The file contains pickled objects, which can execute code: load only trusted files.
 
         Raises
         ------
         InputError
-            If it is no such file, is damaged, or was written by another version of the code.
+            If the file is not valid, is damaged, or was written by another version of the code.
         """
         return saving.load(cls, Path(path))
 
     def result(self) -> Run:
-        """Return the run: its footprint, its tables, its trace.
+        """Return the finished run with its footprint, tables and trace.
 
         Raises
         ------
         InputError
-            If the run has not come to its end (rates and means would be wrong), or is not measured.
+            If the run has not ended (rates and means would be wrong), or is not measured.
         """
         if not self.measured:
             raise InputError("a run with measured=False has no results")
         if not self.ended:
             raise InputError(
-                f"the run is at {self.now_s:g} s of {self.end_s:g} s: its results come at its end"
+                f"the run is at {self.now_s:g} s of {self.end_s:g} s and has no results yet"
             )
         statistics = self.deciding.statistics
         outside = self.phase.outside.problems
@@ -302,12 +302,12 @@ streams, remark, allow_not_well_formed, traffic_maker
 
 
 def _of_stations(layout: Layout) -> list[str | type[Measure]]:
-    """Measures that kinds of station bring along."""
+    """Return the measures of the layout's kinds of station."""
     return [measure for kind in layout.other_kinds for measure in kind.measures]
 
 
 def _with_answers(pacing: PacingSettings) -> Paced:
-    """Read the answers of a run that is to be replayed."""
+    """Read the answers of the run to replay."""
     if not isinstance(pacing, ReplayPacing):
         return pacing
     answers = measure.load_run(pacing.run).table("answers").to_dict("records")
@@ -317,7 +317,7 @@ def _with_answers(pacing: PacingSettings) -> Paced:
 
 
 def _require_room(plan: Layout, work: Scenario) -> None:
-    """Refuse what does not fit into memory."""
+    """Refuse a run that does not fit into memory."""
     demand = work.demand
     orders = getattr(demand, "orders", 0) or getattr(demand, "initial_orders", 0)
     skus = getattr(work.skus, "count", 0)

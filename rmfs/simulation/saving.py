@@ -1,4 +1,4 @@
-"""Simulations in files: a header that says what it is, and the simulation itself."""
+"""Simulations in files: a header that identifies the file, and the simulation itself."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ K = TypeVar("K", bound="Kernel")
 
 
 def save(simulation: Kernel, path: Path) -> None:
-    """Write a simulation; see `Kernel.save`."""
+    """Save a simulation; see `Kernel.save`."""
     stream = io.BytesIO()
     ArrayPickler(stream).dump(simulation)
     header = {
@@ -39,7 +39,7 @@ def save(simulation: Kernel, path: Path) -> None:
 
 
 def load(kind: type[K], path: Path) -> K:
-    """Read a simulation; see `Kernel.load`."""
+    """Load a simulation; see `Kernel.load`."""
     try:
         with path.open("rb") as file:
             header, content = _header(file.readline(), path), file.read()
@@ -60,12 +60,12 @@ def load(kind: type[K], path: Path) -> K:
 
 
 def refuse_other(path: Path, simulation: Kernel) -> None:
-    """Refuse to go on from a file whose run had other inputs than a simulation.
+    """Refuse to resume from a file whose run had other inputs than a simulation.
 
     Raises
     ------
     InputError
-        Naming what differs.
+        States what differs.
     """
     with path.open("rb") as file:
         header = _header(file.readline(), path)
@@ -76,7 +76,7 @@ def refuse_other(path: Path, simulation: Kernel) -> None:
 
 
 def inputs_of(simulation: Kernel) -> dict[str, str]:
-    """Return hashes of what a simulation was made from."""
+    """Return hashes of the inputs of a simulation."""
     return {
         "layout": digest(simulation.layout),
         "scenario": digest(simulation.scenario.model_dump(mode="json")),

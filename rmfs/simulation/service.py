@@ -1,9 +1,9 @@
-"""What happens at the stations: units and bundles change place, one at a time.
+"""Service at the stations: units and bundles are transferred one at a time.
 
-At a pick station a unit keeps the robot for `unit_pick_s` and the station for `unit_transfer_s`. On
-the same pod units follow each other as fast as the slower of the two allows; after its last unit
-the robot leaves while the station is still busy, so that the change of pods is hidden as long as it
-is shorter than the rest of the transfer. At a replenishment station a bundle keeps both.
+At a pick station a unit occupies the robot for `unit_pick_s` and the station for `unit_transfer_s`.
+Units of the same pod follow each other as fast as the slower of the two allows. After its last unit
+the robot leaves while the station is still busy, so that changing pods takes no extra time if it is
+shorter than the rest of the transfer. At a replenishment station a bundle occupies both.
 """
 
 from __future__ import annotations
@@ -28,30 +28,30 @@ if TYPE_CHECKING:
 
 
 class Service(Protocol):
-    """The work of one station."""
+    """The service of one station."""
 
     def go_on(self) -> None:
-        """Do what can be done now for the robot at the head."""
+        """Serve the robot at the head as far as possible now."""
         ...
 
 
 class Outlet(Protocol):
-    """Where the orders of pick stations go (`rmfs.simulation.packing`)."""
+    """Destination of orders from pick stations (`rmfs.simulation.packing`)."""
 
     def takes(self, order: Order) -> bool:
         """Whether an order may leave its station; if not, `hand_on_held` is called when it may."""
         ...
 
     def released(self, order: Order, *, last: bool, by_hand: bool = False) -> None:
-        """Take an order, or a part of one, that has just left its station."""
+        """Receive an order, or a part of one, that has just left its station."""
         ...
 
 
 class Hands(Protocol):
-    """Who picks at pick stations (`rmfs.simulation.pickers`)."""
+    """The pickers at pick stations (`rmfs.simulation.pickers`)."""
 
     def are_at(self, station: int) -> bool:
-        """Whether somebody is there; if not, `go_on` is called when somebody comes."""
+        """Whether a picker is there; if not, `go_on` is called when one arrives."""
         ...
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
@@ -59,23 +59,24 @@ class Hands(Protocol):
         ...
 
     def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:
-        """Begin with a unit, which would keep station and robot so long by the layout."""
+        """Start a unit that would occupy station and robot for these times by the layout."""
         ...
 
 
 class PickService:
-    """The picker of one station.
+    """The service of one pick station.
 
     A unit leaves its pod, and its request is fulfilled, when its pick starts. An order whose last
-    unit is picked leaves its slot when the station is done with that unit. A pod with requests of
-    queued orders only waits for a slot if one is about to be free, then it is let go.
+    unit is picked leaves its slot when the station has finished that unit. A pod that has only
+    requests of queued orders waits for a slot if one is about to become free; otherwise it is sent
+    away.
 
     Attributes
     ----------
     outlet
-        Where orders go from here; None if they are done with their last pick.
+        Destination of orders; None if they are complete after their last pick.
     hands
-        Who picks; None if every unit takes the time that the layout says.
+        The pickers; None if every unit takes the time of the layout.
     """
 
     def __init__(
@@ -98,7 +99,7 @@ class PickService:
         self.hands: Hands | None = None
 
     def go_on(self) -> None:
-        """Do what can be done now for the robot at the head."""
+        """Serve the robot at the head as far as possible now."""
         station, now_us = self._station, self._agenda.now_us
         if station.robot < 0 or now_us < self._robot_until_us:
             return
@@ -118,12 +119,12 @@ class PickService:
             self._agenda.when_settled(partial(self._pick_or_leave, task))
 
     def _pick_or_leave(self, task: PickTask) -> None:
-        """Let a pod go that is here for queued orders only; their requests are open again."""
+        """Send away a pod that has only requests of queued orders, which are open again."""
         robots, here = self._world.robots, self._station.robot
         if here < 0 or robots[here].task is not task:
             return
-        if not task.can_pick:
-            self._world.give_back(task)
+        if not task.can_pick and self._world.give_back(task):
+            self._events.picks_changed(self._world.now_s, task.robot)
         self.go_on()
 
     def _pick(self, task: PickTask) -> None:
@@ -155,9 +156,9 @@ class PickService:
                 self._finished.append(order)
 
     def _unit_transferred(self) -> None:
-        """Hand complete orders on; the station is free for the next unit."""
+        """Pass on complete orders; the station is free for the next unit."""
         if self._agenda.now_us < self._busy_until_us:
-            return  # the next unit has been begun at this very instant, before this was told
+            return  # the next unit was started at this very instant, before this callback
         if not self._finished:
             self.go_on()
             return
@@ -166,7 +167,7 @@ class PickService:
         self._agenda.when_settled(self.go_on)
 
     def _hand_on(self) -> None:
-        """Hand on the orders whose last unit has been transferred."""
+        """Pass on the orders whose last unit has been transferred."""
         for order in self._finished:
             if order.unpicked_units:
                 continue  # lines have joined this part of an order meanwhile
@@ -175,12 +176,12 @@ class PickService:
         self._finished.clear()
 
     def hand_on_held(self, order: Order, *, by_hand: bool = False) -> None:
-        """Hand on an order, or a part of one, that the outlet did not take before."""
+        """Pass on an order, or a part of one, that was refused before."""
         self._complete(order, by_hand)
         self._agenda.when_settled(self.go_on)
 
     def _complete(self, order: Order, by_hand: bool = False) -> None:
-        """Let an order, or a part of one, leave its slot."""
+        """Remove an order, or a part of one, from its slot."""
         complete = self._world.complete_order(order)
         if complete is not None:
             self._events.order_completed(complete)
@@ -190,9 +191,9 @@ class PickService:
 
 
 class ReplenishmentService:
-    """The worker of one replenishment station.
+    """The service of one replenishment station.
 
-    A bundle is in its pod, and leaves the station's load, when its transfer starts.
+    A bundle is in its pod, and no longer counts as load of the station, when its transfer starts.
     """
 
     def __init__(
@@ -210,7 +211,7 @@ class ReplenishmentService:
         self._busy_until_us = 0
 
     def go_on(self) -> None:
-        """Do what can be done now for the robot at the head."""
+        """Serve the robot at the head as far as possible now."""
         station = self._station
         if station.robot < 0 or self._agenda.now_us < self._busy_until_us:
             return
@@ -223,7 +224,7 @@ class ReplenishmentService:
             end_task(self._world, self._events, station.robot)
 
     def _store(self, task: ReplenishTask) -> None:
-        """Start to put the next bundle of a task into its pod."""
+        """Start to transfer the next bundle of a task to its pod."""
         agenda, events = self._agenda, self._events
         bundle = self._world.store_bundle(task)
         self._busy_until_us = agenda.now_us + self._transfer_us
@@ -234,18 +235,18 @@ class ReplenishmentService:
 
 
 class VisitService:
-    """Whoever works at a station of another kind: a pod is kept for a while, then let go.
+    """The service of a station of another kind: a pod stays for a while and is then sent away.
 
-    A kind derives its own from it, and says how long and what happens then.
+    Each kind derives its own class, which defines how long pods stay and what happens at the end.
 
     Attributes
     ----------
     station
-        What the station is and knows.
+        State of the station.
     parameters
-        Of the kind.
+        Parameters of the kind.
     world
-        To be read; what a visit changes belongs into the station.
+        Read-only; the effects of a visit must be stored in the station.
     """
 
     def __init__(
@@ -264,14 +265,14 @@ class VisitService:
         self.world = world
 
     def seconds(self, task: VisitTask) -> float:
-        """How long the pod of a task that has come to the head is kept."""
+        """Return how long the pod of a task that has reached the head stays."""
         raise NotImplementedError
 
     def done(self, task: VisitTask) -> None:
-        """Take note that this time is over; the robot needs a task then."""
+        """Handle the end of this time; the robot then needs a task."""
 
     def go_on(self) -> None:
-        """Begin with the pod at the head, if there is one."""
+        """Start serving the pod at the head, if there is one."""
         station, agenda = self.station, self._agenda
         task = self.world.robots[station.robot].task if station.robot >= 0 else None
         if self._served is not None or not isinstance(task, VisitTask):
@@ -289,7 +290,7 @@ class VisitService:
 
 
 def services_of(layout: Layout, *, agenda: Agenda, world: World, events: Events) -> list[Service]:
-    """Make the service of every station, in the common numbering."""
+    """Create the service of every station, in the common numbering."""
     parts: dict[str, Any] = {
         plan.kind.name: plan.kind.part("service", object) for plan in layout.stations
     }

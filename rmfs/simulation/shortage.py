@@ -1,4 +1,4 @@
-"""Orders that stock cannot serve: looked at when they have waited, and cut or given up."""
+"""Orders that stock cannot serve: checked after a waiting time, and cut or cancelled."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 
 class ShortOrders(Observer):
-    """Looks at each order in the backlog when it has waited for so long, and again after as long.
+    """Checks each order in the backlog after a given waiting time, and periodically after that.
 
-    What an order cannot have is what is not in stock, or what orders at stations wait for. An order
-    that is in the pool of a station, or has been split, is being served and stays as it is.
+    An order cannot have units that are out of stock or needed by orders at stations. An order that
+    is in the pool of a station, or has been split, is already being served and is not changed.
 
     Parameters
     ----------
     given
-        Whose policy is not to wait.
+        Parameters, with a policy other than waiting.
     changed
         Called when an order has left the backlog.
     """
@@ -82,7 +82,7 @@ def short_orders(
     events: Events,
     changed: Callable[[], None],
 ) -> list[Observer]:
-    """Return what looks at orders; nothing if they just wait."""
+    """Return the observer that checks orders; None if they just wait."""
     if given.policy == "wait":
         return []
     return [ShortOrders(given, agenda=agenda, world=world, events=events, changed=changed)]

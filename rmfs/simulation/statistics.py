@@ -1,4 +1,4 @@
-"""How often controllers are asked, and how long they take."""
+"""Number and duration of calls of controllers."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ class DecisionStatistics:
     problem
         The decision problem, as in a controllers file.
     name
-        The rule now installed.
+        The currently installed rule.
     decisions
-        Decisions given in all calls.
+        Decisions made in all calls.
     last_s
-        When it last decided something, simulated; -1 for never.
+        Simulated time of the last decision; -1 for never.
     wall_ns
-        Wall time of each call, without the time in which other controllers were consulted.
+        Wall time of each call, excluding the time of other controllers that it consulted.
     """
 
     problem: str
@@ -34,16 +34,16 @@ class DecisionStatistics:
 
     @property
     def calls(self) -> int:
-        """How often the controller was asked."""
+        """Number of calls."""
         return len(self.wall_ns)
 
     @property
     def wall_s(self) -> float:
-        """Wall time of all calls."""
+        """Total wall time of all calls."""
         return sum(self.wall_ns) / 1e9
 
     def wall_quantile_s(self, share: float) -> float:
-        """Wall time that this share of the calls did not exceed; nan without calls."""
+        """Return the quantile of the wall time of calls; nan without calls."""
         return float(np.quantile(self.wall_ns, share)) / 1e9 if self.wall_ns else float("nan")
 
     def record(self, wall_ns: int, decisions: int, now_s: float) -> None:
@@ -54,6 +54,6 @@ class DecisionStatistics:
         self.decisions += decisions
 
     def reset(self) -> None:
-        """Forget all calls (end of the warm-up)."""
+        """Reset the statistics (end of the warm-up)."""
         self.decisions = 0
         self.wall_ns = array("q")

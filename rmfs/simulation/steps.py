@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from rmfs.simulation.controller_set import ControllerSet
     from rmfs.world import World
 
-# in their order; the earliest one that is due comes next
+# in this order; the earliest one that is due comes next
 ANSWERS = 0
 MANAGE = 1
 ARRIVALS = 2
@@ -26,7 +26,7 @@ PROBLEM_OF: dict[int, Problem] = {
     **dict(enumerate(AHEAD, start=LATE_BINDING + 1)),
     CHARGES: Problem.CA,
 }
-"""Whose controller is asked in a step."""
+"""The problem whose controller is asked in a step."""
 
 STEP_OF: dict[Problem, int] = {
     **{problem: step for step, problem in PROBLEM_OF.items()},
@@ -34,7 +34,7 @@ STEP_OF: dict[Problem, int] = {
     Problem.TA: TASKS,
     Problem.REPOSITIONING: TASKS,
 }
-"""In which step a controller is asked; all but PP."""
+"""The step in which a controller is asked; all except PP."""
 
 _ARRIVALS_AFTER = frozenset(
     {
@@ -58,7 +58,7 @@ class Due:
     bits
         Bit k is set if step k is due.
     storage_version
-        Of the pods and places that those who are due have been told of.
+        Version of pods and places that the due controllers know.
     """
 
     def __init__(self, world: World, controllers: ControllerSet) -> None:
@@ -70,7 +70,7 @@ class Due:
         self.connect()
 
     def connect(self) -> None:
-        """Take note of who is asked after which trigger."""
+        """Determine which controllers are asked after which trigger."""
         self._masks = []
         asked = set(STEP_OF)
         if self._world.batteries is None:
@@ -84,29 +84,29 @@ class Due:
             self._masks.append(mask)
 
     def signal(self, trigger: Trigger, subject: Any = None) -> None:
-        """Take note of an event: whom it concerns is asked in the phase of this instant."""
+        """Process an event: the controllers concerned are asked in the phase of this instant."""
         self.bits |= self._masks[trigger]
         for listener in self._controllers.listeners[trigger]:
             listener(trigger, subject)
 
     def want(self, problem: Problem) -> None:
-        """Let a controller be asked."""
+        """Schedule a call of a controller."""
         self.bits |= 1 << STEP_OF[problem]
 
     def want_arrivals(self) -> None:
-        """Let orders or bundles be made now."""
+        """Schedule the creation of orders or bundles now."""
         self.bits |= 1 << ARRIVALS
 
     def want_answers(self) -> None:
-        """Let answers of optimisers be passed on."""
+        """Schedule the delivery of optimisers' answers."""
         self.bits |= 1 << ANSWERS
 
     def place_left(self) -> None:
-        """Take note that a storage place was left: a robot may wait for an empty one."""
+        """Record that a storage place was left: a robot may wait for an empty one."""
         if self._world.asking:
             self.bits |= 1 << TASKS
 
     def storage_changed(self) -> None:
-        """Take note that pods or places have become free or taken."""
+        """Record that pods or places have become free or occupied."""
         self.storage_version = self._world.storage.version
         self.signal(Trigger.POD_AT_HAND)

@@ -1,4 +1,4 @@
-"""Which events of a run are triggers for controllers."""
+"""Converts events of a run to triggers of controllers."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 
 
 class Triggers(Observer):
-    """Makes triggers of events; each comes with the subject that is described at the trigger.
+    """Creates triggers from events; the subject of each is described at the trigger.
 
     Parameters
     ----------
     due
-        Told of each trigger and its subject, and of places that were left.
+        Notified of each trigger and its subject, and of places that were left.
     """
 
     def __init__(self, due: Due) -> None:
@@ -26,15 +26,15 @@ class Triggers(Observer):
         self._place_left = due.place_left
 
     def order_created(self, order: Order) -> None:
-        """Order arrivals may be assigned."""
+        """A new order may be assigned."""
         self._signal(Trigger.NEW_ORDER, order)
 
     def order_assigned(self, order: Order) -> None:
-        """There may be work for robots."""
+        """An assigned order may mean work for robots."""
         self._signal(Trigger.ORDER_ASSIGNED, order)
 
     def order_queued(self, order: Order) -> None:
-        """Pods may be fetched ahead."""
+        """Pods for a queued order may be fetched ahead of time."""
         self._signal(Trigger.ORDER_QUEUED, order)
 
     def unit_picked(
@@ -71,7 +71,7 @@ class Triggers(Observer):
         self._signal(Trigger.BUNDLE_SENT, bundle)
 
     def bundle_assigned(self, bundle: Bundle) -> None:
-        """There may be work for robots."""
+        """An assigned bundle may mean work for robots."""
         self._signal(Trigger.BUNDLE_ASSIGNED, bundle)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:

@@ -1,4 +1,4 @@
-"""Visits: what brings pods to stations of other kinds than pick and replenishment stations."""
+"""Visits: controllers that bring pods to stations of other kinds."""
 
 from __future__ import annotations
 
@@ -24,29 +24,29 @@ S = TypeVar("S", bound=Station[Any])
 
 
 class VisitController(Observer, Generic[S]):
-    """Says which pods go to the stations of a kind, and when.
+    """Base class of controllers that decide which pods go to the stations of a kind, and when.
 
-    It is asked about each robot that needs a task, before anybody else is, and watches the run by
-    the callbacks of `Observer`. It changes nothing: its decisions do. A run can be copied or saved
-    at any moment: it holds plain data.
+    It is asked about each robot that needs a task, before all other controllers, and observes the
+    run with the callbacks of `Observer`. It changes nothing itself; its decisions are applied by
+    the simulation. It must hold plain data, because a run can be copied or saved at any moment.
 
     Parameters
     ----------
     kind
-        With its parameters.
+        The kind, with its parameters.
     stations
-        Its stations, as they are at any moment.
+        Current state of its stations.
     view
-        The world, to be read.
+        The world, read-only.
     seed
-        Of the run.
+        Seed of the run.
 
     Attributes
     ----------
     task
-        The kind of task to be named in a `Visit`.
+        The class of task used in a `Visit`.
     rng
-        For what it draws.
+        Random generator of the controller.
     """
 
     def __init__(self, kind: StationKind, stations: Sequence[S], view: View, seed: int = 0) -> None:
@@ -57,16 +57,16 @@ class VisitController(Observer, Generic[S]):
         self.rng = generator(seed, Stream.VISITS, *kind.name.encode())
 
     def visit_for(self, robot: Robot) -> Visit | None:
-        """Say where a robot that needs a task is to go now, with the pod it carries or another.
+        """Return the visit for a robot that needs a task, or None.
 
-        A robot that carries a pod can only go on with this one; an empty one may fetch any pod that
-        is at hand (`view.storage.is_at_hand`).
+        A robot that carries a pod can only use that one; an empty one may fetch any available pod
+        (`view.storage.is_at_hand`).
         """
         raise NotImplementedError
 
 
 class Visits:
-    """The controllers of all kinds of station in a layout, and who applies what they say."""
+    """The controllers of all kinds of station in a layout, whose decisions it applies."""
 
     def __init__(self, world: World, view: View, dispatch: Dispatch, seed: int) -> None:
         self._world, self._view, self._dispatch = world, view, dispatch

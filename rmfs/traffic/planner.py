@@ -1,7 +1,8 @@
-"""Planners in Python: what one is, what it is told, and what it may ask.
+"""Planners in Python: their interface, the state they see, and the questions they may ask.
 
-A planner in Python is a rolling planner: asked for all robots that drive, it returns a way for each
-as a wish, and the core grants of it what is free. So no planner can cause a collision.
+A planner in Python is a rolling planner: called for all driving robots, it returns a desired path
+for each, and the core grants as much of it as is free. A planner therefore cannot cause a
+collision.
 """
 
 from __future__ import annotations
@@ -25,45 +26,45 @@ __all__ = [
 ]
 
 Question = Search | Along | Conflict | Reserved
-"""What a planner may yield, and what it is sent for it.
+"""Questions that a planner may yield, and the answers it gets.
 
 `Search(agent, around=(), until_us=None, labels=2000)`
-    The best way of an agent (by its number in the call) around what is granted and around ways of
-    others, or None: to its goal, or within a window that ends at `until_us`. At most so many labels
-    are looked at.
+    The best path of an agent (by its number in the call) around all granted motion and around the
+    paths of others, or None: to its goal, or within a window that ends at `until_us`. At most
+    `labels` labels are expanded.
 `Along(agent, stops, ready_us=None)`
-    The way over stops (waypoints) by straight runs and elevator rides, begun as early as possible
-    but not before `ready_us`, whoever is there.
+    The path over the given stops (waypoints) by straight runs and elevator rides, starting as early
+    as possible but not before `ready_us`, ignoring other robots.
 `Conflict(ways, until_us=0)`
-    Where two of the ways meet first: their numbers in the list, the waypoint, and from when to when
-    both want it; None if they do not. Robots stay at their ends until `until_us`.
+    The first conflict between two of the paths: their numbers in the list, the waypoint, and the
+    time interval in which both need it; None if there is none. Robots stay at the ends of their
+    paths until `until_us`.
 `Reserved(waypoint)`
-    What is granted there: a list of (start, end, robot), in microseconds.
+    The reservations granted there: a list of (start, end, robot), in microseconds.
 """
 
 
 class Agent(NamedTuple):
-    """A robot that wants to drive.
+    """A robot that is driving to a goal.
 
     Attributes
     ----------
     robot
-        Its number.
+        Index of the robot.
     waypoint
-        Where the rest of its way can be chosen: where it stands, or where what it has been granted
-        ends.
+        Start of the rest of its path: where it stands, or where its granted motion ends.
     heading_rad
         Its heading there.
     ready_us
-        When it is there.
+        When it arrives there.
     goal
-        The waypoint it wants to reach.
+        Destination waypoint.
     loaded
         Whether it carries a pod.
     needs_plan
-        Whether it has no way, or was refused the one it had.
+        Whether it has no path, or its path was refused.
     to_go_us
-        Unhindered time to the goal; None if there is no way.
+        Unhindered time to the goal; None if there is no path.
     """
 
     robot: int
@@ -80,31 +81,31 @@ class PathPlanner(Protocol):
     """A planner written in Python."""
 
     def plan(self, now_us: int, agents: list[Agent]) -> Generator[Question, Any, list[Way | None]]:
-        """Plan ways for all robots that drive.
+        """Plan paths for all driving robots.
 
         Parameters
         ----------
         now_us
-            The time, in microseconds.
+            Current time in microseconds.
         agents
             The robots, always in the same order.
 
         Yields
         ------
         Question
-            One at a time; what comes back is the answer.
+            One at a time; the value sent back is the answer.
 
         Returns
         -------
         list
-            A way for each agent, or None if it is to stay and to be planned again. What is left to
-            the goal behind the end of a way is added, unchecked.
+            A path for each agent, or None if it should stay and be planned again. If a path does
+            not reach the goal, the rest is added without checks.
         """
         ...
 
 
 class Conversation:
-    """A planner as the core talks to it: with plain tuples."""
+    """Adapts a planner to the core, which uses plain tuples."""
 
     def __init__(self, planner: PathPlanner) -> None:
         self._planner = planner

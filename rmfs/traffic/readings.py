@@ -1,4 +1,4 @@
-"""What traffic has counted and recorded of its robots."""
+"""Statistics and records of the robots' motion."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ class Readings:
     def motion(self) -> dict[str, NDArray[Any]]:
         """Totals per robot since the last reset, up to now, each of shape (R,).
 
-        `distance_m`, `loaded_distance_m`; the times `moving_s`, `turning_s`, `waiting_s` (standing
-        with a way to go), `served_s` (standing at a station), `idle_s`, `transfer_s` (lifting,
-        setting down) and `riding_s` (elevators) add up to the time passed; `queueing_s` counts from
-        entering a queue zone to reaching the station and overlaps with the others.
+        `distance_m` and `loaded_distance_m`. The times `moving_s`, `turning_s`, `waiting_s`
+        (standing on the way), `served_s` (standing at a station), `idle_s`, `transfer_s` (lifting,
+        setting down) and `riding_s` (elevators) add up to the elapsed time. `queueing_s` counts
+        from entering a queue zone to reaching the station and overlaps with the others.
         """
         return self._core.motion()
 
@@ -39,7 +39,7 @@ class Readings:
         Raises
         ------
         ValueError
-            If energy is not counted.
+            If energy is not modelled.
         """
         return self._core.energy()
 
@@ -74,7 +74,7 @@ class Readings:
         return self._core.edges()
 
     def trips(self) -> dict[str, NDArray[Any]]:
-        """Trips finished since the last reset, in order of their end.
+        """Return the trips finished since the last reset, ordered by their end.
 
         `robot`, `kind` (`TripKind`), `t0_us`, `t1_us` (a trip to a station ends at its queue
         zone), `from_wp`, `to_wp`, `loaded`, `distance_m`, `unhindered_s` (lower bound of the
@@ -96,20 +96,20 @@ class Readings:
         return joined_holds(self._core.trace(0)[0])
 
     def trace_after(self, known: int) -> tuple[dict[str, NDArray[Any]], int]:
-        """The trace without what is known of it already: for who follows a run as it goes.
+        """Return the part of the trace that is not yet known, for following a run in progress.
 
-        The motion each robot is in the middle of is among the rows, and comes again as long as it
-        lasts: a row takes the place of what was known of its robot from `t0_us` on. Where a robot
-        stood while this was called, several rows follow each other (`joined_holds`).
+        The motion that each robot is currently executing is included, and is returned again until
+        it has ended: a row replaces what was known of its robot from `t0_us` on. A robot that stood
+        still during several calls has several consecutive rows (`joined_holds`).
 
         Parameters
         ----------
-        known
+        The number returned by the previous call; 0 at first.
             The number returned by the call before; 0 at first.
 
         Returns
         -------
-        tuple
+        The columns of `trace`, and the number to pass to the next call.
             The columns of `trace`, and the number to give next time.
 
         Raises
@@ -120,7 +120,7 @@ class Readings:
         return self._core.trace(known)
 
     def counters(self) -> dict[str, float]:
-        """Count the work of planning.
+        """Return counters of path planning.
 
         `plans` (legs), `plan_failures`, `replans`, `refusals` (runs a rolling planner wanted that
         were not free), `improvements`, `expansions`, `cost_tables`, and wall time, `planning_s`.
@@ -132,16 +132,16 @@ class Readings:
         return counts
 
     def call_times_s(self) -> NDArray[np.float64]:
-        """Wall time of each call of the planner since the last reset, in seconds.
+        """Return the wall time of each call of the planner since the last reset, in seconds.
 
-        A planner per leg is called for one robot, a rolling one for all that drive.
+        A per-leg planner is called for one robot, a rolling planner for all driving robots.
         """
         return self._core.call_times() / 1e9
 
     def reset_statistics(self) -> None:
-        """Forget totals, heat, trips and counters; the trace stays whole."""
+        """Reset totals, heat, trips and counters; the trace is kept."""
         self._core.reset_statistics()
 
     def state_report(self) -> str:
-        """One line per robot, for a report when nothing can move any more."""
+        """Return one line per robot, for a report when nothing can move any more."""
         return self._core.state_report()

@@ -1,4 +1,4 @@
-"""Which planner of the core plans the ways, and how much it may work."""
+"""Settings of the core's path planner."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 COST_TABLE_BYTES = 256_000_000
 EXPANSION_BUDGET = 50_000
-"""Labels a search for a leg may look at before the robot waits for all planned motion to end."""
+"""Maximum number of labels per leg before a robot waits for all planned motion to end."""
 
 
 class PlannerSettings(NamedTuple):
@@ -20,9 +20,9 @@ class PlannerSettings(NamedTuple):
     name
         As in a controllers file.
     parameters
-        All it has; durations in seconds, switches as 0 and 1.
+        All its parameters; durations in seconds, switches as 0 and 1.
     seed
-        Of its random decisions.
+        Seed of its random decisions.
     code
         The planner itself, if it is written in Python (`rmfs.traffic.planner`).
     """

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 def joined_holds(trace: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Return a trace in which a robot that goes on standing has one row.
+    """Return a trace in which each uninterrupted stand of a robot has one row.
 
-    So a trace is the same however often somebody asked for it, or for statistics, on the way.
+    This makes the trace independent of how often it, or statistics, were requested during the run.
 
     Parameters
     ----------

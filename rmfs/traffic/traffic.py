@@ -64,7 +64,7 @@ class Traffic(Readings):
         self.__dict__.update(_of(build(layout, options), options))
 
     def fork(self, memo: dict[int, Any] | None = None) -> Self:
-        """Copy the traffic: both go on independently, and bit for bit alike if told the same.
+        """Copy the traffic: both go on independently, and bit for bit alike with the same commands.
 
         What never changes is shared, and what has been recorded so far; so a copy costs
         milliseconds. A planner written in Python is copied deeply. `copy.deepcopy` does the same.
@@ -222,9 +222,9 @@ class Traffic(Readings):
     ) -> None:
         """Let motions begin late from now on, each with the same probability.
 
-        It is drawn just before a robot turns for a run, so that no plan knows of it. Others who are
-        to use a waypoint after the robot wait; all keep their order, unless that is repaired. A
-        delay for which somebody would have to stop who is driving comes at the robot's next stop.
+        Lateness is drawn just before a robot turns for a run, so that no plan knows of it. Robots
+        due to use a waypoint after the late one wait; all keep their order unless it is repaired. A
+        delay that would force a driving robot to stop is moved to the late robot's next stop.
 
         Parameters
         ----------
@@ -250,7 +250,7 @@ class Traffic(Readings):
         self._core.reseed_lateness(seed)
 
     def slow_down(self, robot: int, level: int) -> bool:
-        """Let a robot that stands still drive slower from now on, or as fast as it should again.
+        """Reduce the top speed of a robot that stands still, or restore it.
 
         Parameters
         ----------
@@ -259,8 +259,8 @@ class Traffic(Readings):
 
         Returns
         -------
-        Whether that was done; not if the robot is in motion, or somebody is already driving who
-        would have to wait for it.
+        Whether the speed was changed; not if the robot is in motion, or if another robot already in
+        motion would have to wait for it.
         """
         kind = int(self._layout.robot_kind[robot]) + level * len(self._layout.robot_kinds)
         return self._core.change_kind(robot, kind)

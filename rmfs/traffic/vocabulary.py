@@ -1,4 +1,4 @@
-"""Words of traffic: what robots can be told, and what is reported of them."""
+"""Vocabulary of traffic: commands to robots, and the events that it reports."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Step(IntEnum):
-    """What a robot can be told to do."""
+    """Commands to robots."""
 
     DRIVE = 0
     LIFT = 1

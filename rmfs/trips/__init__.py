@@ -1,4 +1,4 @@
-"""Traffic alone: streams of trips without orders, stock or decisions, to try path planners on."""
+"""Streams of trips without orders, stock or decisions, for testing path planners."""
 
 from __future__ import annotations
 

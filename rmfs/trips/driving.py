@@ -1,4 +1,4 @@
-"""Driving a stream of trips and measuring how it went."""
+"""Drives a stream of trips and measures the results."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ if TYPE_CHECKING:
     from rmfs.trips.streams import Command, TripStream
 
 STALL_S = 1800.0
-"""So long nothing may happen while robots wait for a way before driving is given up."""
+"""Driving is given up if nothing has happened for this long while robots wait for a path."""
 
 
 @dataclass(frozen=True)
 class TripRun:
-    """What became of a stream of trips.
+    """The result of driving a stream of trips.
 
     Attributes
     ----------
     warmup_s, end_s
-        Simulated before anything is counted, and when it ended.
+        Simulated time before counting starts, and end of the simulation.
     wall_s
         Wall time after the warm-up.
     stalled
-        Empty, or where every robot is if nothing could move any more.
+        Empty, or the positions of all robots if nothing could move any more.
     report
-        The verdict of the checker, if it was asked for.
+        Result of the trace checker, if it was requested.
     """
 
     layout: Layout
@@ -57,7 +57,7 @@ class TripRun:
 
     @property
     def delays_s(self) -> NDArray[np.float64]:
-        """How much longer each trip took than if nobody else had been there."""
+        """Return how much longer each trip took than without other robots."""
         trips = self.traffic.trips()
         taken: NDArray[np.float64] = (trips["t1_us"] - trips["t0_us"]) / 1e6
         unhindered: NDArray[np.float64] = trips["unhindered_s"]
@@ -65,7 +65,7 @@ class TripRun:
 
     @property
     def idle_robots(self) -> int:
-        """How many robots finished no trip at all."""
+        """Number of robots that finished no trip."""
         return self.layout.robots - len(np.unique(self.traffic.trips()["robot"]))
 
     @property
@@ -91,11 +91,11 @@ def drive(
     Parameters
     ----------
     duration_s, warmup_s
-        Simulated time that is measured, and before it.
+        Simulated time that is measured, and simulated time before it.
     proven
-        Whether the independent checker is to prove the motion safe; it needs the trace.
+        Whether the independent checker should prove the motion safe; requires the trace.
     stall_s
-        So long nothing may happen while robots wait for a way.
+        Time without events after which driving is given up if robots wait for a path.
     cost_table_bytes
         Memory for tables of unhindered times.
     each
@@ -116,7 +116,7 @@ def drive(
 
 
 class _Loop:
-    """Hands commands to traffic and events to the stream."""
+    """Passes commands to traffic, and events to the stream."""
 
     def __init__(
         self,
@@ -135,7 +135,7 @@ class _Loop:
         self._give()
 
     def until(self, end_s: float) -> None:
-        """Go on until a time, or until nothing can move any more."""
+        """Simulate up to a time, or until nothing can move any more."""
         traffic, stream, end_us = self.traffic, self.stream, round(end_s * 1e6)
         while not self.stalled and traffic.now_us < end_us:
             due_us = self._later[0][0] if self._later else end_us
@@ -155,7 +155,7 @@ class _Loop:
             heapq.heappush(self._later, (command.at_us, self._serial, command))
 
     def _give(self) -> None:
-        """Hand over the commands that are due."""
+        """Pass on the commands that are due."""
         while self._later and self._later[0][0] <= self.traffic.now_us:
             _, _, command = heapq.heappop(self._later)
             self._moved_us = self.traffic.now_us
@@ -163,7 +163,7 @@ class _Loop:
             self._take(self.stream.given(command))
 
     def _look(self) -> None:
-        """Nothing happened for long: it is over if robots wait for a way and no command is due."""
+        """Stop after a long time without events if robots wait for a path and no command is due."""
         self._moved_us = self.traffic.now_us
         if self.traffic.blocked() and not self._later:
             self.stalled = self.traffic.state_report()

@@ -1,8 +1,8 @@
-"""Robots and trips of the path-finding community's files, on their maps.
+"""Robots and trips from the files of path-finding benchmarks.
 
-`.scen` (MovingAI): each line a robot with its start and its one goal. `.agents` and `.tasks`
-(League of Robot Runners): starts, and goals or chains of goals that are handed out in order to
-whoever has none left.
+`.scen` (MovingAI): each line is a robot with its start and its only goal. `.agents` and `.tasks`
+(League of Robot Runners): starts, and goals or chains of goals that are assigned in order to robots
+that have none left.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ def scenario(
 
     Returns
     -------
-    The layout, and what makes its stream of trips: one for each robot.
+    The layout, and a function that creates its stream of trips: one trip per robot.
 
     Raises
     ------
     InputError
-        If a file is wrong or has fewer robots.
+        If a file is invalid or has fewer robots than requested.
     """
     number = read_cells(map_file)
     width = number.shape[1]
@@ -62,16 +62,16 @@ def league(
     Parameters
     ----------
     tasks
-        None: random goals without end.
+        The `.tasks` file. None: an endless stream of random goals.
 
     Returns
     -------
-    The layout, and what makes its stream of trips.
+    The layout, and a function that creates its stream of trips.
 
     Raises
     ------
     InputError
-        If a file is wrong or has fewer robots.
+        If a file is invalid or has fewer robots than requested.
     """
     number = read_cells(map_file)
     starts = [cells[0] for cells in _numbered(agents)]

@@ -1,7 +1,7 @@
-"""Streams of trips: what robots are told to do one after another.
+"""Streams of trips: sequences of commands for robots.
 
-What a robot is told depends on the seed and on how many trips it has done, never on how long they
-took: different planners drive the same trips.
+The commands of a robot depend on the seed and on its number of finished trips, never on how long
+these took, so that different planners drive the same trips.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
 
 SERVICE_S = 5.0
-"""Mean time of a pod at a station: short, so that stations do not hide what planners do."""
+"""Mean service time of a pod; short, so that stations do not mask differences of planners."""
 
 
 class Command(NamedTuple):
-    """What a robot is told.
+    """A command to a robot.
 
     Attributes
     ----------
     at_us
-        When, in microseconds.
+        Time in microseconds.
     program
-        Steps as `Traffic.command` takes them.
+        Steps, as for `Traffic.command`.
     """
 
     at_us: int
@@ -41,31 +41,31 @@ class Command(NamedTuple):
 
 
 class TripStream(Protocol):
-    """Tells robots what to do."""
+    """A source of commands for robots."""
 
     def begin(self) -> Iterable[Command]:
-        """Return what robots are told at time zero."""
+        """Return the commands at time zero."""
 
     def follow(self, time_us: int, kind: int, robot: int, value: int) -> Iterable[Command]:
-        """Return what robots are told after an event of traffic."""
+        """Return the commands that follow an event of traffic."""
 
     def given(self, command: Command) -> Iterable[Command]:
-        """Return what robots are told because another one has been told something."""
+        """Return the commands that follow from a command to another robot."""
 
 
 class PodTrips:
     """Robots fetch pods, bring them to stations and store them again.
 
-    The pods and the free storage places are dealt out to the robots, so that what one of them does
-    leaves the others their choice. No more robots are sent to a station than its queue holds but
-    one; whoever comes next waits where it is (condition W3 of `docs/safety.md`).
+    Pods and free storage places are divided among the robots, so that robots do not affect each
+    other's choices. The number of robots sent to a station is one less than its queue holds;
+    further ones wait where they are (condition W3 of `docs/safety.md`).
 
     Parameters
     ----------
     seed
-        Of pods, stations, places and times of service, 0 or greater.
+        Seed of pods, stations, places and service times, 0 or greater.
     service_s
-        Mean time a pod spends at a station; drawn evenly from half of it to one and a half.
+        Mean service time of a pod, uniform between half of it and one and a half times it.
 
     Raises
     ------
@@ -93,12 +93,12 @@ class PodTrips:
         self._waiting: list[deque[int]] = [deque() for _ in layout.stations]
 
     def begin(self) -> Iterator[Command]:
-        """Send every robot for its first pod."""
+        """Send every robot to its first pod."""
         for robot in range(len(self._pods)):
             yield from self._next(0, robot)
 
     def follow(self, time_us: int, kind: int, robot: int, _value: int) -> Iterator[Command]:
-        """Go on when a robot has reached a station or is done."""
+        """Continue when a robot has reached a station or finished its program."""
         if kind == EventKind.AT_HEAD:
             yield self._store(time_us, robot)
         elif kind == EventKind.IDLE and robot not in self._waiting[self._station[robot]]:
@@ -106,7 +106,7 @@ class PodTrips:
             yield from self._next(time_us, robot)
 
     def given(self, command: Command) -> Iterator[Command]:
-        """Let the next one come to the station that a robot leaves."""
+        """Send the next robot to the station that a robot leaves."""
         station = self._station[command.robot]
         if command.program[-1][0] != Step.SET_DOWN:
             return
@@ -115,7 +115,7 @@ class PodTrips:
             yield self._fetch(command.at_us, self._waiting[station].popleft())
 
     def _next(self, time_us: int, robot: int) -> Iterator[Command]:
-        """Choose the next pod and station; without room there, wait beneath the pod."""
+        """Choose the next pod and station; if there is no room, wait beneath the pod."""
         draw = self._random[robot]
         pods = self._pods[robot]
         pod = self._carried[robot] = pods.pop(int(draw.integers(len(pods))))
@@ -134,7 +134,7 @@ class PodTrips:
         return Command(time_us, robot, [(int(step), value) for step, value in program])
 
     def _store(self, time_us: int, robot: int) -> Command:
-        """Take the pod away after its service, to its old place or a free one."""
+        """Store the pod after its service, at its old place or a free one."""
         draw = self._random[robot]
         served_us = time_us + round(self._service_us * (0.5 + draw.random()))
         pod, places = self._carried[robot], self._places[robot]
@@ -149,9 +149,9 @@ class PointTrips:
     Parameters
     ----------
     goals
-        Per robot the waypoints it drives to one after another.
+        For each robot, the waypoints to which it drives in order.
     shared
-        Goals handed out in this order to whoever has none of its own left.
+        Goals assigned in this order to robots without goals of their own.
     """
 
     def __init__(self, goals: Sequence[Iterable[int]], shared: Iterable[int] = ()) -> None:
@@ -164,12 +164,12 @@ class PointTrips:
             yield from self._next(0, robot)
 
     def follow(self, time_us: int, kind: int, robot: int, _value: int) -> Iterator[Command]:
-        """Send a robot on that has arrived."""
+        """Send a robot on after its arrival."""
         if kind == EventKind.IDLE:
             yield from self._next(time_us, robot)
 
     def given(self, _command: Command) -> Iterator[Command]:
-        """Nobody waits for another."""
+        """No command depends on another robot."""
         return iter(())
 
     def _next(self, time_us: int, robot: int) -> Iterator[Command]:
@@ -181,7 +181,7 @@ class PointTrips:
 
 
 def random_goals(goals: Sequence[int], seed: int, robot: int) -> Iterator[int]:
-    """Draw goals without end; two in a row are different."""
+    """Draw an endless sequence of goals without immediate repetition."""
     draw = generator(seed, Stream.TRIPS, robot)
     last = -1
     while True:
@@ -192,10 +192,10 @@ def random_goals(goals: Sequence[int], seed: int, robot: int) -> Iterator[int]:
 
 
 def random_trips(layout: Layout, seed: int, *, service_s: float = SERVICE_S) -> TripStream:
-    """Return trips that suit a layout.
+    """Return trips suitable for a layout.
 
-    With stations and pods these are `PodTrips`; otherwise robots drive between storage places, or
-    where there are none, between any waypoints.
+    With stations and pods these are `PodTrips`; otherwise robots drive between storage places or,
+    if there are none, between any waypoints.
     """
     if layout.stations and layout.pods:
         return PodTrips(layout, seed, service_s=service_s)
@@ -209,5 +209,5 @@ def random_trips(layout: Layout, seed: int, *, service_s: float = SERVICE_S) -> 
 
 
 def _dealt(things: Sequence[int], hands: int) -> list[list[int]]:
-    """Deal things out one by one."""
+    """Divide things among hands, one at a time."""
     return [list(things[hand::hands]) for hand in range(hands)]

@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rmfs.view import forms, scene
-from rmfs.view.live import FIXED, Known
+from rmfs.view.asking import Known
+from rmfs.view.live import FIXED
+from rmfs.view.preview import preview
 from rmfs.view.server import Answer, Server
 
 if TYPE_CHECKING:
@@ -33,6 +35,7 @@ def replay_server(
     posts: dict[str, Callable[[Table], Answer]] = {}
     if starter is not None:
         gets["/form"] = lambda query: Answer.json(forms.form(dict(query)))
+        posts["/preview"] = lambda wish: Answer.scene(preview(wish))
         posts["/start"] = lambda wish: Answer.json({"url": starter.start(wish)})
     return Server(gets, posts, port=port)
 

@@ -101,18 +101,6 @@ def problems() -> dict[str, Any]:
     }
 
 
-def refuse_foreign(problem: Problem, name: str) -> None:
-    """Refuse rules that are not installed: a page may name no code.
-
-    Raises
-    ------
-    InputError
-        If the name is not that of an installed rule.
-    """
-    if name not in registry.names(problem):
-        raise InputError(f"{problem}.name: must be one of {', '.join(registry.names(problem))}")
-
-
 def _rule(problem: Problem, name: str) -> dict[str, Any]:
     rule = registry.find(problem, name)
     about = (inspect.getdoc(rule) or "").partition("\n")[0]

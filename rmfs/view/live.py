@@ -9,24 +9,22 @@ from __future__ import annotations
 
 import threading
 import time
-from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rmfs.control.choices import check_together, choose
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
 from rmfs.measure.events import EventLog
+from rmfs.references import installed_only
 from rmfs.simulation.agenda import NEVER_US
 from rmfs.view import scene
+from rmfs.view.asking import Exchange, Known, News, concern_of, page_name
 from rmfs.view.container import pack
-from rmfs.view.forms import refuse_foreign
 from rmfs.view.pace import Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-
-    from numpy.typing import NDArray
 
     from rmfs.config import Table
     from rmfs.control.choices import Choice
@@ -41,27 +39,11 @@ BETWEEN_NEWS_S = 0.15
 LONGEST_WAIT_S = 1.0
 """Wall time after which a page is answered all the same."""
 
+MOST_PAGES = 1000
+"""Pages of one run: more than one browser opens."""
+
 FIXED = frozenset({Problem.PP})
 """Problems whose controllers cannot be exchanged: the robots' plans are theirs."""
-
-
-@dataclass(frozen=True, slots=True)
-class Known:
-    """What a page knows already: rows of the trace, and events."""
-
-    motion: int = 0
-    events: int = 0
-
-
-@dataclass(eq=False)
-class _News:
-    """What a page asks for, and what the run's thread copied for it."""
-
-    known: Known
-    done: threading.Event = field(default_factory=threading.Event)
-    motion: dict[str, NDArray[Any]] = field(default_factory=dict)
-    events: dict[str, NDArray[Any]] = field(default_factory=dict)
-    header: dict[str, Any] = field(default_factory=dict)
 
 
 class LiveRun:
@@ -88,8 +70,9 @@ class LiveRun:
         self._names, self._title = dict(names), title
         self._pace = Pace(speed)
         self._meeting = threading.Condition()
-        self._asked: list[_News] = []
-        self._exchanges: list[Choice] = []
+        self._asked: list[News] = []
+        self._exchanges: list[Exchange] = []
+        self._under_way: list[Exchange] = []
         self._pages: dict[str, float] = {}
         self._left: set[str] = set()
         self._visited = False
@@ -131,7 +114,7 @@ class LiveRun:
     def _attend(self, now_us: int) -> None:
         """Answer the pages, and go on without them if they are gone."""
         for news in self._asked:
-            self._copy(news, now_us)
+            self._answer(news, now_us)
         self._asked.clear()
         gone = [p for p, at_s in self._pages.items() if time.monotonic() - at_s > ABSENT_S]
         for page in gone:
@@ -140,12 +123,26 @@ class LiveRun:
     def _exchange(self, now_us: int) -> int:
         """Let the exchanges happen at this instant; returns it."""
         assert self._simulation is not None
-        for choice in self._exchanges:
-            self._simulation.agenda.at(now_us, partial(self._simulation.exchange, choice))
+        for wish in self._exchanges:
+            self._simulation.agenda.at(now_us, partial(self._install, wish))
+        self._under_way += self._exchanges
         self._exchanges.clear()
         return now_us
 
-    def _copy(self, news: _News, now_us: int) -> None:
+    def _install(self, wish: Exchange) -> None:
+        """Exchange a controller; one that cannot be made here is the page's error."""
+        assert self._simulation is not None
+        simulation, choice = self._simulation, wish.choice
+        with concern_of(wish):
+            simulation.phase.require_possible(choice)
+            simulation.exchange(choice)
+        self._under_way.remove(wish)
+
+    def _answer(self, news: News, now_us: int) -> None:
+        with concern_of(news):
+            self._copy(news, now_us)
+
+    def _copy(self, news: News, now_us: int) -> None:
         assert self._simulation is not None
         news.motion, motion = self._simulation.traffic.trace_after(news.known.motion)
         news.events = self.events.columns(news.known.events)
@@ -160,7 +157,6 @@ class LiveRun:
             "controllers": {str(p): choice.to_table() for p, choice in self._choices().items()},
             "details": list(self.events.details),
         }
-        news.done.set()
 
     # --- the pages' threads ---------------------------------------------------------------------
 
@@ -180,6 +176,7 @@ class LiveRun:
             end_s=simulation.end_s,
             title=self._title,
             details=news.header["details"],
+            sku_names=simulation.world.skus.names,
         )
         return pack(
             {**header, "live": news.header},
@@ -200,7 +197,7 @@ class LiveRun:
         """
         if page:
             with self._meeting:
-                self._is_here(page)
+                self._is_here(page_name(page))
             self._spare()
         news = self._news(known)
         assert self._simulation is not None
@@ -220,17 +217,18 @@ class LiveRun:
         InputError
             If that is not what is wished for.
         """
+        by_s, speed = float(wish.get("by_s", 0)), wish.get("speed")
+        speed = None if speed is None else float(speed)
         with self._meeting:
-            if "page" in wish and not self._is_here(str(wish["page"])):
+            if "page" in wish and not self._is_here(page_name(wish["page"])):
                 return
             match wish.get("do"):
                 case "pause":
                     self._pace.pause()
                 case "step":
-                    self._pace.step(self._now_us, float(wish.get("by_s", 0)))
+                    self._pace.step(self._now_us, by_s)
                 case "run":
-                    speed = wish.get("speed")
-                    self._pace.run(None if speed is None else float(speed))
+                    self._pace.run(speed)
                 case other:
                     raise InputError(f"do: must be pause, step or run (given: {other!r})")
             self._disturb()
@@ -250,21 +248,24 @@ class LiveRun:
         """
         if problem not in set(Problem) - FIXED:
             raise InputError(f"{problem}: cannot be exchanged while a run goes on")
-        chosen = choose(Problem(problem), table, "exchange")
-        refuse_foreign(chosen.problem, chosen.name)
+        with installed_only():  # a page may name no code
+            chosen = choose(Problem(problem), table, "exchange")
         with self._meeting:
             if self._ended:
                 raise InputError(self._ended)
             self._await_start()
             check_together({**self._choices(), chosen.problem: chosen}, "exchange")
-            self._exchanges.append(chosen)
+            wish = Exchange(choice=chosen)
+            self._exchanges.append(wish)
             self._disturb()
+        wish.wait()
 
     def leave(self, page: str) -> None:
         """Take note that a page was closed: the run goes on as if it had never been there."""
         with self._meeting:
-            self._left.add(page)
-            self._leave(page)
+            if page_name(page) in self._pages or len(self._left) < MOST_PAGES:
+                self._left.add(page)
+                self._leave(page)
 
     def close(self, reason: str) -> None:
         """Answer what is asked, and say from now on that nothing more comes."""
@@ -273,8 +274,11 @@ class LiveRun:
                 return
             self._ended = reason
             for news in self._asked:
-                self._copy(news, self._now_us)
+                self._answer(news, self._now_us)
             self._asked.clear()
+            for wish in [*self._exchanges, *self._under_way]:
+                wish.fail(InputError(reason))
+            self._exchanges.clear()
             self._meeting.notify_all()
 
     def await_page(self, patience_s: float) -> None:
@@ -293,6 +297,8 @@ class LiveRun:
         """Take note that a page is there, and say so, unless it was closed."""
         if page in self._left:
             return False
+        if page not in self._pages and len(self._pages) >= MOST_PAGES:
+            raise InputError(f"{MOST_PAGES} pages are open already")
         self._pages[page] = time.monotonic()
         return True
 
@@ -321,7 +327,7 @@ class LiveRun:
     def _choices(self) -> dict[Problem, Choice]:
         """Return the controllers installed, or about to be."""
         assert self._simulation is not None
-        coming = {choice.problem: choice for choice in self._exchanges}
+        coming = {wish.choice.problem: wish.choice for wish in self._exchanges}
         return {**self._simulation.phase.choices, **coming}
 
     @property
@@ -344,14 +350,14 @@ class LiveRun:
             self._pace.let_go()
             self._disturb()
 
-    def _news(self, known: Known) -> _News:
-        news = _News(known)
+    def _news(self, known: Known) -> News:
+        news = News(known=known)
         with self._meeting:
             self._await_start()
             if self._ended:
-                self._copy(news, self._now_us)
+                self._answer(news, self._now_us)
             else:
                 self._asked.append(news)
                 self._disturb()
-        news.done.wait()
+        news.wait()
         return news

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, isfinite
+from math import ceil
 
 from rmfs.errors import InputError
 from rmfs.simulation.agenda import NEVER_US
@@ -12,6 +12,12 @@ QUANTUM_S = 0.02
 
 LAGGING_S = 0.5
 """A run that is behind by more wall time than this does not hurry to make up for it."""
+
+FASTEST = 1e6
+"""Simulated seconds per wall second; whoever wants more wants no limit."""
+
+LONGEST_STEP_S = 1e9
+"""Simulated time of one step: 30 years."""
 
 
 class Pace:
@@ -25,7 +31,7 @@ class Pace:
     Raises
     ------
     InputError
-        If the speed is not a positive number.
+        If the speed is not from 1e-6 to 1e6.
     """
 
     def __init__(self, speed: float | None = None) -> None:
@@ -57,8 +63,8 @@ class Pace:
 
     def step(self, now_us: int, by_s: float = 0.0) -> None:
         """Go on by so much simulated time, or to the next event if that is 0, and pause there."""
-        if not (isfinite(by_s) and by_s >= 0):
-            raise InputError(f"step {by_s}: must be 0 or more seconds")
+        if not 0 <= by_s <= LONGEST_STEP_S:
+            raise InputError(f"step {by_s}: must be 0 to {LONGEST_STEP_S:.0f} seconds")
         self.pause()
         if by_s > 0:
             self._until_us = now_us + round(by_s * 1e6)
@@ -117,5 +123,8 @@ class Pace:
 
 
 def _check(speed: float | None) -> None:
-    if speed is not None and not (isfinite(speed) and speed > 0):
-        raise InputError(f"speed {speed}: must be more than 0 simulated seconds per second")
+    if speed is not None and not 1 / FASTEST <= speed <= FASTEST:
+        raise InputError(
+            f"speed {speed:g}: must be {1 / FASTEST:g} to {FASTEST:.0f} simulated seconds per "
+            "wall second"
+        )

@@ -16,10 +16,11 @@ from rmfs.layout.kinds import TASK_COLOURS
 from rmfs.measure.events import KINDS
 from rmfs.measure.trace import TRACE_COLUMNS
 from rmfs.view.container import pack
+from rmfs.view.themes import themes_of
 from rmfs.world.tasks import VisitTask
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -45,6 +46,7 @@ def of_run(folder: RunFolder) -> bytes:
     events["kind"] = log["kind"].map({name: number for number, name in enumerate(KINDS)}).to_numpy()
     detail = log["detail"].astype("category").cat
     events["detail"] = detail.codes.to_numpy()
+    skus = folder.table("skus")
     header = head(
         layout,
         names={part: told[part]["name"] for part in ("layout", "scenario", "controllers")},
@@ -53,12 +55,12 @@ def of_run(folder: RunFolder) -> bytes:
         end_s=told["warmup_s"] + told["duration_s"],
         title=folder.path.resolve().name,
         details=detail.categories.tolist(),
+        sku_names=skus["name"].astype(str).tolist(),
     )
-    sku_space = folder.table("skus")["space"].to_numpy()
     return pack(
         header,
         {
-            **describe(layout, sku_space),
+            **describe(layout, skus["space"].to_numpy()),
             **motion({name: trace[name].to_numpy() for name in TRACE_COLUMNS}, layout.robots),
             **happenings(events),
         },
@@ -74,13 +76,16 @@ def head(
     end_s: float,
     title: str,
     details: list[str],
+    sku_names: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """Return the header of a scene: what is told in words and single numbers.
+    """Return the header of a scene: its texts and single numbers.
 
     Parameters
     ----------
     details
         The texts that the column `detail` of the events points at.
+    sku_names
+        Names of all SKUs; none if they are the numbers.
     """
     return {
         "title": title,
@@ -93,7 +98,6 @@ def head(
             {
                 "kind": station.kind.name,
                 "letter": station.kind.letter,
-                "colour": station.kind.colour,
                 "handles": station.kind.handles,
                 "waypoint": int(station.waypoint),
                 "queue": [int(place) for place in station.queue],
@@ -107,17 +111,25 @@ def head(
         "robot_kinds": [asdict(kind) for kind in layout.robot_kinds],
         "pod_radius_m": layout.pod_radius_m,
         "details": details,
+        "sku_names": _told_names(sku_names),
         "colours": {
             name.lower(): value
             for name, value in vars(colours).items()
             if isinstance(value, str) and value.startswith("#")
         },
+        "themes": themes_of(layout, _of_visits(layout)),
         "robot_colours": {
             "task": TASK_COLOURS | _of_visits(layout),
             "state": colours.STATES,
             "load": colours.LOADS,
         },
     }
+
+
+def _told_names(names: Sequence[str]) -> list[str]:
+    """Names of SKUs, unless all of them are the numbers."""
+    own = any(name != str(number) for number, name in enumerate(names))
+    return list(names) if own else []
 
 
 def _of_visits(layout: Layout) -> dict[str, str]:
@@ -163,6 +175,7 @@ def motion(trace: Mapping[str, NDArray[Any]], robots: int) -> Arrays:
         "motion.heading0_rad": trace["heading0_rad"].astype(np.float32),
         "motion.heading1_rad": trace["heading1_rad"].astype(np.float32),
         "motion.pod": trace["pod"].astype(np.int32),
+        "motion.top_speed_m_s": trace["top_speed_m_s"].astype(np.float32),
     }
 
 

@@ -4,8 +4,10 @@ What can be asked for is a fixed table of paths: none of them is looked up in a 
 path leads out of the run folder. Requests that name another host (a page elsewhere that had its
 name point here) or come from another origin are refused. What changes something takes a token,
 which is in the address that is printed: others on this machine, who can reach the port, do not have
-it.
-Connections are few, requests small, and who takes long to send one is hung up on.
+it; they may look, but no run waits for them. What a page elsewhere has its browser ask for is
+refused, too, as browsers tell where a request comes from (`Sec-Fetch-Site`, `Origin`).
+Connections are few, requests small, and who takes long to send one is hung up on. Whatever goes
+wrong with a request is answered; it ends nothing.
 """
 
 from __future__ import annotations
@@ -33,7 +35,8 @@ HOST = "127.0.0.1"
 LONGEST_REQUEST = 1_000_000
 """Bytes a request may bring along."""
 MOST_CONNECTIONS = 64
-"""Connections that may be open at once; a page takes six at most."""
+"""Connections that may be open at once; a page takes six at most. Those that ask for nothing give
+way to new ones."""
 PATIENCE_S = 20.0
 """Wall time a connection has to send a request, or to say nothing."""
 
@@ -77,6 +80,7 @@ class Server(ThreadingHTTPServer):
     """
 
     daemon_threads = True
+    request_queue_size = 256
 
     def __init__(
         self,
@@ -108,9 +112,15 @@ class Server(ThreadingHTTPServer):
     def process_request(self, request: Any, client_address: Any) -> None:
         """Serve a connection in a thread of its own, unless there are too many."""
         with self._lock:
-            full = self._open >= MOST_CONNECTIONS
-            self._open += not full
-        if full:
+            crowded, full = self._open >= MOST_CONNECTIONS, self._open >= 2 * MOST_CONNECTIONS
+            idle = min(self._reading, key=self._reading.__getitem__, default=None)
+            refused = full or (crowded and idle is None)
+            self._open += not refused
+            if crowded and idle is not None:
+                del self._reading[idle]
+        if crowded and idle is not None:
+            _hang_up(idle)
+        if refused:
             self.shutdown_request(request)
             return
         self.reads(request)
@@ -139,8 +149,12 @@ class Server(ThreadingHTTPServer):
         with self._lock:
             slow = [request for request, since in self._reading.items() if since < limit]
         for request in slow:
-            with suppress(OSError):
-                request.shutdown(socket.SHUT_RDWR)
+            _hang_up(request)
+
+
+def _hang_up(request: socket.socket) -> None:
+    with suppress(OSError):
+        request.shutdown(socket.SHUT_RDWR)
 
 
 def _file(name: str, kind: str) -> Callable[[Mapping[str, str]], Answer]:
@@ -154,16 +168,24 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         self.server.reads(self.connection, over=True)
+        self._answer(self._got)
+
+    def _got(self) -> Answer:
         asked = urlsplit(self.path)
         query = {name: values[-1] for name, values in parse_qs(asked.query).items()}
         if asked.path == "/" and "token" in query:
-            self._answer(lambda: self._admitted(query["token"]))
-            return
+            return self._admitted(query["token"])
         handle = self.server.gets.get(asked.path)
-        self._answer(None if handle is None else lambda: handle(query))
+        if handle is None:
+            return _refusal(HTTPStatus.NOT_FOUND, "no such page")
+        if asked.path not in pages.FILES and not self._is_from_here():
+            return _NOT_OURS
+        if not self._is_trusted():
+            # who may only look is nobody a run waits for
+            query.pop("page", None)
+        return handle(query)
 
     def do_POST(self) -> None:
-        handle = self.server.posts.get(urlsplit(self.path).path)
         told = self.headers.get("Content-Length") or ""
         length = int(told) if told.isascii() and told.isdigit() and len(told) < 9 else -1
         if not 0 <= length <= LONGEST_REQUEST or self.headers.get("Content-Type") != JSON:
@@ -172,11 +194,18 @@ class _Handler(BaseHTTPRequestHandler):
             return
         body = self.rfile.read(length)
         self.server.reads(self.connection, over=True)
-        if handle is not None and self._is_ours() and not self._is_trusted():
+        self._answer(lambda: self._posted(body))
+
+    def _posted(self, body: bytes) -> Answer:
+        handle = self.server.posts.get(urlsplit(self.path).path)
+        if handle is None:
+            return _refusal(HTTPStatus.NOT_FOUND, "no such page")
+        if not self._is_from_here():
+            return _NOT_OURS
+        if not self._is_trusted():
             told = "open the address that rmfs has printed: it has a token"
-            self._send(_refusal(HTTPStatus.FORBIDDEN, told))
-            return
-        self._answer(None if handle is None else lambda: handle(json.loads(body)))
+            return _refusal(HTTPStatus.FORBIDDEN, told)
+        return handle(json.loads(body))
 
     def _admitted(self, token: str) -> Answer:
         """Exchange a token in an address for a cookie, so that it stands in no address bar."""
@@ -196,18 +225,17 @@ class _Handler(BaseHTTPRequestHandler):
         token = "" if given is None else given.value
         return secrets.compare_digest(token.encode(), self.server.token.encode())
 
-    def _answer(self, handle: Callable[[], Answer] | None) -> None:
-        if not self._is_ours():
-            answer = _refusal(HTTPStatus.FORBIDDEN, "not for this host or origin")
-        elif handle is None:
-            answer = _refusal(HTTPStatus.NOT_FOUND, "no such page")
-        else:
-            try:
-                answer = handle()
-            except InputError as error:
-                answer = _refusal(HTTPStatus.UNPROCESSABLE_ENTITY, str(error))
-            except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-                answer = _refusal(HTTPStatus.BAD_REQUEST, f"cannot be understood: {error}")
+    def _answer(self, handle: Callable[[], Answer]) -> None:
+        """Answer a request: what is wrong with it is its own concern."""
+        try:
+            answer = handle() if self._is_ours() else _NOT_OURS
+        except InputError as error:
+            answer = _refusal(HTTPStatus.UNPROCESSABLE_ENTITY, str(error))
+        except _NOT_UNDERSTOOD as error:
+            answer = _refusal(HTTPStatus.BAD_REQUEST, f"cannot be understood: {error}")
+        except Exception as error:
+            told = f"{type(error).__name__}: {error}"
+            answer = _refusal(HTTPStatus.INTERNAL_SERVER_ERROR, told)
         self._send(answer)
 
     def _is_ours(self) -> bool:
@@ -217,6 +245,10 @@ class _Handler(BaseHTTPRequestHandler):
         origin = self.headers.get("Origin")
         allowed = origin is None or origin in {f"http://{host}" for host in hosts}
         return self.headers.get("Host") in hosts and allowed
+
+    def _is_from_here(self) -> bool:
+        """Whether no page elsewhere has asked for it; only browsers tell, and tell the truth."""
+        return self.headers.get("Sec-Fetch-Site", "none") in ("none", "same-origin")
 
     def _send(self, answer: Answer) -> None:
         self.send_response(answer.status)
@@ -252,3 +284,10 @@ class _Handler(BaseHTTPRequestHandler):
 
 def _refusal(status: HTTPStatus, message: str) -> Answer:
     return Answer.json({"error": message}, status)
+
+
+_NOT_OURS = _refusal(HTTPStatus.FORBIDDEN, "not for this host or origin")
+_NOT_UNDERSTOOD = (
+    *(ValueError, KeyError, TypeError, AttributeError),
+    *(OverflowError, RecursionError),
+)

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from rmfs import control, layout, scenario
 from rmfs.errors import InputError
+from rmfs.references import installed_only
 from rmfs.scenario.toml import toml_value
-from rmfs.view.forms import PARTS, refuse_foreign, shipped
+from rmfs.view.forms import PARTS, shipped
 
 if TYPE_CHECKING:
     from rmfs.config import Table
@@ -85,13 +86,13 @@ def _arguments(wish: Table, results: Path) -> list[str]:
         if path[0] not in PARTS or len(path) < 2:
             raise InputError(f"{'.'.join(path)}: must be in one of {', '.join(PARTS)}")
         own[path[0]].append((path[1:], new))
-    layout.load(given["layout"], own["layout"])
+    with installed_only():  # a page may name no code
+        layout.load(given["layout"], own["layout"])
+        control.load(given["controllers"], own["controllers"])
     work = scenario.load(given["scenario"], own["scenario"])
     usual = scenario.named_files(scenario.load(given["scenario"]))
     if set(scenario.named_files(work).values()) - set(usual.values()):
         raise InputError("scenario: files can be chosen on the command line only")
-    for choice in control.load(given["controllers"], own["controllers"]).choices.values():
-        refuse_foreign(choice.problem, choice.name)
     name = str(wish.get("out") or f"{'-'.join(given.values())}-live")
     if not name.replace("-", "").replace("_", "").replace(".", "").isalnum() or name[0] == ".":
         raise InputError(f"out: a name of letters, digits, - and _ is wanted (given: {name!r})")

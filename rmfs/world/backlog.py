@@ -25,7 +25,7 @@ class OrderBacklog:
     Attributes
     ----------
     orders
-        By index, in order of arrival.
+        Orders by index, in order of arrival.
     at_row
         The order of each matrix row.
     """
@@ -70,7 +70,7 @@ class OrderBacklog:
 
     @property
     def weight(self) -> NDArray[np.float64]:
-        """What lateness of each order counts, by its class, shape (B,)."""
+        """Weight of each order's lateness, by its class, shape (B,)."""
         return self._weight[: len(self.at_row)]
 
     @property
@@ -84,7 +84,7 @@ class OrderBacklog:
         return self._queued_at[: len(self.at_row)]
 
     def add(self, order: Order) -> None:
-        """Take in an order."""
+        """Add an order."""
         row = len(self.at_row)
         self._make_room(row + 1, len(order.lines))
         for column, line in enumerate(order.lines):
@@ -99,7 +99,7 @@ class OrderBacklog:
         self.orders[order.index] = order
 
     def remove(self, order: Order) -> None:
-        """Let an order go; the last row takes its place."""
+        """Remove an order; the last row takes its place."""
         del self.orders[order.index]
         row = self._row_of.pop(order.index)
         last = self.at_row.pop()
@@ -117,12 +117,12 @@ class OrderBacklog:
         self._units[end] = 0
 
     def changed(self, line: OrderLine) -> None:
-        """Take note that the open units of a line have changed."""
+        """Update the open units of a line."""
         order = line.order
         self._units[self._row_of[order.index], order.lines.index(line)] = line.open_units
 
     def lines_changed(self, order: Order) -> None:
-        """Take note that an order has lost lines."""
+        """Update the lines of an order that has lost some."""
         row = self._row_of[order.index]
         self._sku[row] = 0
         self._units[row] = 0
@@ -131,7 +131,7 @@ class OrderBacklog:
             self._units[row, column] = line.open_units
 
     def queue_changed(self, order: Order) -> None:
-        """Take note that an order has joined or left a pool."""
+        """Update the pool of an order."""
         self._queued_at[self._row_of[order.index]] = order.queued_at
 
     def after(self, index: int) -> list[Order]:
@@ -144,7 +144,7 @@ class OrderBacklog:
         return newer
 
     def servable(self, stock: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Rows of orders for which every line finds enough in `stock` (units per SKU), (B,)."""
+        """Whether `stock` (units per SKU) suffices for every line of each order, shape (B,)."""
         short = stock[self.sku] < self.units
         short &= self.units > 0
         return np.logical_not(np.asarray(short.any(axis=1)))
@@ -165,22 +165,22 @@ class OrderBacklog:
 
 
 class BundleBacklog:
-    """Bundles not yet assigned, by what they still lack.
+    """Bundles not yet assigned, by the decisions they still need.
 
     Attributes
     ----------
     bundles
-        All of them by index, in order of arrival.
+        All bundles by index, in order of arrival.
     without_pod, without_station
-        Those that RPS, or ROA, has not decided yet, in order of arrival.
+        Bundles that RPS, or ROA, has not decided yet, in order of arrival.
     unreleased
-        Per pod, bundles promised to it that RPS holds back.
+        Promised but unreleased bundles of each pod.
     unreleased_since_s
-        Per pod, when the last of these came, oldest first.
+        For each pod, when the last of these was promised, oldest first.
     released
-        Per pod, released bundles that lack a station, the pod released first at the front.
+        For each pod, released bundles without a station, the pod released first at the front.
     space
-        Space units of all of them.
+        Total space units.
     """
 
     def __init__(self) -> None:
@@ -199,21 +199,21 @@ class BundleBacklog:
         return iter(self.bundles.values())
 
     def add(self, bundle: Bundle) -> None:
-        """Take in a bundle for which nothing has been decided."""
+        """Add a bundle for which nothing has been decided."""
         self.bundles[bundle.index] = bundle
         self.without_pod[bundle.index] = bundle
         self.without_station[bundle.index] = bundle
         self.space += bundle.space
 
     def promised(self, bundle: Bundle, time_s: float) -> None:
-        """Take note that RPS chose the pod but holds the choice back."""
+        """Record that RPS chose the pod without releasing the choice."""
         del self.without_pod[bundle.index]
         self.unreleased.setdefault(bundle.pod, []).append(bundle)
         self.unreleased_since_s.pop(bundle.pod, None)
         self.unreleased_since_s[bundle.pod] = time_s
 
     def release(self, pod: int) -> list[Bundle]:
-        """Hand over the bundles held back for a pod."""
+        """Release the bundles promised to a pod, and return them."""
         del self.unreleased_since_s[pod]
         bundles = self.unreleased.pop(pod)
         waiting = [bundle for bundle in bundles if bundle.station < 0]
@@ -222,7 +222,7 @@ class BundleBacklog:
         return bundles
 
     def station_chosen(self, bundle: Bundle) -> None:
-        """Take note that ROA chose the station."""
+        """Record that ROA chose the station."""
         del self.without_station[bundle.index]
         if bundle.released:
             waiting = self.released[bundle.pod]
@@ -231,6 +231,6 @@ class BundleBacklog:
                 del self.released[bundle.pod]
 
     def remove(self, bundle: Bundle) -> None:
-        """Let a bundle go for which both decisions are taken."""
+        """Remove a bundle for which both decisions have been made."""
         del self.bundles[bundle.index]
         self.space -= bundle.space

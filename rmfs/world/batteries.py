@@ -1,4 +1,4 @@
-"""The batteries of the robots: what is in them, and how long charging takes."""
+"""The robots' batteries: their levels, and how long charging takes."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ class Levels(Protocol):
     """The part of traffic that knows levels."""
 
     def energy(self) -> dict[str, NDArray[Any]]:
-        """Energy per robot; `level_j` is what is in each battery."""
+        """Return energy per robot; `level_j` is the energy in each battery."""
         ...
 
     def level_j(self, robot: int) -> float:
-        """What is in the battery of a robot, J."""
+        """Return the energy in the battery of a robot, J."""
         ...
 
     def exchange_battery(self, robot: int, level_j: float) -> None:
@@ -40,18 +40,18 @@ class Batteries:
     Parameters
     ----------
     given
-        The kind.
+        Parameters of the batteries.
     levels
-        Where levels are known.
+        The traffic model, which knows the levels.
 
     Attributes
     ----------
     capacity_j, least_j, reserve_j
-        Capacity; what must never be used; what is kept besides.
+        Capacity, minimum level and additional reserve.
     enough_share
-        Level from which a robot may take a task for certain; who has less goes for energy.
+        Level from which a robot can certainly take a task; below it, the robot is sent to charge.
     stranded
-        Robots that stand still because their battery is empty.
+        Robots that stand still with an empty battery.
     strandings
         Times (s) and robots of all strandings so far.
     """
@@ -67,11 +67,11 @@ class Batteries:
         self.strandings: list[tuple[float, int]] = []
 
     def usable_j(self, robot: int) -> float:
-        """What a robot may use before its reserve, J."""
+        """Return the energy a robot may use before it reaches its reserve, J."""
         return self._levels.level_j(robot) - self.least_j - self.reserve_j
 
     def levels_j(self) -> NDArray[np.float64]:
-        """What is in each battery, shape (R,), J."""
+        """Energy in each battery, shape (R,), J."""
         levels: NDArray[np.float64] = self._levels.energy()["level_j"]
         return levels
 
@@ -85,7 +85,7 @@ class Batteries:
         return shares
 
     def mean_draw_w(self, now_s: float) -> float:
-        """What a robot has drawn in the mean since time zero, W; 0 at time zero."""
+        """Return the mean power of a robot since time zero, W; 0 at time zero."""
         used_j = float(self._levels.energy()["ever_used_j"].mean())
         return used_j / now_s if now_s > 0 else 0.0
 
@@ -94,17 +94,17 @@ class Batteries:
         self._levels.exchange_battery(robot, share * self.capacity_j)
 
     def strand(self, robot: int, now_s: float) -> None:
-        """Take note that a robot stands still without energy."""
+        """Record that a robot is stranded without energy."""
         self.stranded.add(robot)
         self.strandings.append((now_s, robot))
 
     def rescue(self, robot: int) -> None:
-        """Bring energy to a robot that stands still."""
+        """Restore energy to a stranded robot."""
         self.stranded.discard(robot)
         self.exchange(robot, max(self.given.rescue_share, self.share(robot)))
 
     def seconds(self, from_share: float, to_share: float, power_w: float) -> float:
-        """How long a charger needs from one level to another; infinite if it never gets there.
+        """Return how long charging takes from one level to another; infinite if it is impossible.
 
         The inverse of `Battery::charged` in rmfs/traffic/src/energy.rs.
         """
@@ -136,6 +136,6 @@ class Batteries:
 
 
 def initial_j(given: Battery, robots: int, draw: Callable[[int], NDArray[np.float64]]) -> Any:
-    """Draw what is in each battery at time zero, shape (R,), J."""
+    """Draw the initial energy in each battery, shape (R,), J."""
     low, high = given.initial_least_share, given.initial_most_share
     return (low + (high - low) * draw(robots)) * given.capacity_wh * J_PER_WH

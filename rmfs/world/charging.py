@@ -1,4 +1,4 @@
-"""Robots that go for energy, and the stations they go to."""
+"""Tasks in which robots charge, and the stations where they do."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True, eq=False)
 class ChargeTask(VisitTask):
-    """Go to a station for energy, without a pod.
+    """Go to an energy station, without a pod.
 
     Attributes
     ----------
     until_share
-        Level of the battery at which the robot leaves a plug-in place.
+        Battery level at which the robot leaves a plug-in place.
     """
 
     kind = "charge"
@@ -29,7 +29,7 @@ class ChargeTask(VisitTask):
     until_share: float = 1.0
 
     def started(self, world: Keeps) -> Task:
-        """Join those who are bound for the station."""
+        """Register with the station."""
         return world.start_charge(self)
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
@@ -37,12 +37,12 @@ class ChargeTask(VisitTask):
         return world.robots[self.robot].pod < 0
 
     def ended(self, world: Keeps) -> None:
-        """The robot is no longer bound for the station."""
+        """Deregister from the station."""
         del world.stations[self.station].tasks[self.robot]
 
 
 class RecoveryStation(Station[ChargeTask]):
-    """A station where robots get energy; its tasks are by robot, not by pod."""
+    """A station where robots get energy; its tasks are indexed by robot, not by pod."""
 
     def verify(self, robots: Sequence[Robot]) -> None:
         """Check that the tasks are those of the robots."""

@@ -1,12 +1,11 @@
-"""What the pods hold: contained, available and promised, in one place.
+"""Stock on the pods: contained, available and promised.
 
-- *contained*: units that are physically on a pod; falls when a pick starts.
+- *contained*: units that are physically on a pod; decreases when a pick starts.
 - *available*: contained units not yet bound to an extract request.
-- *promised*: space kept free on a pod for bundles that are to be stored there.
+- *promised*: space reserved on a pod for bundles to be stored there.
 
-Everything else (totals per SKU, loads, what is inbound to a station) is derived from these and
-changed in the same operations, so that no two counts can disagree. Arrays handed out are
-read-only views.
+All other quantities (totals per SKU, loads, stock inbound to a station) are derived from these and
+updated in the same operations, so that they always agree. Arrays are exposed as read-only views.
 """
 
 from __future__ import annotations
@@ -20,11 +19,11 @@ if TYPE_CHECKING:
 
 
 _SLOTS = 8
-"""SKUs per pod for which there is room in `skus_on` at first."""
+"""Initial number of SKUs per pod for which there is room in `skus_on`."""
 
 
 def read_only(array: NDArray[np.generic]) -> NDArray:  # type: ignore[type-arg]
-    """Return a view of an array through which it cannot be changed."""
+    """Return a read-only view of an array."""
     view = array.view()
     view.flags.writeable = False
     return view
@@ -34,7 +33,7 @@ class Inventory:
     """Stock of K SKUs on P pods.
 
     Spaces of units are multiples of 2**-20 (see `rmfs.scenario`), so their sums are exact in any
-    order and the loads here never drift.
+    order and loads never drift.
 
     Parameters
     ----------
@@ -48,21 +47,21 @@ class Inventory:
     Attributes
     ----------
     contained, available
-        Units per SKU and pod, shape (K, P): a row per SKU is contiguous, since rules ask for few
-        SKUs on all pods.
+        Units per SKU and pod, shape (K, P): rows are contiguous, since rules compare few SKUs over
+        all pods.
     load
-        Space used by stored units plus space promised, per pod, shape (P,).
+        Space of stored units plus promised space, per pod, shape (P,).
     inbound
-        Available units on the pods on their way to, or at, each pick station, shape (S, K).
+        Available units on the pods at, or on their way to, each pick station, shape (S, K).
     uncommitted
-        Available units less those wanted by orders but not bound, per SKU, shape (K,). Negative
+        Available units minus ordered units that are not bound yet, per SKU, shape (K,). Negative
         only if orders exceed the stock.
     free_stock
-        As `uncommitted`, but orders in the backlog want nothing yet, shape (K,).
+        As `uncommitted`, but without the demand of orders in the backlog, shape (K,).
     ordered
         Units ordered since time zero, shape (K,).
     wanted
-        Units ordered and not yet picked, whether bound or not, shape (K,).
+        Units ordered and not yet picked, bound or not, shape (K,).
     """
 
     def __init__(
@@ -104,19 +103,19 @@ class Inventory:
 
     @property
     def skus_on(self) -> NDArray[np.int32]:
-        """The SKUs each pod contains, in no order, filled up with K, shape (P, M).
+        """The SKUs that each pod contains, in any order, padded with K, shape (P, M).
 
         With K + 1 weights, the last of them 0, `weights[skus_on].sum(axis=1)` is a sum per pod.
         """
         return read_only(self._skus_on)
 
     def skus_of(self, pod: int) -> list[int]:
-        """Return the SKUs that a pod contains, in no order."""
+        """Return the SKUs that a pod contains, in any order."""
         skus: list[int] = self._skus_on[pod, : self._kinds_on[pod]].tolist()
         return skus
 
     def stock(self, pod: int, sku: int, units: int) -> None:
-        """Put units on a pod that were not promised: the stock at time zero."""
+        """Put units on a pod without a promise: the stock at time zero."""
         space = units * self._unit_space_list[sku]
         before = self._contained.item(sku, pod)
         if not before and units:
@@ -133,12 +132,12 @@ class Inventory:
             self._inbound[station, sku] += units
 
     def promise(self, pod: int, space: float) -> None:
-        """Keep space free on a pod.
+        """Reserve space on a pod.
 
         Raises
         ------
         ValueError
-            If the pod has no such space.
+            If the pod has too little space.
         """
         if self._load[pod] + space > self.capacity[pod]:
             raise ValueError(f"pod {pod} has no room for {space:g} space units")
@@ -147,13 +146,13 @@ class Inventory:
         self.promised_space += space
 
     def withdraw(self, pod: int, space: float) -> None:
-        """Take a promise of space back."""
+        """Cancel a promise of space."""
         self._promised[pod] -= space
         self._load[pod] -= space
         self.promised_space -= space
 
     def store(self, pod: int, sku: int, units: int) -> None:
-        """Put a bundle on the pod that was promised to it."""
+        """Store a bundle that was promised to a pod."""
         self.withdraw(pod, units * self._unit_space_list[sku])
         self.stock(pod, sku, units)
 
@@ -164,14 +163,14 @@ class Inventory:
         self._ordered[sku] += units
 
     def undemand(self, sku: int, units: int) -> None:
-        """Take back the demand of an order in the backlog, which wanted them all the same."""
+        """Withdraw the demand of an order in the backlog."""
         self._uncommitted[sku] += units
         self._wanted[sku] -= units
 
     def commit(self, sku: int, units: int) -> None:
-        """Commit stock to an order that now is on a station, or to which a pod was bound.
+        """Commit stock to an order at a station, or to which a pod was bound.
 
-        A negative number takes it back.
+        A negative number reverses it.
         """
         self._free_stock[sku] -= units
 
@@ -192,7 +191,7 @@ class Inventory:
             self._inbound[station, sku] -= units
 
     def unbind(self, pod: int, sku: int, units: int) -> None:
-        """Make units available again whose requests will not be fulfilled from this pod."""
+        """Make bound units available again because their requests are not served from this pod."""
         self._available[sku, pod] += units
         station = self._inbound_station[pod]
         if station >= 0:
@@ -211,12 +210,12 @@ class Inventory:
         self.stored_space -= space
 
     def begin_inbound(self, pod: int, station: int) -> None:
-        """Count what the pod has available as inbound to a pick station."""
+        """Count the available units of a pod as inbound to a pick station."""
         self._inbound_station[pod] = station
         self._inbound[station] += self._available[:, pod]
 
     def end_inbound(self, pod: int) -> None:
-        """Count the pod as inbound no longer."""
+        """Stop counting the pod as inbound."""
         self._inbound[self._inbound_station[pod]] -= self._available[:, pod]
         self._inbound_station[pod] = -1
 
@@ -226,7 +225,7 @@ class Inventory:
         return any(available(sku, pod) for sku in skus)
 
     def _list_sku(self, pod: int, sku: int) -> None:
-        """Take note of the first unit of a SKU on a pod."""
+        """Record the first unit of a SKU on a pod."""
         count = self._kinds_on[pod]
         if count == self._skus_on.shape[1]:
             pad = ((0, 0), (0, count))
@@ -235,7 +234,7 @@ class Inventory:
         self._kinds_on[pod] = count + 1
 
     def _unlist_sku(self, pod: int, sku: int) -> None:
-        """Take note that the last unit of a SKU has left a pod."""
+        """Record that the last unit of a SKU has left a pod."""
         row = self._skus_on[pod]
         last = self._kinds_on[pod] - 1
         row[row.tolist().index(sku)] = row[last]

@@ -1,4 +1,4 @@
-"""News: which things have changed, for those who keep lists of their own and do not look at all."""
+"""Change notifications for those who keep lists of their own instead of checking everything."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ _MOST = 16
 
 
 class News:
-    """Tells followers the numbers of what has changed.
+    """Notifies followers of the numbers of things that have changed.
 
-    A controller that is exchanged does not say goodbye, so that only so many followers are kept;
-    one that was dropped and takes news again is told of everything.
+    An exchanged controller does not unsubscribe, so the number of followers is limited; a follower
+    that was dropped and takes news again is notified of everything.
 
     Parameters
     ----------
     count
-        How many things there are.
+        Number of things.
     """
 
     def __init__(self, count: int) -> None:
@@ -22,31 +22,31 @@ class News:
         self._followers: list[Follower] = []
 
     def tell(self, number: int) -> None:
-        """Let all followers know that something has changed."""
+        """Notify all followers of a change."""
         for follower in self._followers:
             follower.changed.add(number)
 
     def keeps(self, follower: Follower) -> bool:
-        """Whether a follower is told at present."""
+        """Whether a follower is currently subscribed."""
         return any(one is follower for one in self._followers)
 
     def keep(self, follower: Follower) -> None:
-        """Tell a follower from now on; the one that has followed for longest may have to go."""
+        """Subscribe a follower; the oldest one may be dropped."""
         self._followers = [*self._followers[-_MOST + 1 :], follower]
 
 
 class Follower:
-    """What has changed since somebody looked.
+    """The changes since a follower last looked.
 
     Parameters
     ----------
     news
-        What is followed; at first everything counts as changed.
+        What is followed; initially everything counts as changed.
 
     Attributes
     ----------
     changed
-        Numbers of what has changed.
+        Numbers of the things that have changed.
     """
 
     def __init__(self, news: News) -> None:
@@ -55,11 +55,11 @@ class Follower:
         news.keep(self)
 
     def begin_anew(self) -> None:
-        """Let everything count as changed: who follows has forgotten what it knew."""
+        """Mark everything as changed."""
         self.changed = set(range(self._news.count))
 
     def take(self) -> set[int]:
-        """Hand over the numbers of what has changed since the last time."""
+        """Return the numbers of everything that has changed since the last call."""
         if not self._news.keeps(self):
             self._news.keep(self)
             self.begin_anew()

@@ -1,4 +1,4 @@
-"""What changes orders: they come, queue, take slots, are cut, and are completed."""
+"""Operations on orders: they arrive, queue, take slots, are cut, and are completed."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ class OrderOperations(WorldState):
     """The operations on orders."""
 
     def add_order(self, order: Order) -> None:
-        """Let an order join the backlog."""
+        """Add an order to the backlog."""
         for line in order.lines:
             self.inventory.demand(line.sku, line.units)
         self.orders.add(order)
         self.orders_created += 1
 
     def cut_order(self, order: Order, keep: Mapping[int, int]) -> None:
-        """Let units of an order of the backlog go; without any left, the order is given up.
+        """Reduce the units of an order in the backlog; without any left, it is cancelled.
 
         Parameters
         ----------
         keep
-            Units left of each SKU.
+            Remaining units of each SKU.
 
         Raises
         ------
@@ -52,7 +52,7 @@ class OrderOperations(WorldState):
             order.cancelled_s = self.now_s
 
     def queue_order(self, order: Order, station: int) -> None:
-        """Let an order of the backlog join the pool of a pick station.
+        """Add an order of the backlog to the pool of a pick station.
 
         It needs no slot and keeps its place in the backlog, but pods can be bound to it.
         """
@@ -74,7 +74,7 @@ class OrderOperations(WorldState):
                 self.unqueue_order(order)
 
     def unqueue_order(self, order: Order) -> None:
-        """Take an order out of its pool; requests bound to pods are open again."""
+        """Remove an order from its pool; its requests bound to pods are open again."""
         station = self.pick_stations[order.queued_at]
         for task in station.tasks.values():
             self._give_back(task, [pick for pick in task.picks if pick.line.order is order])
@@ -82,15 +82,15 @@ class OrderOperations(WorldState):
         self.orders.queue_changed(order)
 
     def assign_order(self, order: Order, station: int) -> Order:
-        """Put an order of the backlog on a pick station and open its extract requests.
+        """Assign an order of the backlog to a pick station and open its extract requests.
 
-        Requests of a queued order to which pods were bound meanwhile stay bound. What is left of a
-        split order joins its part at the station, if there is one.
+        Requests of a queued order that are already bound to pods stay bound. The rest of a split
+        order joins its part at the station, if there is one.
 
         Returns
         -------
         Order
-            What has the slot: the order, or its part.
+            What occupies the slot: the order, or its part.
 
         Raises
         ------
@@ -119,21 +119,22 @@ class OrderOperations(WorldState):
         return order
 
     def assign_lines(self, order: Order, station: int, skus: Collection[int]) -> Order:
-        """Put some lines of an order of the backlog on a pick station: the order is split.
+        """Assign some lines of an order of the backlog to a pick station, which splits the order.
 
-        They join the part of the order that is there, or become a part of their own, which takes
-        a slot. If they are all that is left and there is no such part, the order takes the slot.
+        They join the part of the order at the station, or become a part of their own, which takes a
+        slot. If they are all that is left and there is no such part, the order itself takes the
+        slot.
 
         Returns
         -------
         Order
-            What now is at the station: the part, or the order itself.
+            What is now at the station: the part, or the order itself.
 
         Raises
         ------
         ValueError
-            If these are no lines of an order of the backlog that is in no pool, or they need a slot
-            and the station is inactive or has none free.
+            If the lines do not belong to an order of the backlog that is in no pool, or if they
+            need a slot and the station is inactive or has none free.
         """
         target = self.pick_stations[station]
         lines = tuple(line for line in order.lines if line.sku in skus)
@@ -180,13 +181,12 @@ class OrderOperations(WorldState):
         order.queued_at = -1
 
     def complete_order(self, order: Order) -> Order | None:
-        """Take an order, or a part of one, whose units are all picked off its station.
+        """Remove a completely picked order, or part of one, from its station.
 
         Returns
         -------
         Order or None
-            The order that is complete now as the customer wants it; None if other lines of it are
-            still open.
+            The customer's order, if it is now complete; None if other lines of it are still open.
         """
         if order.unpicked_units:
             raise ValueError(f"order {order.index} lacks {order.unpicked_units} units")

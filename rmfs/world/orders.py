@@ -1,6 +1,6 @@
 """Pick orders, their lines, and replenishment bundles.
 
-Times are simulated seconds and nan until the event has happened; indices are -1 until decided.
+Times are simulated seconds, nan until the event has happened; indices are -1 until decided.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True, eq=False)
 class OrderLine:
-    """Units of one SKU wanted by one order.
+    """Units of one SKU in one order.
 
-    Each unit is an extract request of its own. A request is *open* until a unit on a certain pod
-    is bound to it, which happens late: when a robot gets the task to bring that pod, or while the
-    pod is on its way.
+    Each unit is an extract request. A request is *open* until a unit on a certain pod is bound to
+    it. This happens late: when a robot gets the task to bring that pod, or while the pod is on its
+    way.
 
     Attributes
     ----------
     units
-        How many units the customer ordered.
+        Number of units ordered.
     open_units
         Requests not yet bound to a pod.
     picked_units
@@ -40,11 +40,11 @@ class OrderLine:
 
 @dataclass(slots=True, eq=False)
 class Order:
-    """A pick order: in the backlog, then on one pick station until it is complete.
+    """A pick order: in the backlog, then at one pick station until it is complete.
 
-    An order may be split: then some of its lines go to a station as a *part*, an order of its own
-    that takes a slot there, while the others stay in the backlog or make further parts. Of the
-    parts of an order there is one at most at a station. It is complete when all its parts are.
+    An order may be split: some of its lines then go to a station as a *part*, which is an order of
+    its own and takes a slot there, while the others stay in the backlog or form further parts. A
+    station has at most one part of an order. The order is complete when all its parts are.
 
     Attributes
     ----------
@@ -59,21 +59,21 @@ class Order:
     queued_at
         The pick station in whose pool an order of the backlog is queued, or -1.
     whole
-        The order this one is a part of; None if it is no part.
+        The order of which this is a part; None if it is not a part.
     parts
-        Parts split off so far; their lines are no longer among those of the order.
+        Parts split off so far; their lines no longer belong to the order itself.
     slots_taken
-        Slots that the order and its parts have at present.
+        Slots currently occupied by the order and its parts.
     in_file
-        Its place among the orders of a file, or -1.
+        Its position among the orders of a file, or -1.
     cancelled_s
-        When it was given up because stock could not serve it.
+        When it was cancelled because stock could not serve it.
     units_cut
-        Units ordered that are not delivered.
+        Ordered units that are not delivered.
     priority
-        Its class, or -1 where the scenario has none (`orders.due.mode = "classes"`).
+        Its class, or -1 in scenarios without classes (`orders.due.mode = "classes"`).
     weight
-        What its lateness counts, by its class.
+        Weight of its lateness, by its class.
     """
 
     index: int
@@ -98,11 +98,11 @@ class Order:
 
     @property
     def all_lines(self) -> tuple[OrderLine, ...]:
-        """Its lines as the customer ordered them, those of its parts included."""
+        """Its lines as ordered by the customer, including those of its parts."""
         return sum((part.lines for part in self.parts), self.lines)
 
     def take_over(self, lines: tuple[OrderLine, ...]) -> None:
-        """Make lines of another order lines of this one; none of them is bound to a pod yet."""
+        """Move lines of another order to this one; none of them is bound to a pod yet."""
         giver = lines[0].order
         giver.lines = tuple(line for line in giver.lines if line not in lines)
         self.lines += lines
@@ -113,12 +113,12 @@ class Order:
             order.unpicked_units += sign * sum(line.open_units for line in lines)
 
     def cut(self, keep: Mapping[int, int]) -> None:
-        """Let units of lines go, none of which is bound to a pod; lines without units go, too.
+        """Reduce unbound units of lines; lines without units are removed.
 
         Parameters
         ----------
         keep
-            Units left of each SKU.
+            Remaining units of each SKU.
         """
         for line in self.lines:
             left = keep.get(line.sku, 0)
@@ -149,24 +149,24 @@ class Order:
 class Bundle:
     """A replenishment order: units of one SKU that go into one pod at one station.
 
-    Two decisions are needed: RPS promises it room on a pod and, perhaps after waiting for more
-    bundles for the same pod, releases that decision; ROA chooses the station. When both have been
-    taken the bundle is *assigned*, an insert request that only its pod can serve.
+    Two decisions are needed. RPS reserves room on a pod and releases that decision, perhaps after
+    waiting for more bundles for the same pod; ROA chooses the station. When both have been made,
+    the bundle is *assigned*: an insert request that only its pod can serve.
 
     Attributes
     ----------
     space
         Space units of the whole bundle.
     pod
-        The pod with room promised, or -1.
+        The pod with reserved room, or -1.
     released
         Whether RPS has released the choice of the pod.
     station
-        The replenishment station with space reserved, or -1.
+        The replenishment station with reserved space, or -1.
     stored_s
-        When its transfer into the pod began.
+        When its transfer into the pod started.
     in_file
-        Its place among the bundles of a file, or -1.
+        Its position among the bundles of a file, or -1.
     """
 
     index: int

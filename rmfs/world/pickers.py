@@ -1,4 +1,4 @@
-"""People at the pick stations: who is where, what they have done, and how tired they are."""
+"""Pickers at the pick stations: where they are, what they have done, and how tired they are."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from rmfs.scenario.parameters.pickers import Pickers
 
 HOUR_S = 3600.0
-"""Seconds of an hour: rates of fatigue are per hour."""
+"""Seconds per hour: rates of fatigue are per hour."""
 
 
 def after_work(fatigue: float, rate_per_h: float, work_s: float) -> float:
-    """Return the fatigue after some work: F + (1 - F) (1 - exp(-rate x time)).
+    """Return the fatigue after a period of work: F + (1 - F) (1 - exp(-rate x time)).
 
     Source: Jaber, Givi and Neumann (2013), Applied Mathematical Modelling 37, 7287-7299.
     """
@@ -26,36 +26,36 @@ def after_work(fatigue: float, rate_per_h: float, work_s: float) -> float:
 
 
 def after_rest(fatigue: float, rate_per_h: float, rest_s: float) -> float:
-    """Return the fatigue that is left after a rest: F exp(-rate x time); source as above."""
+    """Return the fatigue after a period of rest: F exp(-rate x time); source as above."""
     return fatigue * exp(-rate_per_h * rest_s / HOUR_S)
 
 
 @dataclass(slots=True, eq=False)
 class Picker:
-    """A person.
+    """A picker.
 
     Attributes
     ----------
     index
-        Number; those of the first shift come first.
+        Number; pickers of the first shift come first.
     shift
         Number of the shift.
     home
-        Pick station of that shift.
+        Pick station during that shift.
     speed
-        1 is that of the station's times; who has 2 takes half of them.
+        Speed relative to the station's times; 2: half the time.
     station
-        Where the picker is, -1 while away.
+        Current station, or -1 while away.
     since_s
-        Since when.
+        When the picker came there.
     units
         Units picked since time zero.
     fatigue
-        At `told_s`; 0 to 1. What it is now says `Staff.fatigue`.
+        Fatigue at `told_s`, 0 to 1; `Staff.fatigue` returns the current value.
     told_s
-        When that was.
+        Time of `fatigue`.
     busy_until_s
-        When the last unit begun is done.
+        When the last unit started will be finished.
     """
 
     index: int
@@ -71,26 +71,26 @@ class Picker:
 
 
 class Handled(NamedTuple):
-    """What the pick of a unit was.
+    """How a unit was picked.
 
     Attributes
     ----------
     picker
-        Index.
+        Index of the picker.
     seconds
-        For which it keeps picker and station, rework included.
+        Time for which it occupied picker and station, rework included.
     robot_s
-        For which it keeps the robot.
+        Time for which it occupied the robot.
     layer
-        Of the pod, from 0 at the floor; -1 where pods have none.
+        Layer of the pod, from 0 at the bottom; -1 if pods have none.
     fatigue
-        Of the picker when it began.
+        Fatigue of the picker at the start.
     error, noticed
-        Whether it was the wrong one, and whether that was put right.
+        Whether it was picked wrongly, and whether that was corrected.
     face
-        Of the pod; -1 where pods have none.
+        Face of the pod; -1 if pods have none.
     turned
-        Whether the pod had to be turned for it; `seconds` and `robot_s` hold the time of it.
+        Whether the pod had to be turned for it; `seconds` and `robot_s` include that time.
     """
 
     picker: int
@@ -110,11 +110,11 @@ class Staff:
     Parameters
     ----------
     given
-        What the scenario says.
+        Parameters of the scenario.
     pickers
-        The people.
+        The pickers.
     unit_s
-        What a unit takes at each pick station as the layout says, in s.
+        Time per unit at each pick station according to the layout, in s.
 
     Attributes
     ----------
@@ -123,9 +123,9 @@ class Staff:
     at_station
         The picker at each pick station, or None.
     next_change_s
-        When pickers come or leave next; infinite if they never do.
+        When pickers come or leave next; infinite if never.
     unit_times
-        How long units keep a picker who is like the station's times.
+        Distribution of the time per unit for a picker of standard speed.
 
     Raises
     ------
@@ -142,29 +142,29 @@ class Staff:
         self._unit_s = list(unit_s)
 
     def come(self, picker: Picker, now_s: float) -> None:
-        """Let a picker take the place at the home station."""
+        """Place a picker at the home station."""
         self.bring(picker, now_s)
         picker.station, picker.since_s = picker.home, now_s
         self.at_station[picker.home] = picker
 
     def leave(self, picker: Picker, now_s: float) -> None:
-        """Let a picker go; a unit that has been begun is done first."""
+        """Remove a picker; a unit that has been started is finished first."""
         self.bring(picker, now_s)
         self.at_station[picker.station] = None
         picker.station = -1
 
     def begin_unit(self, picker: Picker, now_s: float, seconds: float) -> None:
-        """Let a picker work for a unit."""
+        """Record that a picker works on a unit."""
         self.bring(picker, now_s)
         picker.units += 1
         picker.busy_until_s = now_s + seconds
 
     def bring(self, picker: Picker, now_s: float) -> None:
-        """Bring what is told of the fatigue of a picker up to now."""
+        """Update the stored fatigue of a picker to the current time."""
         picker.fatigue, picker.told_s = self.fatigue(picker, now_s), now_s
 
     def fatigue(self, picker: Picker, now_s: float) -> float:
-        """Return the fatigue of a picker now; 0 to 1."""
+        """Return the current fatigue of a picker, 0 to 1."""
         given = self.given.fatigue
         if given is None:
             return 0.0
@@ -180,23 +180,23 @@ class Staff:
         return fatigue
 
     def factor(self, picker: Picker, now_s: float) -> float:
-        """Return what the time of the next unit of a picker is multiplied by, but for its layer."""
+        """Return the factor on the time of a picker's next unit, except for its layer."""
         made = learned(self.given.learning, picker.units) / picker.speed
         if self.given.fatigue is not None:
             made *= 1.0 + self.given.fatigue.slowdown * self.fatigue(picker, now_s)
         return made
 
     def unit_s(self, station: int, now_s: float) -> float:
-        """Return how long a unit takes the picker of a station in the mean now; else infinite."""
+        """Return the current mean time of a unit at a station; infinite without a picker."""
         picker = self.at_station[station]
         if picker is None:
             return inf
         return self.unit_times.mean_s(self._unit_s[station]) * self.factor(picker, now_s)
 
     def least_s(self, station_s: float) -> float:
-        """Return the time in s that no unit is picked in less, where the layout says `station_s`.
+        """Return a lower bound of the time of a unit, in s, if the layout says `station_s`.
 
-        It is 0 if there is no such time.
+        It is 0 if there is no positive bound.
         """
         return self.unit_times.least_s(station_s) * least_factor(self.given)
 

@@ -1,4 +1,4 @@
-"""Faces of pods: which of them the units of each SKU lie on, and which one the picker sees."""
+"""Faces of pods: where the units of each SKU lie, and which face the picker sees."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ if TYPE_CHECKING:
 
 
 class PodFaces(PodParts):
-    """On which face of its pod every unit lies.
+    """The face on which every unit of a pod lies.
 
-    A bundle goes to the face with most room, and what does not fit there to the next.
+    A bundle goes to the face with most room, and the rest of it to the next one.
 
     Parameters
     ----------
     given
-        What the scenario says.
+        Parameters of the scenario.
     space_per_unit
-        Of each SKU, shape (K,).
+        Space units per unit of each SKU, shape (K,).
     capacity
-        Of each pod, shape (P,).
+        Space units of each pod, shape (P,).
     """
 
     def __init__(
@@ -34,16 +34,16 @@ class PodFaces(PodParts):
         super().__init__(given.count, space_per_unit, capacity)
 
     def filled(self, pod: int, sku: int) -> list[int]:
-        """Return the faces, that with most room first."""
+        """Return the faces, the one with most room first."""
         return self.roomiest_first(pod)
 
     def take(self, pod: int, sku: int, shown: int) -> int:
-        """Take a unit from the face that is shown, else from that with most; returns the face.
+        """Take a unit from the face shown, or else from the face with most units; return the face.
 
         Parameters
         ----------
         shown
-            The face that the picker sees; -1 if none is yet.
+            The face that the picker sees; -1 if none yet.
         """
         lying = self._units[pod, sku]
         face = shown if self.has(pod, sku, shown) else lying.index(max(lying))

@@ -1,4 +1,4 @@
-"""Layers of pods: on which of them the units of each SKU lie."""
+"""Layers of pods: where the units of each SKU lie."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 
 
 class PodLayers(PodParts):
-    """Where in its pod every unit lies.
+    """The layer in which every unit of a pod lies.
 
     Parameters
     ----------
     given
-        What the scenario says.
+        Parameters of the scenario.
     space_per_unit
-        Of each SKU, shape (K,).
+        Space units per unit of each SKU, shape (K,).
     popularity
-        Of each SKU, shape (K,).
+        Popularity of each SKU, shape (K,).
     capacity
-        Of each pod, shape (P,).
+        Space units of each pod, shape (P,).
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class PodLayers(PodParts):
         self._class = _classes(popularity, layers).tolist()
 
     def take(self, pod: int, sku: int) -> int:
-        """Take a unit from the fastest layer that has one; returns the layer."""
+        """Take a unit from the fastest layer that has one; return the layer."""
         lying = self._units[pod, sku]
         layer = next(layer for layer in self._by_time if lying[layer])
         self._take_from(pod, sku, layer)
@@ -61,7 +61,7 @@ class PodLayers(PodParts):
 
 
 def _classes(popularity: NDArray[np.float64], layers: int) -> NDArray[np.int64]:
-    """Cut SKUs by popularity into as many equal classes as there are layers; 0: most popular."""
+    """Divide SKUs by popularity into as many equal classes as there are layers; 0: most popular."""
     rank = np.empty(len(popularity), np.int64)
     rank[np.argsort(-popularity, kind="stable")] = np.arange(len(popularity))
     return rank * layers // max(len(popularity), 1)

@@ -1,4 +1,4 @@
-"""Parts of pods, such as layers or faces: which of them the units of each SKU lie in."""
+"""Parts of pods, such as layers or faces, and the units of each SKU in them."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ _HAIR = 1e-9
 
 
 class PodParts:
-    """In which part of its pod every unit lies.
+    """The part in which every unit of a pod lies.
 
-    Each part has an equal share of the pod's capacity. What fits into no part, though the pod has
-    room for it in all, goes to the part with most room.
+    Each part has an equal share of the pod's capacity. Units that fit into no single part, although
+    the pod has room for them in total, go to the part with most room.
 
     Parameters
     ----------
     parts
-        How many there are.
+        Number of parts.
     space_per_unit
-        Of each SKU, shape (K,).
+        Space units per unit of each SKU, shape (K,).
     capacity
-        Of each pod, shape (P,).
+        Space units of each pod, shape (P,).
 
     Attributes
     ----------

@@ -1,9 +1,9 @@
-"""The put wall: what has left the pick stations and is not packed yet.
+"""The put wall: orders that have left the pick stations and are not packed yet.
 
-Every order, or part of one, leaves its pick station in a tote. Of an order in n totes the last one
-to leave needs no slot of the wall: when the last of them arrives, wherever it comes from, all are
-taken out together, so that at most n - 1 stand there at a time. A slot is kept for a tote from the
-moment at which it leaves its station, so that no tote finds the wall full.
+Every order, or part of one, leaves its pick station in a tote. The last of an order's n totes needs
+no slot of the wall: when the last tote arrives, all are taken out together, so at most n - 1 occupy
+slots. A slot is reserved for a tote when it leaves its station, so that no tote finds the wall
+full.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True, eq=False)
 class Tote:
-    """What a pick station has handed on of an order.
+    """The part of an order that left a pick station together.
 
     Attributes
     ----------
     parcel
-        What it will be a part of.
+        The parcel to which it belongs.
     station
         The pick station.
     released_s
         When it left the station.
     arrived_s
-        When it reached the wall; nan on its way, and if it never goes there.
+        When it reached the wall; nan while on its way, and if it never goes there.
     by_hand
         Whether it was carried there by hand after its station had waited too long.
     """
@@ -43,24 +43,24 @@ class Tote:
 
 @dataclass(slots=True, eq=False)
 class Parcel:
-    """An order after the pick stations.
+    """An order on its way from the pick stations through the put wall.
 
     Attributes
     ----------
     order
-        The order as the customer wants it.
+        The customer's order.
     totes
-        What has left the pick stations so far.
+        Totes that have left the pick stations so far.
     picked
-        Whether that is all of it.
+        Whether these are all of its totes.
     standing
         Totes that have reached the wall.
     kept
-        Slots of the wall that are kept for it, or taken.
+        Slots of the wall that it occupies or has reserved.
     consolidated_s
         When the last of its totes reached the wall.
     packing_s, packed_s
-        When a packer began, and ended.
+        When a packer started and finished.
     """
 
     order: Order
@@ -74,22 +74,22 @@ class Parcel:
 
     @property
     def is_split(self) -> bool:
-        """Whether it has left pick stations, or will, in more than one tote."""
+        """Whether it leaves pick stations in more than one tote."""
         return len(self.totes) > 1 or not self.picked
 
 
 @dataclass(slots=True, eq=False)
 class HeldTote:
-    """An order, or a part of one, that a pick station cannot let go.
+    """An order, or part of one, that cannot leave its pick station.
 
     Attributes
     ----------
     order
-        What has the slot of the station.
+        What occupies the slot of the station.
     since_s
-        From when on it could have gone.
+        When it was ready to leave.
     timer
-        Names the moment at which it is carried away by hand.
+        Identifies the time at which it is carried away by hand.
     """
 
     order: Order
@@ -103,22 +103,22 @@ class PutWall:
     Parameters
     ----------
     slots
-        How many there are; None for as many as are needed.
+        Number of slots; None: unlimited.
     slot_per_part
-        Whether each part of an order takes one, or all of them share one.
+        Whether each part of an order takes a slot, or all its parts share one.
 
     Attributes
     ----------
     parcels
-        Of which something has left the pick stations and that are not packed yet, by order.
+        Orders that have left the pick stations in part and are not packed yet.
     kept
-        Slots taken, or kept for totes on their way.
+        Slots occupied, or reserved for totes on their way.
     travelling
         Totes on their way.
     held
-        Totes that pick stations cannot let go, longest first.
+        Totes that cannot leave their pick stations, longest waiting first.
     orders_packed
-        Since time zero.
+        Number of orders packed since time zero.
     """
 
     def __init__(self, slots: int | None, *, slot_per_part: bool) -> None:
@@ -143,12 +143,12 @@ class PutWall:
         return self.slots is None or self.kept + self._more(order, last) <= self.slots
 
     def release(self, order: Order, station: int, now_s: float, *, last: bool) -> Tote:
-        """Let a tote leave its pick station; it keeps the slot that it will need.
+        """Send a tote from its pick station to the wall; it reserves the slot that it needs.
 
         Parameters
         ----------
         order
-            As the customer wants it.
+            The customer's order.
         """
         more = self._more(order.index, last)
         parcel = self.parcels.setdefault(order.index, Parcel(order))
@@ -161,14 +161,14 @@ class PutWall:
         return tote
 
     def pass_by(self, tote: Tote, now_s: float) -> Parcel:
-        """Let an order in a single tote be packed where it was picked; returns the parcel."""
+        """Pack an order in a single tote where it was picked; return the parcel."""
         self.travelling -= 1
         tote.parcel.packing_s = now_s
         self.pack(tote.parcel, now_s)
         return tote.parcel
 
     def arrive(self, tote: Tote, now_s: float) -> bool:
-        """Let a tote reach the wall; returns whether its order is all there, and taken out."""
+        """Record the arrival of a tote; return whether its order is complete and taken out."""
         parcel = tote.parcel
         tote.arrived_s = now_s
         self.travelling -= 1
@@ -181,13 +181,13 @@ class PutWall:
         return True
 
     def pack(self, parcel: Parcel, now_s: float) -> None:
-        """Let a parcel be done."""
+        """Record that a parcel is packed."""
         parcel.packed_s = now_s
         del self.parcels[parcel.order.index]
         self.orders_packed += 1
 
     def _more(self, order: int, last: bool) -> int:
-        """Slots that the next tote of an order takes."""
+        """Return the number of slots that the next tote of an order takes."""
         return int(not last and (self.slot_per_part or order not in self.parcels))
 
     def verify(self) -> None:

@@ -1,4 +1,4 @@
-"""The open extract requests of the orders on a pick station, or in its pool, by SKU."""
+"""Open extract requests of the orders at a pick station, or in its pool, by SKU."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ if TYPE_CHECKING:
 
 
 class OpenRequests:
-    """Units wanted at one station and not yet bound to a pod.
+    """Units needed at one station and not yet bound to a pod.
 
     Parameters
     ----------
     need
-        Open units per SKU, shape (K,): the station's row of a matrix, kept up to date here.
+        Open units per SKU, shape (K,): the station's row of a matrix, which is updated here.
     news, station
-        Told that there are requests now where there were none, or none any more, and of whom.
+        Notified when the first request is added or the last one removed, and for which station.
 
     Attributes
     ----------
     lines
-        Per SKU, the lines with open units in the order in which their orders were assigned.
+        By SKU, the lines with open units in the order of assignment.
     units
         Open units in total.
     version
-        Grows whenever requests are added: a rule that found nothing to do need not look again
-        before.
+        Increases whenever requests are added: a rule that found nothing to do need not look again
+        before that.
     """
 
     def __init__(self, need: NDArray[np.int32], news: News, station: int) -> None:
@@ -44,11 +44,11 @@ class OpenRequests:
         self.version = 0
 
     def add(self, order: Order) -> None:
-        """Take in the requests of an order that are open."""
+        """Add the open requests of an order."""
         self.add_lines(order.lines)
 
     def add_lines(self, lines: Iterable[OrderLine]) -> None:
-        """Take in the requests of lines that are open."""
+        """Add the open requests of lines."""
         before = self.units
         for line in lines:
             if line.open_units:
@@ -63,7 +63,7 @@ class OpenRequests:
             self._news.tell(self._station)
 
     def remove(self, order: Order) -> None:
-        """Let go of the open requests of an order."""
+        """Remove the open requests of an order."""
         for line in order.lines:
             if line.open_units:
                 waiting = self.lines[line.sku]
@@ -76,7 +76,7 @@ class OpenRequests:
         self._count_from(before)
 
     def reopen(self, line: OrderLine) -> None:
-        """Open one request of a line again; its line comes first."""
+        """Reopen one request of a line, which is then served first."""
         if not line.open_units:
             self.lines.setdefault(line.sku, deque()).appendleft(line)
         line.open_units += 1
@@ -92,7 +92,7 @@ class OpenRequests:
         Returns
         -------
         list of OrderLine
-            The line of each request closed, at most so many.
+            The line of each closed request, at most `at_most`.
         """
         waiting = self.lines.get(sku)
         taken: list[OrderLine] = []
@@ -113,7 +113,7 @@ class OpenRequests:
         return taken
 
     def take_line(self, line: OrderLine, at_most: int) -> int:
-        """Close open requests of one line; returns how many, at most so many."""
+        """Close at most `at_most` open requests of one line; return how many."""
         count = min(line.open_units, at_most)
         if count:
             line.open_units -= count

@@ -1,4 +1,4 @@
-"""State of the robots, as far as tasks are concerned; traffic knows how they move."""
+"""State of the robots as far as tasks are concerned; traffic knows their motion."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ class Robot:
     Attributes
     ----------
     tier
-        Where it is, or will be when its present drive ends.
+        Its tier, or that at the end of its current drive.
     waypoint
-        Where its present drive ends, or where it stands: a station's waypoint, a place, or its
-        start.
+        Where its current drive ends, or where it stands: a station's waypoint, a place, or its
+        initial waypoint.
     pod
         The pod it carries, from the start of lifting to the end of setting down; or -1.
     task
-        What it does; None if it waits to be told.
+        Its current task; None if it needs one.
     station
         The station at whose head it stands, or -1.
     places
-        Storage places it stands at, or is going to stand at: nobody else may be sent there.
+        Storage places reserved for it, where it stands or is going to stand.
     prepared
-        Tasks it is to have after its present one, as far as they are possible then; nothing is kept
-        for them.
+        Tasks planned after its current one, each carried out if it is then possible; nothing is
+        reserved for them.
     """
 
     index: int
@@ -45,6 +45,6 @@ class Robot:
 
     @property
     def is_free(self) -> bool:
-        """Whether it carries nothing and has nothing to do but rest."""
+        """Whether it carries nothing and has no task other than resting."""
         task = self.task
         return self.pod < 0 and (task is None or task.rests)

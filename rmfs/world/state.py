@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class WorldState:
-    """A warehouse with its stock, its work and its robots; `World` has the operations on it.
+    """A warehouse with its stock, work and robots; `World` adds the operations.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class WorldState:
     Attributes
     ----------
     now_s
-        Present simulated time.
+        Current simulated time.
     inventory, storage
         Stock on pods, and where the pods are.
     orders, bundles
@@ -45,26 +45,26 @@ class WorldState:
     pick_stations, replenishment_stations
         In the order of the layout.
     slot_news
-        Pick stations that were switched on or off, reached, left, or got or lost an order.
+        Notifies of pick stations that were switched, reached or left, or gained or lost an order.
     work_news
-        Stations in the common numbering that have got open work, or have none any more.
+        Notifies of stations, in the common numbering, that gained open work or have none left.
     work_stations
-        Both of these, in the common numbering: the stations to which rules assign work.
+        All pick and replenishment stations, to which rules assign work, in the common numbering.
     stations
-        Those, and after them the `other_stations`, of all other kinds.
+        All stations, including the `other_stations` of other kinds, which come last.
     need
         Open units per pick station and SKU, shape (S, K).
     queued_need
         The same for queued orders, shape (S, K).
     lines
-        Order lines per pick station and SKU, picked or not, shape (S, K): of the open orders there.
+        Order lines of the open orders per pick station and SKU, picked or not, shape (S, K).
     bundles_waiting
-        Assigned bundles not yet in a task, per replenishment station and pod, shape (S, P).
+        Assigned bundles not yet part of a task, per replenishment station and pod, shape (S, P).
     robots
         By index.
     asking, resting
-        Robots without task, in the order in which they became free, and robots at rest or on their
-        way there.
+        Robots without a task, in the order in which they became free; and robots at rest or on
+        their way to rest.
     orders_created, orders_completed, bundles_created, bundles_stored, units_picked, units_stored
         Counts since time zero.
     units_initial
@@ -74,19 +74,19 @@ class WorldState:
     incoming
         Units of all bundles created and not yet stored, per SKU, shape (K,).
     order_redraws
-        How often an order was drawn anew because stock could not serve the first draw.
+        Number of redraws because stock could not serve a drawn order line.
     orders_short
-        Orders that came although stock could not serve them.
+        Orders that arrived although stock could not serve them.
     batteries
-        What robots carry to draw from; None if it is as much as they need.
+        The robots' batteries; None if energy is unlimited.
     put_wall
-        Where the parts of split orders come together; None if orders are done with their picks.
+        The put wall for parts of split orders; None if orders are complete when picked.
     staff
-        People at the pick stations; None if every unit takes the same time.
+        The pickers at the pick stations; None if every unit takes the same time.
     split_orders
-        Orders with parts of which units are still to be picked, by index.
+        Split orders with units still to be picked, by index.
     tasks_dropped
-        How many prepared tasks were impossible when their turn came.
+        Number of prepared tasks that had become impossible when they were due.
     """
 
     def __init__(self, layout: Layout, skus: SkuSet) -> None:
@@ -158,10 +158,10 @@ class WorldState:
         self.units_initial = 0
 
     def _replenishment_station(self, station: int) -> ReplenishmentStation:
-        """Look up a replenishment station by its number among all stations."""
+        """Return a replenishment station by its number among all stations."""
         return self.replenishment_stations[station - len(self.pick_stations)]
 
     @property
     def load(self) -> float:
-        """Space units stored, on their way into pods, and waiting; each bundle counts once."""
+        """Space units stored, on their way to pods, and waiting; each bundle counts once."""
         return self.inventory.stored_space + self.unstored_space

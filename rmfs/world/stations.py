@@ -1,4 +1,4 @@
-"""State of the stations: what is assigned to them, what is under way to them, who stands there."""
+"""State of the stations: assigned work, robots under way, and the robot being served."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ T = TypeVar("T", bound="Task")
 
 
 class Station(Generic[T]):
-    """What stations of every kind have; a kind adds its own.
+    """Common state of stations of all kinds; each kind adds its own.
 
     Attributes
     ----------
     index
-        In the common numbering of stations: pick stations come first.
+        Number in the common numbering: pick stations come first.
     number
-        Among the stations of its kind.
+        Number among the stations of its kind.
     waypoint, tier
-        Where the robot stands that is being served.
+        Waypoint and tier of the robot that is being served.
     visits
-        How many robots have reached the head so far.
+        Number of robots that have reached the head so far.
     tasks
-        The task of each pod that is to be, or is being, served here; in order of creation.
+        The task of each pod that is to be, or is being, served here, in order of creation.
     """
 
     def __init__(self, index: int, number: int, waypoint: int, tier: int) -> None:
@@ -53,7 +53,7 @@ class Station(Generic[T]):
 
     @property
     def active(self) -> bool:
-        """Whether new work may be assigned; what is assigned is finished in any case."""
+        """Whether new work may be assigned; assigned work is finished in any case."""
         return self._active
 
     @active.setter
@@ -72,10 +72,10 @@ class Station(Generic[T]):
         self.changed()
 
     def changed(self) -> None:
-        """Take note that it is switched, served or filled otherwise; a kind may tell others."""
+        """Record a change of its state or contents; a kind may notify others."""
 
     def verify(self, robots: Sequence[Robot]) -> None:
-        """Check what is known of it by recounting; a kind adds its own.
+        """Check the state by recounting; a kind adds its own checks.
 
         Raises
         ------
@@ -89,17 +89,17 @@ class Station(Generic[T]):
 
     @property
     def has_work(self) -> bool:
-        """Whether something is assigned to it that is not done yet."""
+        """Whether work is assigned to it that is not finished yet."""
         return bool(self.tasks)
 
     @property
     def has_open_work(self) -> bool:
-        """Whether something is assigned to it for which no pod is under way."""
+        """Whether work is assigned to it for which no pod is under way."""
         return False
 
     @property
     def work_version(self) -> tuple[int, ...]:
-        """Changes with new work."""
+        """Version number that changes with new work."""
         return ()
 
 
@@ -109,13 +109,14 @@ class PickStation(Station[PickTask]):
     Attributes
     ----------
     slots
-        How many orders may be open at once.
+        Maximum number of open orders.
     orders
-        The open orders by index, in the order of their assignment.
+        The open orders by index, in the order of assignment.
     requests
         Their requests not yet bound to a pod.
     queued
-        The pool: orders of the backlog that are to come here, in the order in which they joined.
+        The pool: orders of the backlog reserved for this station, in the order in which they
+        joined.
     queued_requests
         Requests of the pool not yet bound to a pod.
     """
@@ -139,12 +140,12 @@ class PickStation(Station[PickTask]):
         self.queued_requests = OpenRequests(queued_need, work_news, index)
 
     def changed(self) -> None:
-        """Tell those who keep lists of stations with slots."""
+        """Notify those who keep lists of stations with slots."""
         self._slot_news.tell(self.index)
 
     @property
     def free_slots(self) -> int:
-        """Slots without an order."""
+        """Number of slots without an order."""
         return self.slots - len(self.orders)
 
     @property
@@ -159,7 +160,7 @@ class PickStation(Station[PickTask]):
 
     @property
     def work_version(self) -> tuple[int, ...]:
-        """Changes with new requests, and when a slot is free for a queued order."""
+        """Version number that changes with new requests, and when a queued order can get a slot."""
         if not self.queued:
             return (self.requests.version,)
         return self.requests.version, self.queued_requests.version, self.free_slots > 0
@@ -171,15 +172,15 @@ class ReplenishmentStation(Station[ReplenishTask]):
     Attributes
     ----------
     capacity
-        Space units of bundles that may be assigned at once.
+        Maximum space units of assigned bundles.
     used
-        Space units of the bundles assigned, or reserved by ROA, whose transfer has not begun.
+        Space units of the bundles assigned, or reserved by ROA, whose transfer has not started.
     bundles
-        How many these are.
+        Number of these bundles.
     waiting
-        Per pod, the bundles assigned but not yet in a robot's task; oldest pod first.
+        For each pod, the assigned bundles not yet part of a task; oldest pod first.
     version
-        Grows whenever a bundle is added to `waiting`.
+        Increases whenever a bundle is added to `waiting`.
     """
 
     def __init__(
@@ -202,7 +203,7 @@ class ReplenishmentStation(Station[ReplenishTask]):
 
     @property
     def free_space(self) -> float:
-        """Space units of bundles that may still be assigned."""
+        """Space units available for further bundles."""
         return self.capacity - self.used
 
     @property
@@ -217,18 +218,18 @@ class ReplenishmentStation(Station[ReplenishTask]):
 
     @property
     def work_version(self) -> tuple[int, ...]:
-        """Changes with new bundles."""
+        """Version number that changes with new bundles."""
         return (self.version,)
 
     def add(self, bundle: Bundle) -> None:
-        """Let a bundle wait for its pod."""
+        """Add a bundle that waits for its pod."""
         self.waiting.setdefault(bundle.pod, []).append(bundle)
         self._waiting_count[bundle.pod] += 1
         self.version += 1
         self._work_news.tell(self.index)
 
     def take(self, pod: int) -> list[Bundle]:
-        """Hand over all bundles that wait for a pod."""
+        """Remove and return all bundles that wait for a pod."""
         self._waiting_count[pod] = 0
         self._work_news.tell(self.index)
         return self.waiting.pop(pod, [])

@@ -1,8 +1,8 @@
-"""Storage places: which pod stands where, and which robot keeps which place.
+"""Storage places: which pod stands where, and which robot has reserved which place.
 
-A place is *kept* by a robot that stands there or is on its way there, until traffic reports that
-the robot has departed; nobody else may be sent there meanwhile (condition W2 of the planner). An
-empty robot may keep a place beneath a stored pod, and only a loaded one needs a place without pod.
+A robot *keeps* a place if it stands there or is on its way there, until traffic reports that it has
+departed; meanwhile no other robot may be sent there (condition W2 of the planner). An empty robot
+may keep a place beneath a stored pod; only a loaded one needs a place without a pod.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ class Storage:
     layout
         The warehouse at time zero.
     robots
-        All robots, as kept by the world.
+        All robots, as held by the world.
 
     Attributes
     ----------
     places
         Waypoints of the L storage places, ascending, shape (L,).
     place_index
-        Index into `places` of each waypoint, -1 if it is none.
+        Index into `places` of each waypoint, -1 if it is not a place.
     pod_at
         Pod stored at each waypoint, or -1.
     place_of
@@ -45,19 +45,19 @@ class Storage:
     kept_by
         Robot that keeps each waypoint, or -1.
     pod_waypoint
-        Where each pod is stored, or was last, shape (P,).
+        Where each pod is stored, or was stored last, shape (P,).
     is_empty
-        Places without pod that no robot keeps: a pod may be parked there, shape (L,).
+        Places without a pod that no robot keeps: a pod may be stored there, shape (L,).
     is_restful
         Places beneath a stored, unclaimed pod that no robot keeps: a robot may rest there,
         shape (L,).
     is_stored
         Pods at a place, not on a robot, shape (P,).
     is_at_hand
-        Pods that a robot may be sent to: stored, unclaimed, and nobody beneath them but a robot
-        without work, shape (P,).
+        Available pods: stored, unclaimed, and with no robot beneath them except one without work,
+        shape (P,).
     version
-        Grows whenever a pod comes to hand.
+        Increases whenever a pod becomes available.
     """
 
     def __init__(self, layout: Layout, robots: list[Robot]) -> None:
@@ -89,7 +89,7 @@ class Storage:
             self._refresh(place)
 
     def is_free(self, place: int) -> bool:
-        """Whether a place holds no pod and is kept by nobody."""
+        """Whether a place holds no pod and no robot keeps it."""
         return bool(self._is_empty[self.place_index[place]])
 
     def claim(self, pod: int, robot: int) -> None:
@@ -130,13 +130,13 @@ class Storage:
         self._refresh(place)
 
     def departed(self, robot: Robot, rest: int) -> bool:
-        """Give up the places a robot has left; returns whether there were any.
+        """Give up the places that a robot has left; return whether there were any.
 
         Parameters
         ----------
         rest
-            Where the robot's present plan ends; a place it is told to go to, but has no plan for
-            yet, is kept as well, and so is the place of its task.
+            Where the robot's current plan ends. A place to which it has been sent but has no plan
+            yet is kept as well, and so is the place of its task.
         """
         goal = robot.task.place if robot.task is not None else -1
         left = [place for place in robot.places if place not in (robot.waypoint, rest, goal)]
@@ -147,7 +147,7 @@ class Storage:
         return bool(left)
 
     def lift(self, pod: int) -> None:
-        """Let a pod leave its place."""
+        """Remove a pod from its place."""
         place = self.place_of[pod]
         self.place_of[pod] = -1
         self.pod_at[place] = -1
@@ -173,7 +173,7 @@ class Storage:
         self._refresh(place)
 
     def robot_changed(self, robot: Robot) -> None:
-        """Take note that a robot has got work or has become free."""
+        """Update the state of places after a robot has got work or become free."""
         for place in robot.places:
             self._refresh(place)
 

@@ -1,7 +1,7 @@
-"""What a robot has been told to do: a class for each kind of task.
+"""Tasks of robots: one class for each kind of task.
 
-Every task is a way: with a pod or without one, to a station or to a place. A kind adds when it is
-possible, what the world keeps for it when it starts, and what is given back when it ends.
+Every task is a trip, with or without a pod, to a station or a place. A kind defines when the task
+is possible, what the world reserves for it at its start, and what is released at its end.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 
 
 class Serves(Protocol):
-    """Says whether there is work for a pod at a station."""
+    """Function that returns whether there is work for a pod at a station."""
 
     def __call__(self, pod: int, station: int) -> bool:
-        """Whether there is work."""
+        """Return whether there is work."""
         ...
 
 
 class Keeps(Protocol):
-    """What tasks need of the world, which keeps pods, places and work for them."""
+    """The operations of the world used by tasks, which reserve pods, places and work."""
 
     robots: list[Robot]
     storage: Storage
@@ -34,36 +34,36 @@ class Keeps(Protocol):
     stations: list[Any]
 
     def start_pick(self, robot: Robot, pod: int, station: int) -> PickTask:
-        """Begin to bring a pod to a pick station."""
+        """Start to bring a pod to a pick station."""
         ...
 
     def start_replenish(self, robot: Robot, pod: int, station: int) -> ReplenishTask:
-        """Begin to bring a pod to a replenishment station."""
+        """Start to bring a pod to a replenishment station."""
         ...
 
     def start_visit(self, task: VisitTask) -> VisitTask:
-        """Begin to bring a pod to a station of another kind."""
+        """Start to bring a pod to a station of another kind."""
         ...
 
     def start_charge(self, task: Any) -> Task:
-        """Begin to go for energy."""
+        """Start to go to an energy station."""
         ...
 
     def start_park(self, robot: Robot, place: int) -> Task:
-        """Begin to store a pod."""
+        """Start to store a pod."""
         ...
 
     def start_reposition(self, robot: Robot, pod: int, place: int) -> Task:
-        """Begin to move a stored pod."""
+        """Start to move a stored pod."""
         ...
 
     def start_rest(self, robot: Robot, place: int) -> Task:
-        """Begin to rest."""
+        """Start to rest."""
         ...
 
 
 class Pick(NamedTuple):
-    """One unit to be picked: the line it is for, and whether it was bound on the pod's way."""
+    """A unit to be picked, and whether it was bound while the pod was on its way."""
 
     line: OrderLine
     late_bound: bool
@@ -76,15 +76,15 @@ class Task:
     Attributes
     ----------
     kind
-        The word for it in tables, traces and the viewer.
+        Name of the kind in tables, traces and the viewer.
     rests
-        Whether a robot with this task may be given another one at any time.
+        Whether a robot with this task may get another one at any time.
     pod
-        The pod to bring or to store; -1 for none.
+        The pod to be brought or stored; -1 for none.
     station
-        Where the pod is to be served, or -1.
+        The station where the pod is served, or -1.
     place
-        Where the pod is to be stored, or the robot is to rest; a waypoint, or -1.
+        The waypoint where the pod is stored or the robot rests, or -1.
     """
 
     kind: ClassVar[str]
@@ -96,7 +96,7 @@ class Task:
     place: int = -1
 
     def started(self, world: Keeps) -> Task:
-        """Let the world keep what the task needs; returns the task as it has begun."""
+        """Make the world reserve what the task needs; return the started task."""
         raise NotImplementedError
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
@@ -105,12 +105,12 @@ class Task:
         Parameters
         ----------
         serves
-            Tells whether there is work for a pod at a station.
+            Returns whether there is work for a pod at a station.
         """
         raise NotImplementedError
 
     def ended(self, world: Keeps) -> None:
-        """Give back what the world kept."""
+        """Release what the world reserved."""
 
     @property
     def stores(self) -> bool:
@@ -119,20 +119,20 @@ class Task:
 
     @property
     def lacks_place(self) -> bool:
-        """Whether somebody has yet to say where the pod is to be stored."""
+        """Whether the storage place of the pod is still to be chosen."""
         return self.place < 0 and self.station < 0
 
 
 @dataclass(slots=True, eq=False)
 class StationTask(Task):
-    """Bring a pod to a station, or go on with the one carried."""
+    """Bring a pod to a station, or the one already carried."""
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
-        """Whether the pod can be had, and there is work for it."""
+        """Whether the pod is available and there is work for it."""
         return _can_have(world, self) and serves(self.pod, self.station)
 
     def ended(self, world: Keeps) -> None:
-        """Nothing is under way to the station any more."""
+        """Deregister from the station."""
         del world.stations[self.station].tasks[self.pod]
 
 
@@ -150,17 +150,17 @@ class PickTask(StationTask):
     picks: deque[Pick] = field(default_factory=deque)
 
     def started(self, world: Keeps) -> Task:
-        """Bind all requests it can serve."""
+        """Bind all requests that it can serve."""
         return world.start_pick(world.robots[self.robot], self.pod, self.station)
 
     def ended(self, world: Keeps) -> None:
-        """Its stock is no longer on the way."""
+        """Stop counting its stock as inbound."""
         StationTask.ended(self, world)
         world.inventory.end_inbound(self.pod)
 
     @property
     def can_pick(self) -> bool:
-        """Whether the order of one of its picks is on the station (others are still queued)."""
+        """Whether the order of one of its picks is at the station (others are still queued)."""
         return any(pick.line.order.station >= 0 for pick in self.picks)
 
 
@@ -184,9 +184,9 @@ class ReplenishTask(StationTask):
 
 @dataclass(slots=True, eq=False)
 class VisitTask(StationTask):
-    """Bring a pod to a station of any other kind; a kind of station derives its own from it.
+    """Bring a pod to a station of another kind; each kind of station derives its own class.
 
-    Who asks for a visit knows why: it is possible if the pod can be had.
+    The controller decides on the need for a visit; it is possible if the pod is available.
     """
 
     kind = "visit"
@@ -196,18 +196,18 @@ class VisitTask(StationTask):
         return world.start_visit(self)
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
-        """Whether the pod can be had."""
+        """Whether the pod is available."""
         return _can_have(world, self)
 
 
 @dataclass(slots=True, eq=False)
 class ParkTask(Task):
-    """Store the pod a robot carries."""
+    """Store the pod that a robot carries."""
 
     kind = "park"
 
     def started(self, world: Keeps) -> Task:
-        """Keep the place."""
+        """Reserve the place."""
         return world.start_park(world.robots[self.robot], self.place)
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
@@ -223,11 +223,11 @@ class RepositionTask(Task):
     kind = "reposition"
 
     def started(self, world: Keeps) -> Task:
-        """Claim the pod and keep the place."""
+        """Claim the pod and reserve the place."""
         return world.start_reposition(world.robots[self.robot], self.pod, self.place)
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
-        """Whether the robot is empty, the pod at hand, and the place free."""
+        """Whether the robot is empty, the pod available, and the place free."""
         empty = world.robots[self.robot].pod < 0
         return empty and _can_have(world, self) and world.storage.is_free(self.place)
 
@@ -240,17 +240,17 @@ class RestTask(Task):
     rests = True
 
     def started(self, world: Keeps) -> Task:
-        """Keep the place."""
+        """Reserve the place."""
         return world.start_rest(world.robots[self.robot], self.place)
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
-        """Whether the robot is empty, and nobody else keeps the place."""
+        """Whether the robot is empty, and no other robot keeps the place."""
         empty = world.robots[self.robot].pod < 0
         return empty and world.storage.kept_by[self.place] in (-1, self.robot)
 
 
 TASKS: tuple[type[Task], ...] = (PickTask, ReplenishTask, ParkTask, RepositionTask, RestTask)
-"""Kinds of task that every warehouse has; kinds of station add theirs (`rmfs.stations`)."""
+"""Kinds of task in every warehouse; kinds of station add theirs (`rmfs.stations`)."""
 
 
 def _can_have(world: Keeps, task: Task) -> bool:

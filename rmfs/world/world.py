@@ -158,7 +158,7 @@ class World(OrderOperations):
         return task
 
     def start_charge(self, task: ChargeTask) -> ChargeTask:
-        """Begin the task to go for energy."""
+        """Begin the task of going to a charger or battery swap."""
         self.stations[task.station].tasks[task.robot] = task
         self._set_task(self.robots[task.robot], task)
         return task

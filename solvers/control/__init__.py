@@ -1,1 +1,1 @@
-"""The side of models that knows the warehouse: solutions as answers to the simulation."""
+"""Controllers that use models: they state questions and turn solutions into decisions."""

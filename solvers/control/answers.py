@@ -1,4 +1,4 @@
-"""Solutions of models as answers to the simulation."""
+"""Converts solutions of models to answers for the simulation."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
 def answer(
     solution: Solution[Any], values: Mapping[str, Plain] | None, scale: float = nan
 ) -> Answer:
-    """Tell what a model found.
+    """Convert a solution to an `Answer`.
 
     Parameters
     ----------
     solution
-        As the model returned it.
+        Solution returned by the model.
     values
-        Its values as plain arrays and numbers; None if it has none.
+        Its values as plain arrays and numbers; None if there are none.
     scale
-        What a gap is relative to. Default: the objective.
+        Reference of the relative gap. Default: the objective.
     """
     return Answer(
         solution=values if solution.found else None,

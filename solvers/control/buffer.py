@@ -1,4 +1,4 @@
-"""Seconds for which decisions are collected before an optimiser is asked again."""
+"""Limits how often an optimiser is asked."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Buffer:
     view
         Has the clock.
     buffer_s
-        Seconds between two questions, at least.
+        Minimum number of seconds between two questions.
     """
 
     def __init__(self, view: View, buffer_s: float) -> None:
@@ -27,7 +27,7 @@ class Buffer:
         self._wanted = False
 
     def is_over(self, wanted: bool = True) -> bool:
-        """Whether to ask now; if it is wanted but too early, `next_event_s` says when.
+        """Return whether to ask now; if it is too early, `next_event_s` says when.
 
         Parameters
         ----------
@@ -39,17 +39,17 @@ class Buffer:
         return wanted and over
 
     def begin(self, again: bool = False) -> None:
-        """Take note that the optimiser is asked now.
+        """Record that the optimiser is asked now.
 
         Parameters
         ----------
         again
-            Whether to ask again as soon as the buffer is over. Default: only if something happens.
+            Whether to ask again as soon as the buffer time is over. Default: only after an event.
         """
         self._asked_s = self._view.now_s
         self._wanted = again
 
     @property
     def next_event_s(self) -> float:
-        """When the optimiser may be asked again, if it is to be asked; else inf."""
+        """Return when the optimiser may be asked again if there is something to ask; else inf."""
         return self._asked_s + self._buffer_s if self._wanted else inf

@@ -1,4 +1,4 @@
-"""How often pods will be wanted, from stock, popularity and backlog."""
+"""Forecast of visits to pods, from stock, popularity and backlog."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ _PRIOR_H = 0.1
 
 
 class Foresight:
-    """Expects visits to pods; kept for a while, as the whole stock is gone through.
+    """Forecasts visits to pods; results are cached, since the whole stock is evaluated.
 
-    Units wanted within the horizon are those of waiting orders and those that new orders will ask
-    for: the rate at which units were picked so far, shared out by the units ordered of each SKU.
-    So that the beginning is no accident, six minutes of picking without a break, and
-    twenty visits of two units, are counted in advance.
+    Units needed within the horizon are those of waiting orders and those of new orders: the past
+    rate of picked units, distributed in proportion to the units ordered of each SKU. To stabilise
+    the estimate at the beginning, six minutes of uninterrupted picking and twenty visits of two
+    units are counted in advance.
 
     Parameters
     ----------
     view
         The world.
     horizon_s
-        How far ahead to look, positive.
+        Horizon in seconds, positive.
     kept_s
-        How long figures are used before they are worked out anew.
+        Seconds after which the forecast is recomputed.
     """
 
     def __init__(self, view: View, horizon_s: float, kept_s: float) -> None:
@@ -51,7 +51,7 @@ class Foresight:
 
     @property
     def units_per_h(self) -> NDArray[np.float64]:
-        """Units that orders will ask for, per SKU, shape (K,), in 1/h."""
+        """Expected units ordered per SKU, shape (K,), in 1/h."""
         units = self._frequency.units
         hours = (self._view.now_s - self._before_s) / 3600.0
         picked = self._picked() - self._before_units + _PRIOR_H * self._most_per_h
@@ -67,7 +67,7 @@ class Foresight:
 
     @property
     def visits_per_h(self) -> NDArray[np.float64]:
-        """Visits to expect of each pod, shape (P,), in 1/h."""
+        """Expected visits to each pod, shape (P,), in 1/h."""
         now_s = self._view.now_s
         if self._rate_per_h is None or now_s >= self._found_s + self._kept_s:
             inventory = self._view.inventory

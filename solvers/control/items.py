@@ -1,4 +1,4 @@
-"""What a model assigns: whole orders, or lines of orders that may be split."""
+"""Items assigned by models: whole orders, or single lines of orders that may be split."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ class Item:
 
     @property
     def lines(self) -> tuple[OrderLine, ...]:
-        """The lines it stands for."""
+        """The order lines that it represents."""
         return self.order.lines if self.line is None else (self.line,)
 
     @property
     def key(self) -> tuple[int, int]:
-        """Tells one from another: index of the order and SKU, or -1."""
+        """Identifies the item: index of the order, and SKU or -1."""
         return self.order.index, -1 if self.line is None else self.line.sku
 
     def waits(self, view: View) -> bool:
@@ -43,21 +43,21 @@ class Item:
         return self.order in view.orders and (self.line is None or self.line in self.order.lines)
 
     def decision(self, station: int) -> AssignOrder | AssignLines:
-        """Put it on a station."""
+        """Return the decision that assigns it to a station."""
         if self.line is None:
             return AssignOrder(self.order, station)
         return AssignLines(self.order, station, (self.line.sku,))
 
 
 def servable(view: View, split: bool, splitting: Splitting | None = None) -> list[Item]:
-    """Return waiting orders, or lines, that the stock can serve, in order of arrival.
+    """Return waiting orders, or lines, that stock can serve, in order of arrival.
 
     Parameters
     ----------
     split
         Whether orders are split.
     splitting
-        Which of them may be; the others are whole. Default: all.
+        Which orders may be split; the others remain whole. Default: all.
     """
     orders, stock = view.orders, view.inventory.free_stock
     if split:

@@ -1,4 +1,4 @@
-"""What models of orders, pods and robots leave to rules: bundles, rest, and what others ask."""
+"""Joint controllers: what models of orders, pods and robots leave to rules."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ P = TypeVar("P", bound=Parameters)
 
 
 class JointAllocation(TaskAllocation[P]):
-    """A rule of TA whose model decides orders, and pods for picks with the robots that fetch them.
+    """A TA rule whose model decides orders, and pods for picks together with their robots.
 
-    Robots bring pods to replenishment stations, the nearest with work first, pods by PPS
-    lexicographic; idle ones rest by the rest rule. What is made of an answer is kept as a plan, and
-    asks nobody.
+    Robots bring pods to replenishment stations, the nearest station with work first, with pods
+    chosen by PPS lexicographic; idle robots rest by the rest rule. Answers are stored as a plan,
+    and carrying it out involves no other controller.
     """
 
     goes_on = True
@@ -42,13 +42,13 @@ class JointAllocation(TaskAllocation[P]):
         self._rest = RestPlaces(view, rest, self.draw)
 
     def is_modelled(self, decision: Any) -> bool:
-        """Orders, and pods for picks with the robots that fetch them."""
+        """Whether the model makes this decision: orders, and pods for picks with their robots."""
         if isinstance(decision, BringForPicks):
             return decision.robot.pod < 0
         return isinstance(decision, AssignOrder | AssignLines)
 
     def _free_robots(self) -> list[Robot]:
-        """Robots without pod and task, in order."""
+        """Return robots without pod and task, in order."""
         asking, resting = self.view.asking, self.view.resting
         return [
             robot
@@ -62,11 +62,11 @@ class JointAllocation(TaskAllocation[P]):
         return min(robots, key=lambda r: (travel.estimate_s(r.waypoint, at)[0], r.index))
 
     def _at_bundles(self) -> int:
-        """How many robots work for replenishment stations."""
+        """Return the number of robots working for replenishment stations."""
         return sum(isinstance(robot.task, ReplenishTask) for robot in self.view.robots)
 
     def _replenish(self, most: int) -> Iterator[By[BringForBundles]]:
-        """Send at most so many robots for bundles, each to the nearest station with work."""
+        """Send at most this many robots for bundles, each to the nearest station with work."""
         view = self.view
         waiting = [s for s in view.replenishment_stations if view.has_open_work(s.index)]
         for robot in self._free_robots() if waiting else ():
@@ -96,13 +96,13 @@ class JointAllocation(TaskAllocation[P]):
         return self._heuristic.serves(pod, station)
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
-        """Nobody else gives tasks: none."""
+        """Return none: only this controller assigns tasks."""
         return -1
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Ask the heuristic."""
+        """Choose by the heuristic."""
         return self._heuristic.replenishment_pod(robot, station)
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Ask the heuristic."""
+        """Choose by the heuristic."""
         return self._heuristic.next_station(robot, stations)

@@ -1,12 +1,12 @@
-"""Which orders may be split: as many as the put wall holds, and as a limit says.
+"""Determines which orders may be split, within the capacity of the put wall and a given limit.
 
-An order needs room of the wall for all its totes but one. How many these will be is known only when
-its last line has a station, so each line without one counts as a tote of its own. An order that is
-split within the room therefore never finds the wall full, and no pick station is blocked.
+An order needs slots of the wall for all its totes but one. Their number is known only when its last
+line has a station, so each line without a station counts as a separate tote. An order that is split
+within this capacity therefore never finds the wall full, and no pick station is blocked.
 
-Where the room is less than all orders would take, those are split first of which pods under way
-serve most lines at one station, for each slot that they may come to need; orders that such pods
-serve in full need no split, and what they do not serve at all gains nothing by it now.
+If the capacity does not suffice for all orders, those are split first for which pods under way
+serve most lines at one station per slot needed. Orders that such pods serve completely need no
+split, and orders that they do not serve at all would gain nothing by one now.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ if TYPE_CHECKING:
 
 
 class Splitting:
-    """The room that is left for split orders, at one moment.
+    """Capacity left for split orders at one instant.
 
     Parameters
     ----------
     view
         The world.
     limit
-        Orders that may be split at a time, whatever the wall holds; None: as many as that is.
+        Maximum number of orders split at a time, regardless of the wall; None: the wall's capacity.
     planned
-        Orders of the backlog of which lines are planned for stations.
+        Orders of the backlog with lines planned for stations.
     pays
-        Says whether an order that is not split yet is worth its price; None: always.
+        Returns whether splitting an order is worth its cost; None: always.
     """
 
     def __init__(
@@ -67,14 +67,14 @@ class Splitting:
         return self._orders == self._slots == inf and self._pays is None
 
     def admits(self, order: Order) -> bool:
-        """Whether there is room for lines of an order of the backlog at stations by themselves.
+        """Whether lines of an order of the backlog may be assigned separately.
 
-        There is if it is split already, or has one line only: that is no split.
+        True if the order is already split, or has only one line, which is no split.
         """
         return self._is_settled(order) or (self._orders >= 1 and self._slots >= self._need(order))
 
     def offers(self) -> Callable[[Order], bool]:
-        """Choose the orders that may be split at present, all of them together; says which."""
+        """Choose the orders that may be split now; return a function that tells whether one may."""
         if self._orders == self._slots == inf:
             return lambda order: self._is_settled(order) or self._is_worth_it(order)
         chosen: set[int] = set()
@@ -94,9 +94,9 @@ class Splitting:
         return self._pays is None or self._pays(order)
 
     def _candidates(self) -> list[Order]:
-        """Orders of which pods under way serve some lines, but not all at one station; best first.
+        """Return orders of which pods under way serve some lines, but not all at one station.
 
-        Best is most lines at one station per slot of the wall, then the oldest.
+        The best come first: most lines at one station per slot of the wall, then the oldest.
         """
         view = self._view
         spare = view.inventory.inbound[: len(view.pick_stations)] - view.need
@@ -110,7 +110,7 @@ class Splitting:
         return [view.orders.at_row[row] for row in rows[order].tolist()]
 
     def add(self, order: Order) -> None:
-        """Count an order as one that is split."""
+        """Count an order as split."""
         if order.index not in self._counted:
             need = self._need(order)
             if need:
@@ -122,7 +122,7 @@ class Splitting:
         self._orders -= need > 0
 
     def _need(self, order: Order) -> float:
-        """Slots of the wall that an order may come to need."""
+        """Return the number of slots of the wall that an order may need."""
         lines = len(order.lines) if order in self._view.orders else bool(order.lines)
         others = max(len(order.parts) + lines - 1, 0)
         return float(others if self._per_part else min(others, 1))

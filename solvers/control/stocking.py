@@ -1,4 +1,4 @@
-"""RPS stocking: which bundles go into which pods at which stations, for what it saves later."""
+"""RPS stocking: chooses pods and stations of bundles by the robot time saved later."""
 
 from __future__ import annotations
 
@@ -40,17 +40,17 @@ Count = Annotated[int, pydantic.Field(ge=1)]
 
 _NODES = 1
 _SCORED_PER_S = 1e6
-"""Candidates that the greedy rule scores in about a second."""
+"""Number of candidates that the greedy rule evaluates in about a second."""
 
 
 @dataclass(frozen=True)
 class Question:
-    """Bundles, pods and stations, and who decides.
+    """Bundles, pods and stations, and the method.
 
     Attributes
     ----------
     method
-        `cp_sat`, `highs` or `rounding`, each beginning with the greedy rule, or `greedy` alone.
+        `cp_sat`, `highs` or `rounding`, each starting from the greedy rule, or `greedy` alone.
     """
 
     data: Replenishment
@@ -73,33 +73,33 @@ class StockingParameters(SearchParameters):
     """Parameters of RPS stocking."""
 
     method: Method = "highs"
-    """Who decides: HiGHS (at its root node), CP-SAT, rounding of the relaxation, or the greedy
+    """Solution method: HiGHS (at its root node), CP-SAT, rounding of the relaxation, or the greedy
     rule."""
     buffer_s: NotNegative = 30.0
-    """Seconds for which decisions are collected before the optimiser is asked again."""
+    """Minimum seconds between two questions, during which decisions are collected."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.05
-    """Limit of the search in deterministic seconds of CP-SAT: about the same in wall time."""
+    """Limit of the search in deterministic seconds of CP-SAT, which are close to wall time."""
     gap: NotNegative = 0.01
     """Relative gap between value and bound at which the search ends."""
     leave_s: NotNegative = 20.0
-    """Seconds of a robot that it costs to leave a bundle for later, besides what it would save."""
+    """Cost of postponing a bundle, in seconds of a robot, in addition to what it would save."""
     bundles: Count = 60
-    """Bundles that are looked at, the oldest first."""
+    """Maximum number of bundles considered, the oldest first."""
     pods_per_bundle: Count = 8
-    """Pods that are looked at for each bundle, the best first."""
+    """Maximum number of pods considered for each bundle, the best first."""
     stations_per_pod: Count = 2
-    """Stations that are looked at for each pod, the nearest first."""
+    """Maximum number of stations considered for each pod, the nearest first."""
 
 
 class StockingControl(ReplenishmentPodSelection[StockingParameters]):
-    """Chooses bundles, pods and stations together: ROA must be a dummy.
+    """Chooses bundles, pods and stations jointly: ROA must be a dummy.
 
-    A bundle is worth the robot time that its units will save by raising the pile-on: much where
-    its SKU is wanted and missing, and more in a pod with SKUs that are ordered together with it.
-    That is weighed against the way of the pod, to a station with room, once for all its bundles.
-    A pod that is to be brought to a station anyway takes more bundles for nothing. The optimiser is
-    asked when bundles wait and a station has room, at most once per `buffer_s`; where it fails, the
-    greedy rule decides.
+    The value of a bundle is the robot time that its units will save by raising the pile-on. It is
+    high if its SKU is in demand and short, and higher in a pod with SKUs that are ordered together
+    with it. This is weighed against the trip of the pod to a station with room, which counts once
+    for all its bundles; a pod that is brought to a station anyway takes more bundles for free. The
+    optimiser is asked when bundles wait and a station has room, at most once per `buffer_s`; if it
+    fails, the greedy rule decides.
     """
 
     parameters_model = StockingParameters
@@ -117,17 +117,17 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
         self._buffer = Buffer(view, parameters.buffer_s)
 
     def next_event_s(self) -> float:
-        """When the optimiser may be asked again, if it is to be asked."""
+        """Return when the optimiser may be asked again, if there is something to ask."""
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Told]:
-        """Ask if bundles wait for which some station has room, and the last time is long ago."""
+        """Ask if bundles wait for which a station has room, and the buffer time is over."""
         if self._buffer.is_over(not self.in_flight and self._is_possible()):
             self._buffer.begin(again=True)
             yield self._question()
 
     def answered(self, call: Call) -> Iterator[Told]:
-        """Apply what still holds, pod by pod; without a solution, what the greedy rule says."""
+        """Apply the valid decisions pod by pod; without a solution, those of the greedy rule."""
         if call.solution is not None:
             yield from self._apply(call.solution, call.ask.memo, call)
             return
@@ -191,7 +191,7 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
         return Ask(solve, Question(data, given.method, limits), sizes, bundles)
 
     def _worth_s(self, bundles: Sequence[Bundle]) -> NDArray[np.float64]:
-        """Rate every pod for every bundle, shape (B, P)."""
+        """Return the value of every pod for every bundle, shape (B, P)."""
         view, foresight = self.view, self._foresight
         visits_per_h = max(float(foresight.visits_per_h.sum()), 1e-3)
         between_h = min(len(view.inventory.capacity) / visits_per_h, 24.0)
@@ -207,7 +207,7 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
         )
 
     def _affinity(self, skus: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Lines of each SKU ordered with a line of these, shape (K, K); other rows are 0."""
+        """Return how often lines of each SKU occur with a line of these, shape (K, K); else 0."""
         count = len(self.view.skus)
         affinity = np.zeros((count, count))
         units = self._frequency.units
@@ -216,9 +216,9 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
         return affinity
 
     def _trip_s(self) -> NDArray[np.float64]:
-        """Robot time to bring each pod and to store it again, shape (P, S), s.
+        """Return the robot time to bring each pod and store it again, shape (P, S), s.
 
-        Pods that robots carry are left alone; those that go to a station anyway cost nothing there.
+        Pods carried by robots are excluded; those that go to a station anyway cost nothing there.
         """
         view = self.view
         at = view.storage.pod_waypoint

@@ -1,4 +1,4 @@
-"""Work of pick stations, so that it can be spread evenly over them and their pickers."""
+"""Workload of pick stations, for balancing it over the stations and their pickers."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 def excess_s(view: View, stations: Sequence[PickStation]) -> NDArray[np.float64]:
-    """Return by how much the work of each station exceeds that of the one with least, shape (S,).
+    """Return by how much the work of each station exceeds the least of all, shape (S,).
 
-    Work: units of orders at the station that are not picked yet, in seconds of whoever picks there
-    now. Stations that are switched off are not compared with.
+    Work is the unpicked units of orders at the station, in seconds of its current picker. Inactive
+    stations are excluded from the comparison.
     """
     work_s = np.array([_work_s(view, station) for station in stations])
     active = np.array([station.active for station in stations], np.bool_)

@@ -55,16 +55,16 @@ def content_hash(family: str, data: Plain) -> str:
 
 
 def encoded(fields: tuple[Field, ...], plain: Plain, *, sparse: bool = True) -> dict[str, Any]:
-    """Return fields as JSON has them.
+    """Return fields in the form in which JSON stores them.
 
     Parameters
     ----------
     fields
-        Which.
+        The fields to encode.
     plain
         Their values.
     sparse
-        Whether arrays may be written by their exceptions. Default yes.
+        Whether arrays with mostly equal entries may be written in short form. Default: yes.
     """
     found: dict[str, Any] = {}
     for field in fields:

@@ -1,4 +1,4 @@
-"""`rmfs decisions`: questions from files, solved, checked, bounded, converted and profiled."""
+"""`rmfs decisions`: solves, checks, bounds, converts and profiles saved questions."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ Seed = Annotated[int, typer.Option(min=0, help="Seed of the method.")]
 Method = Annotated[
     str,
     typer.Option(
-        help="Who answers: a method of the family, or `asked`: as in the run. [default: as in the "
-        "run, if a controller asked and no limit or seed is given]",
+        help="Method: one of the family, or `asked`: as in the run. [default: as in the run, "
+        "if a controller asked and no limit or seed is given]",
         show_default=False,
     ),
 ]
@@ -49,18 +49,21 @@ def solve(
             show_default=False,
         ),
     ] = "",
-    limit: Annotated[float, typer.Option(min=0.1, help="With --with: seconds it gets.")] = 60.0,
+    limit: Annotated[
+        float, typer.Option(min=0.1, help="With --with: time limit in seconds.")
+    ] = 60.0,
     out: Annotated[
-        Path, typer.Option(help="Folder of the solution files, named by their questions.")
+        Path,
+        typer.Option(help="Folder for the solution files, which are named by their questions."),
     ] = Path("results/solutions"),
 ) -> None:
-    """Answer questions; write a solution file for each."""
+    """Solve questions and write a solution file for each."""
     from rmfs.solvers.decisions.exact.external import solve_externally
     from rmfs.solvers.decisions.files import write_solution
     from rmfs.solvers.decisions.solving import solve as answered
 
     if with_ and (method or work is not None):
-        raise InputError("--with: not with --method or --work, which choose methods of our own")
+        raise InputError("--with: invalid with --method or --work, which choose our own")
     for path in expanded(files):
         decision = _read(path)
         if with_:
@@ -75,12 +78,12 @@ def solve(
 
 @app.command()
 def check(
-    file: Annotated[Path, typer.Argument(metavar="QUESTION", help="A decision file.")],
+    file: Annotated[Path, typer.Argument(metavar="QUESTION", help="Decision file.")],
     solution: Annotated[
-        Path, typer.Argument(metavar="SOLUTION", help="A solution file, from anybody.")
+        Path, typer.Argument(metavar="SOLUTION", help="Solution file, from any source.")
     ],
 ) -> None:
-    """Verify a solution without the models, and work out its value; exit code 2 if it is wrong."""
+    """Verify a solution without the models, and compute its value; exit code 2 if wrong."""
     from rmfs.solvers.decisions.checking import WrongError
     from rmfs.solvers.decisions.checking import check as checked
     from rmfs.solvers.decisions.files import read_solution
@@ -98,7 +101,7 @@ def bound(
     files: Files,
     work: Annotated[float, typer.Option(min=0.0, help=WORK)] = 1.0,
 ) -> None:
-    """Prove bounds: by Lagrangian prices, the relaxation and search; the last line counts."""
+    """Prove bounds by Lagrangian prices, the relaxation and search; the last line is the best."""
     from rmfs.solvers.decisions.bounding import bounds
 
     for path in expanded(files):
@@ -115,18 +118,18 @@ def bound(
 @app.command()
 def convert(
     files: Files,
-    to: Annotated[Literal["mps", "lp"], typer.Option(help="Format of the programme.")] = "mps",
+    to: Annotated[Literal["mps", "lp"], typer.Option(help="File format.")] = "mps",
     solution: Annotated[
         Path | None,
         typer.Option(
-            help="The other way: a solver's solution file of the one question named, made a "
-            "solution file of ours.",
+            help="Reverse direction: a solver's solution file of the only question given, to "
+            "be converted to our format.",
             show_default=False,
         ),
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder of what is written.")] = Path("results/exact"),
+    out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("results/exact"),
 ) -> None:
-    """Write the exact programme for any MIP solver, and what its columns decide; or read back."""
+    """Write the exact programme for any MIP solver, with a key to its columns; or read back."""
     from rmfs.solvers.decisions.exact import exact
     from rmfs.solvers.decisions.exact.reading import answer_of
     from rmfs.solvers.decisions.exact.writing import write_map, write_program
@@ -134,7 +137,7 @@ def convert(
 
     paths = expanded(files)
     if solution is not None and len(paths) != 1:
-        raise InputError("--solution: belongs to one question")
+        raise InputError("--solution: requires exactly one question")
     for path in paths:
         decision = _read(path)
         stated = exact(decision, str(path))
@@ -157,13 +160,13 @@ def profile(
     files: Files,
     method: Annotated[
         list[str] | None,
-        typer.Option(help="Who solves; may be repeated. [default: all methods of the family]"),
+        typer.Option(help="Method; may be repeated. [default: all methods of the family]"),
     ] = None,
     work: Annotated[float, typer.Option(min=0.001, help=f"Largest limit. {WORK}")] = 1.0,
-    seeds: Annotated[int, typer.Option(min=1, help="Seeds of each method, from 0.")] = 1,
+    seeds: Annotated[int, typer.Option(min=1, help="Number of seeds per method, from 0.")] = 1,
     out: Annotated[Path, typer.Option(help="Table (CSV).")] = Path("results/profile.csv"),
 ) -> None:
-    """Time methods under limits that double; write values, gaps and times."""
+    """Run methods with doubling limits, and write values, gaps and times."""
     import pandas as pd
 
     from rmfs.files import write_text
@@ -185,7 +188,7 @@ def profile(
 
 
 def expanded(files: list[Path]) -> list[Path]:
-    """Replace folders by the decision files in them.
+    """Replace folders by the decision files that they contain.
 
     Raises
     ------
@@ -202,7 +205,7 @@ def expanded(files: list[Path]) -> list[Path]:
 
 
 def _read(path: Path) -> Decision:
-    """Read a question that its model accepts, too."""
+    """Read a question and validate it with its model."""
     from rmfs.solvers.decisions.files import read
     from rmfs.solvers.decisions.models import model_data
 
@@ -221,7 +224,7 @@ def _line(decision: Decision, found: Found) -> str:
 LIBRARY = Path("instances/decisions")
 
 LibraryFolder = Annotated[Path, typer.Option("--library", help="Folder of the library.")]
-Family = Annotated[list[str] | None, typer.Option(help="Only these; may be repeated.")]
+Family = Annotated[list[str] | None, typer.Option(help="Only this family; may be repeated.")]
 
 
 @app.command()
@@ -230,7 +233,7 @@ def draw(
     family: Family = None,
     size: Family = None,
 ) -> None:
-    """Draw the questions of the library from runs, anew, by the documented procedure."""
+    """Redraw the questions of the library from runs, by the documented procedure."""
     from rmfs.solvers.decisions.files import write
     from rmfs.solvers.decisions.library.drawing import draw
     from rmfs.solvers.decisions.library.sites import SITES
@@ -245,13 +248,14 @@ def draw(
 @app.command("import")
 def import_(
     file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="Racks and orders, as Valle and Beasley do.")
+        Path,
+        typer.Argument(metavar="FILE", help="Racks and orders in the format of Valle and Beasley."),
     ],
     pickers: Annotated[int, typer.Option(min=1, max=1000, help="Pick stations.")],
-    orders_each: Annotated[int, typer.Option(min=1, max=1000, help="Orders that each takes.")],
-    out: Annotated[Path, typer.Option(help="Folder of the question.")] = Path("questions"),
+    orders_each: Annotated[int, typer.Option(min=1, max=1000, help="Orders per picker.")],
+    out: Annotated[Path, typer.Option(help="Folder for the question.")] = Path("questions"),
 ) -> None:
-    """Make a question of rack allocation of an instance of the literature."""
+    """Convert an instance from the literature to a question of rack allocation."""
     from rmfs.solvers.decisions.files import write
     from rmfs.solvers.decisions.racks import read_racks
 
@@ -266,18 +270,18 @@ def improve(
     family: Family = None,
     size: Family = None,
     work: Annotated[
-        float, typer.Option(min=0.01, help="Deterministic seconds of a search, first round.")
+        float, typer.Option(min=0.01, help="Deterministic seconds per search in the first round.")
     ] = 1.0,
     rounds: Annotated[int, typer.Option(min=1, help="Each with four times the work.")] = 1,
-    seconds: Annotated[float, typer.Option(min=1.0, help="Wall time in all.")] = math.inf,
+    seconds: Annotated[float, typer.Option(min=1.0, help="Total wall time.")] = math.inf,
     load: Annotated[
-        float, typer.Option(min=0.0, help="Load of the machine above which it waits.")
+        float, typer.Option(min=0.0, help="Machine load above which the search pauses.")
     ] = math.inf,
     guard: Annotated[
-        float, typer.Option(min=1.0, help="Wall time of a search, beyond which it is given up.")
+        float, typer.Option(min=1.0, help="Wall time after which a search is given up.")
     ] = 120.0,
 ) -> None:
-    """Search for better values and bounds of the library, as long as it may."""
+    """Search for better values and bounds of the library, within the given time."""
     import os
 
     from rmfs.solvers.decisions.library.improving import Effort
@@ -296,12 +300,12 @@ def improve(
 @app.command()
 def enter(
     solutions: Annotated[
-        list[Path], typer.Argument(metavar="SOLUTION...", help="Solution files, from anybody.")
+        list[Path], typer.Argument(metavar="SOLUTION...", help="Solution files, from any source.")
     ],
     by: Annotated[str, typer.Option(help="Who found them, and how.")],
     library: LibraryFolder = LIBRARY,
 ) -> None:
-    """Enter solutions into the library where they are allowed and better than what is known."""
+    """Add solutions to the library if they are feasible and better than the known ones."""
     from rmfs.solvers.decisions.checking import WrongError
     from rmfs.solvers.decisions.files import question_named, read, read_solution
     from rmfs.solvers.decisions.library.table import Library
@@ -322,12 +326,12 @@ def enter(
 
 
 def known(what: str, given: list[str] | None, names: Iterable[str]) -> list[str]:
-    """Return what is asked for, all by default.
+    """Return the requested names, by default all.
 
     Raises
     ------
     InputError
-        If there is none of a name.
+        If a name is unknown.
     """
     for one in given or ():
         if one not in names:

@@ -99,14 +99,15 @@ def performance(times: pd.DataFrame, ratios: Sequence[float]) -> pd.DataFrame:
     Parameters
     ----------
     times
-        As `times_to_gap` returns it; a method that is not there for a question is left out of it.
+        As `times_to_gap` returns it; a question without an entry for a method is not
+        counted for that method.
     ratios
         Factors to the quickest method.
 
     Returns
     -------
     Per ratio (index) and method, the share of questions solved within that many times the time of
-    the quickest. Questions nobody has solved count for nobody.
+    the quickest. Questions that no method has solved count as solved for none.
     """
     quickest = times.min(axis=1)
     ratio = times.div(quickest, axis=0).where(np.isfinite(times), np.inf)
@@ -114,7 +115,7 @@ def performance(times: pd.DataFrame, ratios: Sequence[float]) -> pd.DataFrame:
 
 
 def data_profile(times: pd.DataFrame, seconds: Sequence[float]) -> pd.DataFrame:
-    """Return the share of questions that each method has solved after so many seconds.
+    """Return the share of questions that each method has solved within each of the given times.
 
     Parameters
     ----------

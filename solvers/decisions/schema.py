@@ -218,7 +218,7 @@ pod_station   | whole | P | station of a pod, or -1
         fields_of(
             """
 travel_s | cost | P L | time from where a pod is to a place, s
-access_s | real | L   | way of a later visit to that place, both ways, s
+access_s | real | L   | travel time of a later visit to that place, there and back, s
 visits   | real | P   | expected visits of a pod before it is moved again
 """
         ),
@@ -306,7 +306,7 @@ leave_s     | cost  | T   | cost of leaving a task, s; "inf" where it must be do
 due_s       | cost  | T   | when a task should be there, s; "inf" without a due time
 station     | whole | T   | station of a task
 queue       | whole | S   | pods at a station or on their way to it
-service_s   | real  | S   | time a pod keeps it, s
+service_s   | real  | S   | time for which a pod occupies it, s
 room        | whole | S   | robots that may be sent to it now
 late_weight | real  |     | seconds of travel that a second of lateness is worth
 """
@@ -365,15 +365,15 @@ station | whole | P | station of a pod, or -1
             """
 duration_s                 | real  |   | length of the window, s
 robots                     | whole |   | robots
-picking.unit_transfer_s    | real  | S | time a unit keeps the station, s
-picking.unit_pick_s        | real  | S | time a unit keeps the robot, s
+picking.unit_transfer_s    | real  | S | time for which a unit occupies the station, s
+picking.unit_pick_s        | real  | S | time for which a unit occupies the robot, s
 picking.changeover_s       | real  | S | least time from one robot to the next, s
-picking.inbound_s          | real  | S | least way in, s
-picking.outbound_s         | real  | S | least way out, s
+picking.inbound_s          | real  | S | shortest way in, s
+picking.outbound_s         | real  | S | shortest way out, s
 picking.order_slots        | whole | S | order slots
-refill.bundle_transfer_s   | real  | Q | time a bundle keeps station and robot, s
-refill.inbound_s           | real  | Q | least way in, s
-refill.outbound_s          | real  | Q | least way out, s
+refill.bundle_transfer_s   | real  | Q | time for which a bundle occupies station and robot, s
+refill.inbound_s           | real  | Q | shortest way in, s
+refill.outbound_s          | real  | Q | shortest way out, s
 refill.bundle_units        | whole |   | most units in a bundle
 refill.bundles_per_visit   | whole |   | most bundles in a visit
 stock.pod_units            | whole | P | most units of a pod at the beginning

@@ -1,4 +1,4 @@
-"""What makes all families alike: one `solve(data, method)`, over methods of one signature."""
+"""Common interface of all families: one `solve(data, method)` over methods of one signature."""
 
 from __future__ import annotations
 

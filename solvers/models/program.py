@@ -1,7 +1,7 @@
-"""Mixed-integer linear programs in matrix form, and a builder that fills them by blocks.
+"""Mixed-integer linear programs in matrix form, and a builder that fills them in blocks.
 
-A model states its formulation once, here; `rmfs.solvers.models.backends` hands it to each solver.
-All building is array work: one call per family of columns or rows, never one per row.
+A model states its formulation once, here; `rmfs.solvers.models.backends` passes it to the solvers.
+Building is vectorised: one call per family of columns or rows, never one per row.
 """
 
 from __future__ import annotations

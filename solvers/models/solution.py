@@ -1,7 +1,7 @@
-"""What every model returns, and the limits it is given.
+"""The result of every model, and the limits of solvers.
 
-All limits are in deterministic work: the same input gives the same output on a busy machine and
-on an idle one. A wall-clock guard exists, but it only ever raises an error.
+All limits are in deterministic work, so that the same input gives the same output on a busy machine
+and on an idle one. A wall-clock guard exists, but it can only raise an error.
 """
 
 from __future__ import annotations
@@ -22,44 +22,44 @@ GAP_FLOOR = 1e-9
 """Smallest denominator of a relative gap, so that an optimum of 0 has gap 0."""
 
 BOUND_TOLERANCE = 1e-6
-"""How far, relative to the objective, a bound may pass it before it counts as a defect."""
+"""Tolerance, relative to the objective, by which a bound may exceed it before it is a defect."""
 
 
 class WallGuardError(RuntimeError):
-    """A solver ran into its wall-clock guard: there is no result, because it would not repeat."""
+    """A solver reached its wall-clock guard; no result is returned, as it is not reproducible."""
 
 
 class Status(Enum):
-    """How a solve ended."""
+    """The outcome of a solve."""
 
     OPTIMAL = "optimal"
-    """Values proven to be within the gap limit of the best."""
+    """Values proven to be within the gap limit of the optimum."""
 
     FEASIBLE = "feasible"
     """Values that satisfy every constraint; a heuristic, or a search ended by its limit."""
 
     INFEASIBLE = "infeasible"
-    """Proven: no values satisfy the constraints."""
+    """The constraints are proven to be unsatisfiable."""
 
     LIMIT = "limit"
-    """The limit came before the first feasible values."""
+    """The limit was reached before a feasible solution was found."""
 
 
 class Sense(Enum):
-    """Whether less or more is better."""
+    """Whether the objective is minimised or maximised."""
 
     MINIMISE = 1
     MAXIMISE = -1
 
     @property
     def worst(self) -> float:
-        """The objective of 'nothing found': +inf when minimising, -inf when maximising."""
+        """The objective without a solution: +inf when minimising, -inf when maximising."""
         return math.inf * self.value
 
 
 @dataclass(frozen=True)
 class Limits:
-    """When a solver stops.
+    """Limits of a solve.
 
     Parameters
     ----------
@@ -73,8 +73,8 @@ class Limits:
         iterations. Default: none.
     gap
         Relative gap at which a solve counts as optimal. Default 0.
-    wall_guard_s
-        Seconds of wall clock after which the solve raises `WallGuardError`. It never shapes a
+    Wall-clock seconds after which the solve raises `WallGuardError`. It never affects a result.
+    Default: none.
         result. Default: none.
 
     Raises
@@ -102,38 +102,38 @@ NO_LIMITS = Limits()
 
 @dataclass(frozen=True)
 class Solution(Generic[V_co]):
-    """The outcome of one solve.
+    """The result of one solve.
 
     Parameters
     ----------
     values
         The decision; None if `status` is INFEASIBLE or LIMIT.
     objective
-        What the model's own objective function makes of the values (never the number a solver
-        reports); `sense.worst` without values.
+        Value of the model's objective function (never the number that a solver reports);
+        `sense.worst` without values.
     bound
         A proven bound on the best objective: below it when minimising, above it when maximising;
         ``-sense.worst`` if nothing is known.
     status
-        How the solve ended.
+        The outcome of the solve.
     backend
-        Who solved it, such as ``"cp_sat"``, ``"highs"``, ``"greedy"``.
+        Name of the back end, such as ``"cp_sat"``, ``"highs"``, ``"greedy"``.
     wall_s
-        Wall-clock seconds of the whole call, building included. Measured, never used.
+        Wall-clock seconds of the whole call, including building. Never used in results.
     build_s
-        The part of it spent on making the solver's model from the arrays.
+        The part spent building the solver's model from the arrays.
     work
         Deterministic work spent, in the back end's unit (`WORK_UNITS`).
     sense
-        Whether less or more is better. Default: less.
+        Whether the objective is minimised or maximised. Default: minimised.
     built
-        Nonzeros of the programmes that were handed to a solver, and what else was gone through to
-        state them, in as many nonzeros as take the same time. It repeats, as work does.
+        Nonzeros of the programmes passed to a solver, plus other building work, converted to the
+        number of nonzeros that takes the same time. Deterministic, like `work`.
 
     Raises
     ------
     ModelError
-        If the parts contradict each other, such as a bound beyond the objective.
+        If the attributes contradict each other, such as a bound beyond the objective.
     """
 
     values: V_co | None
@@ -160,14 +160,14 @@ class Solution(Generic[V_co]):
 
     @property
     def found(self) -> bool:
-        """Whether there are values to apply."""
+        """Whether there is a solution."""
         return self.values is not None
 
     @property
     def gap(self) -> float:
-        """Relative distance of objective and bound, ``|objective - bound| / |objective|``.
+        """Relative gap between objective and bound, ``|objective - bound| / |objective|``.
 
-        It is inf if open. A bound that passes the objective by rounding counts as met.
+        It is inf if unknown, and 0 if the bound exceeds the objective by rounding.
         """
         if not self.found or math.isinf(self.bound):
             return math.inf
@@ -176,12 +176,12 @@ class Solution(Generic[V_co]):
 
     @property
     def solve_s(self) -> float:
-        """Wall-clock seconds without the building."""
+        """Wall-clock seconds without building."""
         return self.wall_s - self.build_s
 
     @property
     def required(self) -> V_co:
-        """The values, for a caller that knows there are some.
+        """The values, for callers that know that they exist.
 
         Raises
         ------
@@ -193,7 +193,7 @@ class Solution(Generic[V_co]):
         return self.values
 
     def summary(self) -> str:
-        """One line for people: who, how it ended, objective, bound, gap, work and time."""
+        """Return one readable line: back end, outcome, objective, bound, gap, work and time."""
         return (
             f"{self.backend}: {self.status.value}, objective {self.objective:g}, "
             f"bound {self.bound:g}, gap {self.gap:.2%}, work {self.work:g}, "
@@ -210,22 +210,22 @@ def solution_of_rule(
     began: float,
     built: float = 0.0,
 ) -> Solution[V]:
-    """Wrap up what a heuristic found; a minimum.
+    """Create the `Solution` of a heuristic for a minimisation problem.
 
     Parameters
     ----------
     values
-        What it found; None if that is nothing, or not feasible.
+        Its solution; None if there is none, or it is infeasible.
     objective
-        The model's own.
+        Value of the model's objective function.
     bound
-        A proven lower bound; +inf if it shows that the problem is infeasible.
+        A proven lower bound; +inf if it proves infeasibility.
     work
-        Candidates scored.
+        Number of candidates scored.
     began
-        When it began, as `time.perf_counter` tells it.
+        Start time by `time.perf_counter`.
     built
-        As of a `Solution`. Default 0.
+        As for `Solution`. Default 0.
     """
     wall_s = perf_counter() - began
     if values is None:
@@ -247,22 +247,22 @@ def solution_of_optimum(
     began: float,
     built: float,
 ) -> Solution[V]:
-    """Wrap up what a method that always finds the optimum found; a minimum.
+    """Create the `Solution` of an exact method for a minimisation problem.
 
     Parameters
     ----------
     values
-        The best ones; None: there are none.
+        Optimal values; None: infeasible.
     objective
-        The model's own.
+        Value of the model's objective function.
     bound
         Proven lower bound.
     backend
-        Who solved it.
+        Name of the back end.
     work
-        In its unit.
+        Work in the back end's unit.
     began, built
-        When it began, and when the solver's model was built, as `time.perf_counter` tells it.
+        Start time, and time when the solver's model was built, by `time.perf_counter`.
     """
     wall_s, build_s = perf_counter() - began, built - began
     if values is None:

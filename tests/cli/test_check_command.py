@@ -25,16 +25,16 @@ def test_what_goes_together_is_ok(capsys):
 
 def test_energy_without_batteries_is_told(capsys):
     line, ok = told(capsys, "--set=scenario.energy.robot_kg=100")
-    assert line.startswith("energy: 16 robots draw 480 W standing still and about ")
-    assert line.endswith("as much as they need")
+    assert line.startswith("energy: 16 robots draw 480 W at standstill and about ")
+    assert line.endswith("their energy is unlimited")
     assert ok.endswith(": ok")
 
 
 def test_a_fleet_that_uses_more_than_all_chargers_give(capsys):
     lines = told(capsys, *PLACE, BATTERY)
-    assert lines[0].endswith("; chargers give 1000 W at most")
-    assert lines[1].startswith("energy: about 8")
-    assert lines[1].endswith("W are missing in the long run at full work")
+    assert lines[0].endswith("; chargers supply at most 1000 W")
+    assert lines[1].startswith("energy: in the long run about 8")
+    assert lines[1].endswith("W are missing at full work")
 
 
 def test_a_fleet_whose_electronics_alone_use_more_is_refused(capsys):
@@ -47,7 +47,7 @@ def test_a_fleet_whose_electronics_alone_use_more_is_refused(capsys):
 
 def test_where_only_waypoints_charge_nobody_can_be_sent(capsys):
     lines = told(capsys, BATTERY, "--set=scenario.energy.inductive.power_w=300")
-    assert lines[1].endswith("cannot be sent for energy, and strands")
+    assert lines[1].endswith("cannot be sent to charge and strands")
     assert len(lines) == 3
 
 

@@ -74,7 +74,8 @@ def test_a_run_is_replaced_only_by_force(calls, capsys):
     capsys.readouterr()
     assert main(["run", "--out", "run"]) == 2
     assert one_line(capsys).endswith(
-        "/run: there is a run folder of this name already; --force replaces it, --out names another"
+        "/run: a run folder of this name exists already; --force replaces it, "
+        "--out chooses another name"
     )
     assert len(calls) == 1 and Path("run/run.json").read_bytes() == before
     Path("run/mark").touch()

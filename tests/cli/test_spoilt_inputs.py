@@ -180,3 +180,17 @@ def test_export_makes_the_folder_it_needs(run_folder: Path) -> None:
 def test_replay_of_a_run_that_asked_nobody(run_folder: Path, capsys) -> None:
     line = refused([*RUN, *SHORT, "--pacing", f"replay={run_folder}"], capsys)
     assert line.endswith("that run asked no optimiser")
+
+
+@pytest.mark.parametrize("out", [".", "..", "../here", "/"])
+def test_the_working_directory_is_not_replaced(out: str, capsys) -> None:
+    assert "working directory" in refused([*RUN[:-1], out, *SHORT], capsys)
+
+
+def test_a_column_of_arms_named_twice(capsys) -> None:
+    Path("arms.csv").write_text("layout.robots,layout.robots\n4,6\n")
+    head = 'format = "rmfs-design/1"\nname = "d"\nreplications = 1\narms_file = "arms.csv"\n'
+    base = '[base]\nlayout = "small"\nscenario = "small"\ncontrollers = "default"\n'
+    Path("d.toml").write_text(head + base)
+    told = refused(["experiment", "plan", "d.toml"], capsys, "arms.csv", "d.toml")
+    assert "names the column layout.robots more than once" in told

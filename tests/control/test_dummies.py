@@ -51,7 +51,7 @@ def test_a_dummy_decides_nothing(problem) -> None:
         ),
         (
             {"psa": {"name": "dummy"}},
-            "psa.name: a dummy decides nothing, and no other controller here decides psa",
+            "psa.name: a dummy decides nothing, and no other controller decides psa",
         ),
         (
             {"ta": {"name": "random"}, "pps": {"name": "dummy"}, "psa": {"name": "dummy"}},

@@ -110,11 +110,11 @@ class TestFile:
     @pytest.mark.parametrize(
         ("entry", "message"),
         [
-            ({"at_s": 1, "at_share": 0.5, "psa": "random"}, "needs either at_s or at_share"),
-            ({"psa": "random"}, "needs either at_s or at_share"),
+            ({"at_s": 1, "at_share": 0.5, "psa": "random"}, "needs exactly one of at_s"),
+            ({"psa": "random"}, "needs exactly one of at_s"),
             ({"at_s": 1}, "names no rule"),
             ({"at_share": 1.5, "psa": "random"}, "at_share"),
-            ({"at_s": 1, "psa": "neares"}, "no psa rule of the name neares; did you mean nearest?"),
+            ({"at_s": 1, "psa": "neares"}, "no psa rule named neares; did you mean nearest?"),
             ({"at_s": 1, "psa": {"metrik": "time"}}, "unknown key psa.metrik; did you mean metric"),
             ({"at_s": 1, "psaa": "random"}, "unknown key exchanges.0.psaa; did you mean psa?"),
             ({"at_s": 1, "psa": "dummy"}, "mm.exchanges.0: psa.name: a dummy decides nothing"),
@@ -145,8 +145,8 @@ class TestFile:
     @pytest.mark.parametrize(
         ("alternative", "message"),
         [
-            (BRUTE, "needs others beside it"),
-            ({"psa": "dummy"}, "needs others beside it"),
+            (BRUTE, "must be combined with others"),
+            ({"psa": "dummy"}, "must be combined with others"),
             ({"roa": "random", "psa": "randm"}, "did you mean random?"),
         ],
     )

@@ -366,7 +366,7 @@ def test_the_page_on_coverage_keeps_the_promises():
     assert found.loc["normal", "false alarms, 1 arm"].between(0.035, 0.065).all()
     assert (found.loc["normal", "false alarms, 5 arms"] <= 0.065).all()
     assert found[["bootstrap", "sequential"]].notna().all(axis=None)
-    (right,) = re.findall(r"right in (\S+) of the experiments", text)
+    (right,) = re.findall(r"correct in (\S+) of the experiments", text)
     assert float(right) >= 0.95
 
 

@@ -96,13 +96,22 @@ def test_the_study_as_a_command(design, tmp_path, monkeypatch):
                 {"label": "4 slots, 60 s", **split},
                 {"label": "4 slots, 60 s, always", **always},
                 {"label": "any slots, 60 s", "controllers": "pile-on-split"},
+                {
+                    "label": "whole, start rule",
+                    "controllers": "pile-on",
+                    "controllers.poa.method": "greedy",
+                },
             ],
         },
     )
     given = ["--design", str(path), "--out", "runs", "--published", "out", "--jobs", "1"]
     assert command(price_of_splitting.main, given) == 0
     rows = pd.read_csv("out/price-of-splitting.csv", index_col=0)
-    assert len(rows) == 4
+    assert len(rows) == 5
+    added = pd.read_csv("out/price-of-splitting-optimiser.csv", index_col=0)
+    assert list(added.index) == ["backlog, whole"]
+    gained = pd.read_csv("out/price-of-splitting-gains.csv", index_col=0)
+    assert len(gained) == 3  # the start rule is not one of them
     assert rows.loc["backlog, 4 slots, 60 s", "wall_slots_max mean"] <= 4
     assert rows.loc["backlog, 4 slots, 60 s, always", "wall_slots_max mean"] > 4  # by hand
     assert rows.loc["backlog, any slots, 60 s", "wall_slots_max mean"] > 4

@@ -30,6 +30,11 @@ def test_the_study_is_run_and_published(design, tmp_path, monkeypatch):
             "rules": [
                 {"label": "nearest, balanced", "controllers": "default"},
                 {"label": "PSA placement", "controllers": "psa-placement"},
+                {
+                    "label": "PSA placement, start rule",
+                    "controllers": "psa-placement",
+                    "controllers.psa.method": "greedy",
+                },
             ],
         },
     )
@@ -37,7 +42,9 @@ def test_the_study_is_run_and_published(design, tmp_path, monkeypatch):
     assert command(storage_and_tasks.main, given) == 0
     for demand in ("backlog", "arrivals"):
         rows = pd.read_csv(f"out/storage-and-tasks-{demand}.csv", index_col=0)
-        assert list(rows.index) == ["nearest, balanced", "PSA placement"]
+        assert list(rows.index)[:2] == ["nearest, balanced", "PSA placement"]
+        added = pd.read_csv(f"out/storage-and-tasks-{demand}-optimiser.csv", index_col=0)
+        assert list(added.index) == [f"{demand}, PSA placement"]
         compared = pd.read_csv(f"out/storage-and-tasks-{demand}-differences.csv", index_col=0)
         assert list(compared.index) == ["PSA placement"]
         both = rows["units_per_h mean"]

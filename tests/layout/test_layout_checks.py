@@ -131,7 +131,7 @@ def test_impossible_comes_first_and_many_alike_are_counted():
     violations = check(broken)
     severities = [v.severity for v in violations]
     assert severities == sorted(severities)
-    assert "31 further elements" in [v.element for v in violations]
+    assert "31 more elements" in [v.element for v in violations]
 
 
 @needs_reference

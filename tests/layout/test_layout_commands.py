@@ -35,7 +35,7 @@ def test_new_writes_all_parameters(tmp_path):
         name="mine", robots=16, pick_stations={"east": 2}, replenishment_stations={"west": 4}
     )
     assert parameters == expected
-    assert "# s to lift or to set down a pod" in path.read_text()
+    assert "# duration of lifting or setting down a pod, s" in path.read_text()
 
 
 def test_new_replaces_no_file_unless_told(tmp_path):

@@ -132,19 +132,19 @@ def test_queues_side_by_side_are_numbered(tmp_path: Path):
     with pytest.raises(InputError) as caught:
         load(written(tmp_path, picture.replace("12", "qq")))
     assert str(caught.value).endswith(
-        "drawn.txt: line 1, column 2: the queue of the station at line 1, column 1 goes on in "
+        "drawn.txt: line 1, column 2: the queue of the station at line 1, column 1 continues in "
         "several directions; number its places 1, 2, ... from the station"
     )
 
 
 WRONG = {
-    "P.R\n.xz\n": "line 2, column 3: 'z' is no sign; valid: ., > < ^ v, x, X, o,",
+    "P.R\n.xz\n": "line 2, column 3: 'z' is not a valid sign; valid: ., > < ^ v, x, X, o,",
     "name = 3\n---\nP.R\n.x.\n": "name: Input should be a valid string",
     "robts = 3\n---\nP.R\n.x.\n": "unknown key robts; did you mean robots?",
     "name = \n---\nP.R\n.x.\n": "the head is not valid TOML",
-    'name = "a"\nP.R\n.x.\n': "line 1, column 1: 'n' is no sign",
+    'name = "a"\nP.R\n.x.\n': "line 1, column 1: 'n' is not a valid sign",
     "---\n\n\n": "holds no picture of 1 to 1000000 cells",
-    "P.q\n.x.\nR..\n": "line 1, column 3: 'q' belongs to no queue: no way over q, or 1, 2, ...",
+    "P.q\n.x.\nR..\n": "line 1, column 3: 'q' belongs to no queue: no path over q, or",
     "...\n.x.\n": "there is no pick station, no replenishment station",
     "P.R\n...\n": "there is no storage place",
 }
@@ -228,9 +228,9 @@ def test_a_map_with_stations(tmp_path: Path):
 
 
 WRONG_STATIONS = {
-    "pick_stations = [[[9, 0]]]": "pick_stations.0: [9, 0] is no free cell of the 7 rows and 12",
-    "pick_stations = [[[1, 1]]]": "pick_stations.0: [1, 1] is no free cell",
-    "pick_stations = [[[6, 0], [6, 2]]]": "pick_stations.0: [6, 2] is not beside the place before",
+    "pick_stations = [[[9, 0]]]": "pick_stations.0: [9, 0] is not a free cell of the 7 rows and 12",
+    "pick_stations = [[[1, 1]]]": "pick_stations.0: [1, 1] is not a free cell",
+    "pick_stations = [[[6, 0], [6, 2]]]": "pick_stations.0: [6, 2] is not adjacent to the previous",
     "pick_stations = [[[6, 0]], [[6, 0]]]": "pick_stations.1: [6, 0] is given twice",
     "pick_stations = []": "there is no pick station",
     "pick_stations = [[6, 0]]": "pick_stations.0.0: Input should be a valid list",

@@ -61,7 +61,7 @@ def test_defaults_are_those_of_the_reference():
         ({"entry_exit_distance": 7}, "entry_exit_distance: must be odd and at most 5 (given: 7)"),
         ({"hall_pattern": "highway", "hall_width": 5}, 'hall_width: the "highway" pattern needs'),
         ({"tiers": 2}, "elevators: 2 tiers need at least one"),
-        ({"elevators": {"north": 1}}, "elevators: one tier has none (given: 1)"),
+        ({"elevators": {"north": 1}}, "elevators: must be 0 with one tier (given: 1)"),
         ({"pick_stations": {}}, "pick_stations: at least one is needed"),
         ({"replenishment_stations": {}}, "replenishment_stations: at least one is needed"),
         ({"pick_stations": {"east": 5}}, "the east side has room for 4, half its aisles (given: 5"),
@@ -74,7 +74,7 @@ def test_defaults_are_those_of_the_reference():
                 "two_directional_aisles": True,
                 "entry_exit_distance": 5,
             },
-            "entry_exit_distance: a queue on the west side begins outside the tier",
+            "entry_exit_distance: a queue on the west side would start outside",
         ),
         (
             {

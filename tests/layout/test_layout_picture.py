@@ -92,7 +92,7 @@ def test_axes_are_in_metres_and_tiers_stand_side_by_side():
 
 
 def test_unknown_picture_format(tmp_path):
-    with pytest.raises(InputError, match=r"pictures are written as \.svg, \.png, \.pdf"):
+    with pytest.raises(InputError, match=r"supported formats: \.svg, \.png, \.pdf"):
         save_picture(load("default"), tmp_path / "layout.gif")
     assert list(tmp_path.iterdir()) == []
 

@@ -103,7 +103,7 @@ def test_the_command_writes_a_file_that_runs(
     ("given", "told"),
     [
         ({"problems": ["sa"]}, "problem sa: valid: poa, pps, psa, ta"),
-        ({"objective": {"profit": 1.0}}, "objective profit: no column"),
+        ({"objective": {"profit": 1.0}}, "objective profit: is not a column of the footprint"),
         ({"seeds": ()}, "needs a problem, an objective and a seed"),
     ],
 )
@@ -113,5 +113,5 @@ def test_wrong_tasks_are_refused(given: dict[str, Any], told: str) -> None:
 
 
 def test_a_feature_that_does_not_exist_is_named() -> None:
-    with pytest.raises(InputError, match=r"price is no feature here; valid: away_s, back_s"):
+    with pytest.raises(InputError, match=r"price is not a feature here; valid: away_s, back_s"):
         units(psa={"name": "linear", "weights": {"price": 1.0}})

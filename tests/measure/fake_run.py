@@ -107,7 +107,8 @@ class FakeTraffic:
         script = Script(layout())
         script.robot(0).run(3)
         script.robot(1).hold(1.0)
-        return script.columns(END_S)
+        columns = script.columns(END_S)
+        return columns | {"top_speed_m_s": np.full(len(columns["robot"]), 1.5)}
 
 
 def layout():

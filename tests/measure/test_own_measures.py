@@ -200,7 +200,7 @@ until = {column = "pods_used", relative_half_width = 0.9, max_seeds = 3}
 def test_an_installed_one_is_found_by_its_name(folder: Path, monkeypatch) -> None:
     monkeypatch.setattr(registry, "_installed", lambda: {"busiest": f"{folder}/busiest.py:Busiest"})
     assert find("busiest").__name__ == "Busiest"
-    with pytest.raises(InputError, match=r"no measure of the name busyest; did you mean busiest\?"):
+    with pytest.raises(InputError, match=r"no measure named busyest; did you mean busiest\?"):
         find("busyest")
 
 
@@ -208,9 +208,9 @@ def test_an_installed_one_is_found_by_its_name(folder: Path, monkeypatch) -> Non
     ("columns", "message"),
     [
         ("()", "measure Odd: declares no `columns`"),
-        ('("pods_used",)', "'pods_used' is no rmfs.measure.Column"),
-        ('(Column("units_per_h", "float64", "", ""),)', "units_per_h: there is one of this name"),
-        ('(Column("replication", "int64", "", ""),)', "replication: there is one of this name"),
+        ('("pods_used",)', "'pods_used' is not an rmfs.measure.Column"),
+        ('(Column("units_per_h", "float64", "", ""),)', "units_per_h: a column of this name"),
+        ('(Column("replication", "int64", "", ""),)', "replication: a column of this name"),
         ('(Column("Pods used", "int64", "", ""),)', "must be lower-case letters, digits and _"),
         ('(Column("own", "int", "", ""),)', "type 'int'; valid: int64, Int64, float64, str, bool"),
         ('(Column("x", "int64", "", "", better="high"),)', "better 'high'; valid: more, less"),

@@ -81,15 +81,15 @@ def test_a_trace_that_is_cut_off_is_refused(
 
 def test_a_trace_of_another_version_is_refused(folder: RunFolder, tmp_path: Path) -> None:
     table = parquet.read_table(folder.path / "trace.parquet")
-    later = table.replace_schema_metadata({b"rmfs-format": b"rmfs-trace/2"})
+    later = table.replace_schema_metadata({b"rmfs-format": b"rmfs-trace/3"})
     parquet.write_table(later, tmp_path / "trace.parquet")
-    with pytest.raises(InputError, match="format 'rmfs-trace/2', expected 'rmfs-trace/1'"):
+    with pytest.raises(InputError, match="format 'rmfs-trace/3', expected 'rmfs-trace/2'"):
         _ = RunFolder(tmp_path, {}).trace
 
 
 def test_a_strangers_table_is_refused(tmp_path: Path) -> None:
     parquet.write_table(pa.table({"robot": [1, 2]}), tmp_path / "trace.parquet")
-    with pytest.raises(InputError, match="no trace of rmfs"):
+    with pytest.raises(InputError, match="not a trace of rmfs"):
         _ = RunFolder(tmp_path, {}).trace
 
 

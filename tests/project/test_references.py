@@ -66,7 +66,7 @@ def test_a_reference_to_a_file_is_made_independent_of_the_folder(folder: Path) -
         ("nowhere.to:Mine", r"nowhere.to:Mine: no module nowhere.to, neither installed nor in .*"),
         ("missing.py:Mine", r"missing.py:Mine: no file .*/missing.py"),
         ("watch_me:Yours", "watch_me:Yours: watch_me has no class Yours; its classes: Mine"),
-        ("watch_me:WORD", r"watch_me:WORD: is no observer \(a class derived from rmfs.observer"),
+        ("watch_me:WORD", r"watch_me:WORD: is not an observer \(a class derived from rmfs"),
         ("broken_one:A", r"broken_one:A: cannot be loaded \(ZeroDivisionError: division by zero"),
         ("watch_me", "watch_me: no observer of that name; expected module:Class or"),
     ],
@@ -80,7 +80,7 @@ def test_a_class_of_a_function_or_a_prompt_has_no_reference(monkeypatch) -> None
     class Local(Observer):
         pass
 
-    with pytest.raises(InputError, match="of a module, not of a function"):
+    with pytest.raises(InputError, match="in a module, not in a function"):
         reference_of(Local)
     typed = type("Typed", (Observer,), {"__module__": "__main__", "__qualname__": "Typed"})
     monkeypatch.delattr(sys.modules["__main__"], "__file__", raising=False)

@@ -56,7 +56,7 @@ def test_the_explicit_layout_is_described_to_its_last_key():
     keys = {key for key, _ in _keys(layout)}
     assert {"to", "waypoint", "travel_s", "unit_pick_s", "heading_rad"} - {"travel_s"} <= keys
     assert all(f"| `{key}` |" in told for key in keys)
-    assert "`elevators[].rides[]`: seconds from one boarding waypoint" in told
+    assert "`elevators[].rides[]`: an elevator ride from one boarding waypoint" in told
 
 
 def _keys(value):

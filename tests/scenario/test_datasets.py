@@ -163,7 +163,7 @@ def test_a_part_of_a_set(tmp_path):
 
 WRONG = [
     ("jd", 0, "quantity,type", "amount,type", "line 1: column quantity is missing"),
-    ("jd", 0, "order_date", "order_time", "line 1: column order_time comes twice"),
+    ("jd", 0, "order_date", "order_time", "line 1: column order_time occurs twice"),
     ("jd", 0, "17:14:25.0,1", "17:14:25.0,0", "line 2: quantity must be a whole number"),
     ("jd", 0, "17:14:25.0,1", "17:14:25.0,1.5", "line 2: quantity must be a whole number"),
     ("jd", 0, "2018-03-01 17:14:25.0", "yesterday", "line 2: order_time must be a time"),
@@ -173,9 +173,9 @@ WRONG = [
     ("online-retail", 0, "12/1/2010 8:26", "13/13/2010 8:26", "line 3: InvoiceDate must be a time"),
     ("online-retail", 0, ",6,12/1", ",six,12/1", "line 2: Quantity must be a whole number"),
     ("instacart", 0, "prior,1,2,08", "prior,1,7,08", "line 2: order_dow must be a whole number"),
-    ("instacart", 0, "12,1,prior", "11,1,prior", "line 3: order_id comes twice"),
-    ("instacart", 1, "12,14084", "12,196", "line 3: product_id comes twice in its order"),
-    ("olist", 0, "47ac", "e481", "line 4: order_id comes twice"),
+    ("instacart", 0, "12,1,prior", "11,1,prior", "line 3: order_id occurs twice"),
+    ("instacart", 1, "12,14084", "12,196", "line 3: product_id occurs twice in its order"),
+    ("olist", 0, "47ac", "e481", "line 4: order_id occurs twice"),
     ("olist", 1, '"47ac"', '"none"', "line 5: order_id none is not in"),
     ("olist", 1, "2017-09-01 00:00:00", "", "line 5: shipping_limit_date must be a time"),
 ]

@@ -110,8 +110,8 @@ def test_orders_written_down_are_read_back_with_their_classes(tmp_path, skus, en
     ("classes", "told"),
     [
         ([], "at least 1"),
-        ([{**CLASSES[0], "share": 0.5}], "shares must make 1 (they make 0.5)"),
-        ([{**CLASSES[0], "share": 0.5}] * 2, "name express comes twice"),
+        ([{**CLASSES[0], "share": 0.5}], "shares must sum to 1 (their sum is 0.5)"),
+        ([{**CLASSES[0], "share": 0.5}] * 2, "name express occurs twice"),
         ([{**CLASSES[0], "share": 1.0, "weight": 0.0}], "weight"),
         ([{**CLASSES[0], "share": 1.0, "name": "a,b"}], "name"),
         ([{**CLASSES[0], "share": 1.0, "offset_s": 0.0}], "offset_s"),

@@ -55,7 +55,7 @@ def test_a_cover_that_does_not_fit_is_refused(few_skus: SkuSet):
 
 
 def test_a_cover_needs_a_file_of_orders():
-    with pytest.raises(InputError, match=r"stock\.order_cover is about a file"):
+    with pytest.raises(InputError, match=r"stock\.order_cover needs a file"):
         scenario(stock={"order_cover": 1.0})
 
 

@@ -60,8 +60,8 @@ def test_a_file_that_says_when_its_orders_are_due_is_right(tmp_path):
     ("wrong", "told"),
     [
         ({"times_s": []}, "times_s"),
-        ({"times_s": [200.0, 100.0]}, "in order"),
-        ({"times_s": [90000.0]}, "more than the last of times_s = 90000"),
+        ({"times_s": [200.0, 100.0]}, "in ascending order"),
+        ({"times_s": [90000.0]}, "greater than the last of times_s = 90000"),
         ({"lead_s": -1.0}, "lead_s"),
     ],
 )

@@ -87,9 +87,9 @@ def test_words_do_not_look_at_stock(tmp_path: Path):
 
 
 def test_words_and_letters_need_each_other(tmp_path: Path):
-    with pytest.raises(InputError, match=r'orders: content = "words" and skus.words need each'):
+    with pytest.raises(InputError, match=r'orders: content = "words" requires skus.words'):
         scenario(orders={"content": "words"})
-    with pytest.raises(InputError, match=r'orders: content = "words" and skus.words need each'):
+    with pytest.raises(InputError, match=r'orders: content = "words" requires skus.words'):
         letters(tmp_path, orders={})
 
 

@@ -193,7 +193,7 @@ def test_commands(tmp_path: Path):
     assert "pp-minimal" in run("list")
     shown = run("show", "basic", "--set", "scenario.duration_s=7200")
     assert tomllib.loads(shown)["duration_s"] == 7200
-    assert "# s simulated first and not measured" in shown
+    assert "# simulated time before measuring begins, s" in shown
     assert run("check", "default").startswith("default: ok, 1000 SKUs")
     with pytest.raises(InputError, match=r"expected a key such as scenario\.duration_s"):
         run("show", "basic", "--set", "duration_s=7200")

@@ -81,10 +81,10 @@ def test_a_start_is_a_date_of_toml_too_and_survives_being_written(tmp_path: Path
 @pytest.mark.parametrize(
     ("tables", "problem"),
     [
-        ({"start": "yesterday"}, "start: must be such as 2026-03-01T08:00:00"),
+        ({"start": "yesterday"}, "start: must be a time such as 2026-03-01T08:00:00"),
         (
             {"start": "2026-03-01T08:00:00", "time_of_day_s": 60.0},
-            "time_of_day_s must be 28800, as start says, or be left out",
+            "time_of_day_s must be 28800 to match start, or be left out",
         ),
     ],
 )

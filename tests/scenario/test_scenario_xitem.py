@@ -16,12 +16,12 @@ from rmfs.scenario.sources import order_stream
 BROKEN_LISTS = [
     ('Count="2"', 'Count="-2"', "order 1: quantity must be from 1"),
     ('ItemDescriptionID="4"', 'ItemDescriptionID="5"', "order 1: sku 5 is unknown"),
-    ('ItemDescriptionID="4"', 'ItemDescriptionID="9"', "order 1: sku 9 comes twice in order 1"),
+    ('ItemDescriptionID="4"', 'ItemDescriptionID="9"', "order 1: sku 9 occurs twice in order 1"),
     ('TimeStamp="3.25"', 'TimeStamp="1"', "order 2: time 1 is before that of the order before"),
     ('TimeStamp="3.25"', "", "order 2: time must be a number of s, or a time such as"),
     ('<Position ItemDescriptionID="9" Count="1" />', "", "order 2: sku must be a number (empty)"),
     ('Weight="2"', 'Weight="0"', "ItemDescription 9: Weight must be a positive number"),
-    ('ID="9" Type', 'ID="4" Type', "ItemDescription 4 comes twice"),
+    ('ID="9" Type', 'ID="4" Type', "ItemDescription 4 occurs twice"),
     ('ID="9" Type', 'ID="x" Type', "ItemDescription: ID must be a whole number (given: 'x')"),
 ]
 

@@ -32,7 +32,7 @@ def run(pacing: str, **parameters: object) -> HandMade:
         ({"work": nan}, "work must be a finite number, 0 or more; it is nan"),
         ({"work": -1.0}, "work must be a finite number"),
         ({"built": inf}, "built must be a finite number"),
-        ({"objective": 1.0, "bound": 2.0}, "bound 2.0 is beyond the objective 1.0"),
+        ({"objective": 1.0, "bound": 2.0}, "bound 2.0 exceeds the objective 1.0"),
         ({"solution": [1, 2]}, "solution must be values by name, or None; it is a list"),
     ],
 )

@@ -176,9 +176,9 @@ def test_impossible_charges_say_why():
     decision = simulation.step()
     robot, charger = decision.view.robots[0], decision.view.recovery_stations[0].index
     for wrong, why in [
-        (Charge(robot, 0, 0.5), "gives no energy"),
-        (Charge(robot, charger, 1.5), "no level"),
-        (Unplug(robot), "stands at no plug-in place"),
+        (Charge(robot, 0, 0.5), "is not an energy station"),
+        (Charge(robot, charger, 1.5), "not a level"),
+        (Unplug(robot), "is not at a plug-in place"),
     ]:
         with pytest.raises(ImpossibleError, match=why):
             decision.answer(wrong)

@@ -82,7 +82,7 @@ def test_an_elevator_out_of_use_is_not_used():
 def test_what_cannot_be():
     with pytest.raises(InputError, match="there is no elevator 7"):
         disturbed({"elevators_out": [[7, 0.0, 1.0]]}, layout="study-tiers")
-    with pytest.raises(InputError, match="must end after they begin"):
+    with pytest.raises(InputError, match="must end after it begins"):
         disturbed({"elevators_out": [[0, 5.0, 5.0]]}, layout="study-tiers")
     with pytest.raises(InputError, match=r"disturbances\.slow\.speed_share"):
         disturbed({"slow": {"every_s": 1.0, "lasting_s": 1.0, "speed_share": 1.5}})

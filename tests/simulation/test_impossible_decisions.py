@@ -24,7 +24,7 @@ WRONG = {
     "an unknown station": (
         "yield AssignOrder(next(iter(self.view.orders)), 99)",
         r"^poa Odd at 0\.000 s: AssignOrder\(order=0, station=99\) is impossible: there is no pick "
-        r"station 99 \(they are 0 to 1\)$",
+        r"station 99 \(valid: 0 to 1\)$",
     ),
     "an order twice": (
         "order = next(iter(self.view.orders))\n        "
@@ -32,7 +32,7 @@ WRONG = {
         r"poa Odd at 0\.000 s: AssignOrder\(.* is impossible: ",
     ),
     "a tuple": ("yield (1, 2)", r"poa Odd at 0\.000 s: \(1, 2\) is impossible: "),
-    "nothing at all": ("return None", r"poa Odd at 0\.000 s: decide returned nothing to go by"),
+    "nothing at all": ("return None", r"poa Odd at 0\.000 s: decide returned None, not decisions"),
 }
 
 
@@ -69,19 +69,19 @@ ASKED_BY_TA = {
         "pps",
         "from rmfs.control.pps.random import RandomPod as Base",
         "def pick_pod(self, robot, station):\n        return None",
-        r"^pps Odd at \d+\.\d{3} s: pick pod None is impossible: None is no number of a pod$",
+        r"^pps Odd at \d+\.\d{3} s: pick pod None is impossible: None is not the number of a pod$",
     ),
     "PSA: no place": (
         "psa",
         "from rmfs.control.psa.nearest import Nearest as Base",
         "def place(self, robot):\n        return self.view.pick_stations[0].waypoint",
-        r"^psa Odd at \d+\.\d{3} s: place \d+ is impossible: waypoint \d+ is no storage place$",
+        r"^psa Odd at \d+\.\d{3} s: place \d+ is impossible: waypoint \d+ is not a storage place$",
     ),
     "repositioning: no move": (
         "repositioning",
         "from rmfs.control.repositioning import Repositioning as Base",
         "def move(self, robot):\n        return 7",
-        r"^repositioning Odd at \d+\.\d{3} s: move 7 is impossible: a Move of ",
+        r"^repositioning Odd at \d+\.\d{3} s: move 7 is impossible: expected a Move of ",
     ),
 }
 

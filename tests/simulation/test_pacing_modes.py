@@ -108,7 +108,7 @@ def test_an_exchanged_controller_is_not_told() -> None:
         ("wall=3", (), "wall takes no value after ="),
         ("fixed=-1", (), "pacing fixed: seconds"),
         ("fixed=soon", (), "pacing fixed: seconds"),
-        ("replay", (), "pacing replay: say which, replay=RUN_DIR"),
+        ("replay", (), "pacing replay: must have a value, as in replay=RUN_DIR"),
         ("wall", [(["sped"], 2)], "unknown key sped; did you mean speed?"),
         ("wall", [(["speed"], 0)], "pacing wall: speed"),
     ],
@@ -135,5 +135,5 @@ def test_solutions_are_kept_to_the_last_bit() -> None:
         np.testing.assert_array_equal(read[name], solution[name])
     assert read["text"] == "two words"
     assert read["nested"][:2] == [1, 2.5] and read["nested"][2][0].tolist() == [0, 1]
-    with pytest.raises(TypeError, match="holds a set"):
+    with pytest.raises(TypeError, match="contains a set"):
         to_text({"pods": {1, 2}})

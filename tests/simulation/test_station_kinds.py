@@ -139,8 +139,10 @@ def test_the_command_writes_columns_colour_and_layout(checked, tmp_path, capsys)
         details=[],
     )
     told = head["stations"][-1]
-    assert (told["kind"], told["letter"], told["colour"]) == ("check", "Q", "#7B3294")
-    assert head["robot_colours"]["task"]["check"] == "#7B3294"
+    assert (told["kind"], told["letter"]) == ("check", "Q")
+    for theme, shade in {"light": "#441C51", "dark": "#C4A3CF"}.items():
+        assert head["themes"][theme]["task"]["check"] == "#7B3294"
+        assert head["themes"][theme]["stations"][-1] == shade
     tasks = folder.events.query("kind == 'task' and detail == 'check'")
     assert set(tasks["station"]) == {4}
     assert len(scene.of_run(folder)) > 1000
@@ -214,7 +216,7 @@ def test_a_design_runs_it_on_dask(design, tmp_path):
     [
         (("QualityCheck", "Nothing"), "other_stations.check.kind: .* has no class Nothing"),
         (("quality_check.py", "missing.py"), "other_stations.check.kind: .* no file"),
-        (("stations.check", "stations.other"), "named 'check': its table is other_stations.check"),
+        (("stations.check", "stations.other"), "named 'check': use the table other_stations.check"),
         (("every = 3", "every = 0"), "other_stations.check.parameters: every"),
         (("every = 3", "evry = 3"), "unknown key evry; did you mean every"),
         (("north = 1", "north = 9"), "north side has room for"),

@@ -198,7 +198,7 @@ def test_what_is_not_possible_is_refused_and_the_question_stands() -> None:
     robot = run.view.robots[0]
     for wrong, reason in [
         (AssignOrder(order, 99), "there is no pick station 99"),
-        (AssignOrder(order, "first"), "no number of a pick station"),
+        (AssignOrder(order, "first"), "not the number of a pick station"),
         ((order, 0), "takes AssignOrder, AssignLines, QueueOrder"),
         (Park(robot, 3), "takes AssignOrder"),
         (None, "takes AssignOrder"),
@@ -210,7 +210,7 @@ def test_what_is_not_possible_is_refused_and_the_question_stands() -> None:
     with pytest.raises(ImpossibleError, match="is not in the backlog"):
         decision.answer(AssignOrder(order, 0))
     decision.decline()
-    with pytest.raises(ImpossibleError, match="has been answered"):
+    with pytest.raises(ImpossibleError, match="has already been answered"):
         decision.answer(AssignOrder(order, 0))
 
 
@@ -230,9 +230,9 @@ def test_impossible_tasks_are_refused() -> None:
     decision = run.step()
     busy = next(robot for robot in run.view.robots if robot.task and robot.task.pod >= 0)
     free = next(robot for robot in run.view.robots if robot.index in run.view.asking)
-    with pytest.raises(ImpossibleError, match=f"robot {busy.index} has a task"):
+    with pytest.raises(ImpossibleError, match=f"robot {busy.index} already has a task"):
         decision.answer(BringForPicks(busy, busy.task.pod, 0))
-    with pytest.raises(ImpossibleError, match=f"pod {busy.task.pod} is not at hand"):
+    with pytest.raises(ImpossibleError, match=f"pod {busy.task.pod} is not available"):
         decision.answer(BringForPicks(free, busy.task.pod, 0))
     with pytest.raises(ImpossibleError, match="carries no pod"):
         decision.answer(Park(free, 0))
@@ -286,8 +286,8 @@ class AsksAndForgets(DispatchControl):
 @pytest.mark.parametrize(
     ("outside", "rules", "reason"),
     [
-        ("pp", {}, "no problem that can be decided outside"),
-        ("pick", {}, "no problem that can be decided outside; valid: poa, roa"),
+        ("pp", {}, "is not a problem that can be decided outside"),
+        ("pick", {}, "not a problem that can be decided outside; valid: poa, roa"),
         (
             "pps",
             {"controllers__ta": "random", "controllers__pps": "dummy"},

@@ -195,30 +195,32 @@ FORMATS = ("", "", ".3f", ".3f", ".3f", ".1f", ".3f", ".3f")
 """Of the columns of the table."""
 
 PAGE = """\
-# Do the intervals keep their promise?
+# Do the intervals contain the true value?
 
 <!-- written by python -m tests.tools.coverage --page docs/coverage.md -->
 
-A synthetic simulator whose true means are known stands in for the warehouse. A run is the mean of
-its arm, plus an effect of the seed that all arms share (common random numbers), plus noise of its
-own; together they have a standard deviation of 5 % of the mean. *normal*: both are normally
-distributed; *skewed*: both are exponential. Each figure comes from {experiments:,} experiments.
+Instead of the warehouse, a synthetic simulator with known means is used. The result of a run is
+the mean of its arm, plus an effect of the seed that all arms share (common random numbers), plus
+independent noise. The standard deviation of their sum is 5 % of the mean. *normal*: both are
+normally distributed; *skewed*: both are exponential. Each figure comes from {experiments:,}
+experiments.
 
 - **t**, **bootstrap**: how often a 95 % interval of a fixed number of seeds covers the true mean.
-- **sequential**: the same for an interval that was given seeds, from this number on, until its half
-  width was below 2 % of the mean; beside it how many seeds that took on average.
-- **false alarms**: how often at least one of the arms is called different from the baseline at the
-  level 5 % although all are equal; paired t tests, corrected by Holm for five arms.
+- **sequential**: the same for an interval to which seeds are added, starting from this number,
+  until its half width is below 2 % of the mean; the next column is the mean number of seeds this
+  took.
+- **false alarms**: how often at least one arm is found to differ from the baseline at the 5 %
+  level although all are equal; paired t tests, corrected by Holm for five arms.
 
 {table}
 
-The bootstrap (BCa) is too narrow for few seeds, for normal runs as for skewed ones: use it from 30
-seeds on. A sequential interval stops where the sample happens to vary little, so it covers a little
-less than it says; begin with ten seeds rather than five.
+With few seeds, bootstrap intervals (BCa) are too narrow, for normal and for skewed runs alike:
+use them with at least 30 seeds. A sequential procedure stops when the sample happens to vary
+little, so its interval covers slightly less than stated; begin with ten seeds rather than five.
 
-Selection of the best of five arms (procedure KN) in its hardest case, where the best is better by
-just the smallest difference worth detecting: right in {right:.3f} of the experiments (promised:
-0.95), with {taken:.0f} runs of all arms on average.
+Selection of the best of five arms (procedure KN) in its hardest case, where the best arm is
+better by just the smallest difference worth detecting: correct in {right:.3f} of the experiments
+(nominal: 0.95), with {taken:.0f} runs of all arms on average.
 """
 
 

@@ -39,13 +39,14 @@ HEAD = """\
 # How long decisions take
 
 Milliseconds of wall time in runs of a large warehouse: 1,965 pods, 128 robots, 12 pick and 20
-replenishment stations, 1,000 SKUs, always 200 orders and 200 bundles waiting. Each rule works in a
-run of its own beside the default rules. A call may give several decisions, or none; the median of a
-decision is that of the calls that gave some, each divided by their number. The time in which other
-controllers are consulted is theirs. Written by `python -m tests.tools.decision_times`.
+replenishment stations, 1,000 SKUs, a constant backlog of 200 orders and 200 bundles. Each rule is
+measured in a run of its own, with the default rules for all other problems. A call may result in
+several decisions or in none. The median refers to calls that resulted in decisions; their time is
+divided by the number of decisions. Time spent in other controllers is attributed to these.
+Written by `python -m tests.tools.decision_times`.
 
-The median is to stay below one millisecond for every rule; so say the benchmarks too
-(`pytest -m benchmark tests/control`), in which one decision is timed again and again.
+For every rule, the median should stay below one millisecond. The benchmarks require the same
+(`pytest -m benchmark tests/control`); they time a single decision repeatedly.
 """
 
 

@@ -84,7 +84,18 @@ def locked() -> set[tuple[str, str, str]]:
     pins = [Requirement(block.split(" \\")[0]) for block in blocks]
     python = {("pypi", canonicalize_name(pin.name), _version(pin)) for pin in pins}
     crates = tomllib.loads((ROOT / "rmfs/traffic/Cargo.lock").read_text("utf-8"))["package"]
-    return python | {("cargo", one["name"], one["version"]) for one in crates if "source" in one}
+    rust = {("cargo", one["name"], one["version"]) for one in crates if "source" in one}
+    return python | rust | {("npm", *package) for package in _in_the_page()}
+
+
+def _in_the_page() -> dict[tuple[str, str], str]:
+    """Return the licences of the packages that the page of the viewer has inside, as locked."""
+    lock = json.loads((ROOT / "rmfs/view/web/package-lock.json").read_text("utf-8"))
+    return {
+        (path.removeprefix("node_modules/"), one["version"]): one["license"]
+        for path, one in lock["packages"].items()
+        if path and not one.get("dev") and not one.get("optional")
+    }
 
 
 def _version(pin: Requirement) -> str:
@@ -95,11 +106,15 @@ def _version(pin: Requirement) -> str:
 def collected() -> list[Part]:
     """Return all parts, with the licences that the installed packages and the crates state."""
     needed = _needed_to_run()
-    licences = _of_crates()
+    licences, pages = _of_crates(), _in_the_page()
     parts = []
     for ecosystem, name, version in sorted(locked()):
         if ecosystem == "cargo":
             parts.append(Part(ecosystem, name, version, licences[name, version], "compiled core"))
+            continue
+        if ecosystem == "npm":
+            told = pages[name, version]
+            parts.append(Part(ecosystem, name, version, told, "page of the viewer"))
             continue
         purpose = "runs with rmfs" if name in needed else "extras and development"
         parts.append(Part(ecosystem, name, version, licence_of(name), purpose))

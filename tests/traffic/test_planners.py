@@ -88,7 +88,7 @@ def test_rolling_planners_ask_for_runs_that_are_refused():
 
 
 def test_unknown_planner_and_parameters():
-    with pytest.raises(InputError, match="no pp rule of the name whca; did you mean whca-"):
+    with pytest.raises(InputError, match="no pp rule named whca; did you mean whca-"):
         choose(Problem.PP, {"name": "whca"}, "test")
     with pytest.raises(InputError, match="window_m"):
         choose(Problem.PP, {"name": "whca-v", "window_m": 3}, "test")

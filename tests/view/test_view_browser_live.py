@@ -104,6 +104,37 @@ def test_closing_the_page_lets_the_run_go_on(page: Any, started: Any, tmp_path: 
         assert first.table(table).equals(second.table(table)), table
 
 
+def test_the_form_has_words_units_and_a_preview(page: Any, started: Any) -> None:
+    _, url = started("view", "--no-open")
+    page.goto(url)
+    counts = page.locator("#preview .counts:not(:empty)")
+    counts.wait_for()
+    assert "28 m, 16 robots, 428 pods" in counts.text_content()
+    for part in page.query_selector_all("details"):
+        part.evaluate("one => { one.open = true; }")
+    duration = page.locator("label[title^='duration_s: ']")
+    assert duration.locator("span").text_content() == "measured time"
+    assert duration.locator("output").text_content() == "s = 4 h"
+    duration.locator("input").fill("5400")
+    assert duration.locator("output").text_content() == "s = 1 h 30 min"
+    assert page.locator("label[title^='top_speed_m_s: '] output").text_content() == "m/s"
+    robots = page.locator("label[title^='robots: '] input").first
+    before = page.evaluate("document.querySelector('#preview canvas').toDataURL()")
+    robots.fill("25")
+    page.wait_for_function(
+        "document.querySelector('#preview .counts').textContent.includes('25 robots')"
+    )
+    assert page.evaluate("document.querySelector('#preview canvas').toDataURL()") != before
+    robots.fill("0")
+    page.wait_for_selector("#preview .wrong:not(:empty)")
+    robots.fill("7")
+    page.wait_for_selector("#preview .wrong:empty", state="attached")
+    page.select_option("#start-layout", "small")
+    page.wait_for_function(
+        "/^(?!56 ).+ pods/.test(document.querySelector('#preview .counts').textContent)"
+    )
+
+
 def test_the_form_starts_a_run(page: Any, started: Any, tmp_path: Path) -> None:
     _, url = started("view", "--no-open")
     page.goto(url)
@@ -117,8 +148,7 @@ def test_the_form_starts_a_run(page: Any, started: Any, tmp_path: Path) -> None:
     assert "robots" in page.text_content(".wrong")
     robots.locator("input").fill("6")
     for name, value in {"warmup_s": "0", "duration_s": "1800"}.items():
-        label = page.locator("label", has=page.locator("span", has_text=re.compile(f"^{name}$")))
-        label.locator("input").fill(value)
+        page.locator(f"label[title^='{name}: ']").locator("input").fill(value)
     page.locator("#start-psa select").first.select_option("random")
     page.fill("#start-out", "mine")
     page.fill("#start-speed", "600")

@@ -10,9 +10,9 @@ import pytest
 from in_browser import needs_browser, show, state
 
 import rmfs
-from rmfs.layout import colours
 from rmfs.measure import RunFolder, load_run, write_run
 from rmfs.view.answers import replay_server
+from rmfs.view.themes import THEMES
 from tests.tools.viewer.chromium import served
 
 pytestmark = [pytest.mark.slow, needs_browser]
@@ -138,7 +138,7 @@ def test_panels_tell_stations_robots_and_pods(shown: Any, tiers: RunFolder) -> N
     for what, words in {
         "station": ("open orders", "idle share", "per h", "queue"),
         "robot": ("task", "state", "carries", "waited", "m,"),
-        "pod": ("space used", "units picked", "last visit", "holds"),
+        "pod": ("space used", "picked", "last visit", "Holds"),
     }.items():
         put(shown, f"selection: {{ run: 0, what: '{what}', index: 0 }}")
         shown.wait_for_selector(f".details h2:text-is('{what} 0')")
@@ -160,12 +160,6 @@ def test_next_event_and_following(shown: Any, tiers: RunFolder) -> None:
     shown.keyboard.press("Escape")
     assert state(shown, "selection") is None
     assert state(shown, "follow") is False
-
-
-def test_a_click_in_a_chart_seeks(shown: Any) -> None:
-    chart = shown.locator(".charts canvas").first
-    chart.click(position={"x": 40 + (chart.bounding_box()["width"] - 40) / 2, "y": 40})
-    assert state(shown, "time_s") == pytest.approx(END_S / 2, abs=END_S / 100)
 
 
 def test_the_keys_are_listed_and_work(shown: Any) -> None:
@@ -198,12 +192,11 @@ def test_the_picture_button_saves_a_picture(shown: Any) -> None:
     assert saved.value.suggested_filename == "run-60s.png"
 
 
-def test_the_page_uses_the_colours_of_the_layout_pictures(shown: Any) -> None:
-    told = shown.evaluate("rmfs.runs[0].header.colours")
-    assert told["pick_station"] == colours.PICK_STATION
-    assert told["replenishment_station"] == colours.REPLENISHMENT_STATION
-    assert told["storage"] == colours.STORAGE
+@pytest.mark.parametrize("theme", THEMES)
+def test_the_legend_has_the_colours_of_the_theme(shown: Any, theme: str) -> None:
+    put(shown, f"theme: '{theme}', robots: 'task'")
+    colours = THEMES[theme]
     legend = shown.inner_html(".legend")
-    for colour in (colours.PICK_STATION, colours.STORAGE, colours.ELEVATOR):
+    for colour in (*colours.stations.values(), *colours.tasks.values(), colours.pod):
         red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
         assert f"rgb({red}, {green}, {blue})" in legend

@@ -1,5 +1,8 @@
 """A watched run: the same run, whatever pages do; told completely; its rules exchanged by hand."""
 
+import http.client
+import json
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -17,8 +20,12 @@ from rmfs.measure.dictionary import TABLES
 from rmfs.simulation.result import Run
 from rmfs.traffic import Piece
 from rmfs.view import scene
+from rmfs.view.answers import live_server
+from rmfs.view.asking import Known
 from rmfs.view.container import unpack
-from rmfs.view.live import Known, LiveRun
+from rmfs.view.live import LiveRun
+from rmfs.view.preview import preview
+from rmfs.view.starting import Starter
 
 NOTHING = Known()
 NAMES = dict.fromkeys(("layout", "scenario", "controllers"), "default")
@@ -234,3 +241,160 @@ def test_a_run_that_never_began_is_told() -> None:
     live.close("the run was given up")
     with pytest.raises(InputError, match="given up"):
         live.scene()
+
+
+ASKED = [
+    "/live?motion=-1",
+    "/live?motion=99999999999999999999",
+    "/live?events=-1",
+    "/live?motion=x",
+]
+ASKED += [
+    f"/live?page={'x' * 100}",
+    "/runs/0?motion=-1",
+    "/live?motion=%00",
+    "//[",
+]
+SENT: list[tuple[str, Any]] = [
+    *(("/control", {"do": "run", "speed": speed}) for speed in (1e308, 1e-308, 0, -1, "x", [], {})),
+    *(("/control", {"do": "step", "by_s": by_s}) for by_s in (1e308, -1, "x", None, [])),
+    *(("/control", wish) for wish in (None, 3, [], {}, {"do": "stop"}, {"do": "run", "page": 4})),
+    *(("/leave", wish) for wish in (None, {}, {"page": []}, {"page": "x" * 100})),
+    *(("/exchange", wish) for wish in (None, {}, {"problem": [], "rule": 3})),
+    ("/exchange", {"problem": "psa", "rule": {"name": 3}}),
+]
+
+
+def test_no_request_ends_or_alters_a_run(unwatched: Run) -> None:
+    """What is wrong with a request is answered with a reason, and the run goes on as ever."""
+    watched = Watched(speed=200.0)
+    with live_server(watched.live) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        watched.start()
+        line = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=20)
+        head = {"Content-Type": "application/json", "Cookie": f"{server.cookie}={server.token}"}
+        for path in ASKED:
+            line.request("GET", path, headers=head)
+            answer = line.getresponse()
+            told = answer.read()
+            assert answer.status in (400, 404, 422) or path.startswith("/runs"), path
+            assert answer.status == 200 or json.loads(told)["error"]
+        for path, wish in SENT:
+            line.request("POST", path, json.dumps(wish), headers=head)
+            answer = line.getresponse()
+            assert answer.status in (400, 422), (path, wish)
+            assert json.loads(answer.read())["error"]
+        watched.live.control({"do": "run"})
+        run = watched.result()
+        server.shutdown()
+    pd.testing.assert_series_equal(reproducible(run), reproducible(unwatched))
+
+
+@pytest.mark.parametrize("site", ["cross-site", "same-site"])
+def test_pages_elsewhere_do_not_reach_the_run(site: str) -> None:
+    """An image on a foreign page sends a GET without an origin; browsers tell its site."""
+    watched = Watched()
+    watched.live.control({"do": "pause"})
+    watched.start()
+    with live_server(watched.live) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        line = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=20)
+        head = {"Cookie": f"{server.cookie}={server.token}"}
+        for path in ("/live?motion=0&page=other", "/runs/0", "/problems", "/session"):
+            line.request("GET", path, headers={**head, "Sec-Fetch-Site": site})
+            answer = line.getresponse()
+            assert (answer.status, answer.read()[:9]) == (403, b'{"error":')
+            line.request("GET", path, headers={**head, "Sec-Fetch-Site": "same-origin"})
+            answer = line.getresponse()
+            answer.read()
+            assert answer.status == 200
+        line.request(
+            "GET", "/", headers={"Sec-Fetch-Site": site}
+        )  # a link to the page may be anywhere
+        assert line.getresponse().status == 200
+        server.shutdown()
+    watched.live.control({"do": "run"})
+    watched.result()
+
+
+def test_a_run_does_not_wait_for_who_may_only_look() -> None:
+    watched = Watched()
+    watched.live.control({"do": "pause"})
+    watched.start()
+    with live_server(watched.live) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        line = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=20)
+        line.request("GET", "/live?page=stranger")
+        assert line.getresponse().status == 200
+        watched.live.news(NOTHING, "one")
+        watched.live.leave("one")  # nobody is left who holds it back
+        watched.result()
+        server.shutdown()
+
+
+def test_an_exchange_that_is_refused_is_the_page_s_concern(
+    unwatched: Run, monkeypatch: Any
+) -> None:
+    """A rule that cannot be made here, as its constructor says so."""
+    from rmfs.control.psa.random import RandomPlace
+
+    def refuse(*_: object) -> None:
+        raise InputError("not in this warehouse")
+
+    watched = Watched()
+    watched.live.control({"do": "pause"})
+    watched.start()
+    watched.live.control({"do": "step", "by_s": 100.0})
+    watched.until(lambda told: told["known_s"] >= 99.99)
+    monkeypatch.setattr(RandomPlace, "__init__", refuse)
+    with pytest.raises(InputError, match="not in this warehouse"):
+        watched.live.exchange("psa", {"name": "random"})
+    watched.live.control({"do": "run"})
+    run = watched.result()
+    pd.testing.assert_series_equal(reproducible(run), reproducible(unwatched))
+
+
+NESTED = {"name": "scheduled", "exchanges": [{"at_s": 1.0, "psa": {"name": "imported_by_page:X"}}]}
+WISHES = [
+    ("psa", {"name": "imported_by_page:X"}),
+    ("psa", {"name": "imported_by_page.py:X"}),
+    ("mm", NESTED),
+]
+
+
+@pytest.fixture
+def module_to_import(tmp_path: Any, monkeypatch: Any) -> None:
+    (tmp_path / "imported_by_page.py").write_text("raise SystemExit(3)\n")
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.usefixtures("module_to_import")
+@pytest.mark.parametrize(("problem", "rule"), WISHES)
+def test_pages_import_no_code_by_an_exchange(problem: str, rule: Any) -> None:
+    watched = Watched()
+    with pytest.raises(InputError, match="must be the name of something installed"):
+        watched.live.exchange(problem, rule)
+    assert not [name for name in sys.modules if "imported_by_page" in name]
+
+
+@pytest.mark.usefixtures("module_to_import")
+@pytest.mark.parametrize(
+    "change",
+    [
+        *({f"controllers.{problem}": rule} for problem, rule in WISHES),
+        {"layout.other_stations.x": {"kind": "imported_by_page:X", "north": 1}},
+        {"controllers.psa.name": "imported_by_page.py:X"},
+    ],
+)
+def test_pages_import_no_code_by_starting_a_run(change: Any, tmp_path: Any) -> None:
+    with pytest.raises(InputError, match="must be the name of something installed"):
+        Starter(tmp_path / "results").start({"set": change})
+    assert not [name for name in sys.modules if "imported_by_page" in name]
+
+
+@pytest.mark.usefixtures("module_to_import")
+def test_pages_import_no_code_by_a_preview() -> None:
+    kind = {"kind": "imported_by_page:X", "north": 1}
+    with pytest.raises(InputError, match="must be the name of something installed"):
+        preview({"set": {"layout.other_stations.x": kind}})
+    assert not [name for name in sys.modules if "imported_by_page" in name]

@@ -153,12 +153,14 @@ def test_slow_clients_are_hung_up_on(server: Server, start: bytes) -> None:
 def test_a_flood_of_connections_leaves_room_after_it(
     server: Server, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Those that ask for nothing are hung up on when others come."""
     monkeypatch.setattr(servers, "MOST_CONNECTIONS", 8)
+    monkeypatch.setattr(servers, "PATIENCE_S", 60.0)
     lines = [
         socket.create_connection(("127.0.0.1", server.server_port), timeout=20) for _ in range(40)
     ]
     refused = 0
-    for line in lines[8:]:
+    for line in lines[:32]:
         line.settimeout(10)
         try:
             refused += line.recv(1) == b""
@@ -166,6 +168,7 @@ def test_a_flood_of_connections_leaves_room_after_it(
             refused += 1
     assert refused == 32
     assert threading.active_count() < 30
+    assert ask(server, "/session").status == 200
     for line in lines:
         line.close()
     end = time.monotonic() + 20
@@ -176,6 +179,36 @@ def test_a_flood_of_connections_leaves_room_after_it(
         except (OSError, http.client.HTTPException):
             time.sleep(0.1)
     pytest.fail("nobody is served any more")
+
+
+def test_many_requests_at_once_are_all_answered(server: Server) -> None:
+    """200 at once, of which 8 are served at a time."""
+    told: list[int] = []
+
+    def one() -> None:
+        told.append(ask(server, "/session").status)
+
+    threads = [threading.Thread(target=one) for _ in range(200)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(30)
+    assert told == [200] * 200
+
+
+def test_a_defect_of_ours_is_the_request_s_concern(server: Server, capfd) -> None:
+    def fail(_: object) -> Answer:
+        raise ZeroDivisionError("of ours")
+
+    server.gets["/defect"] = fail
+    answer = ask(server, "/defect")
+    assert answer.status == 500
+    assert json.loads(answer.read()) == {"error": "ZeroDivisionError: of ours"}
+    with socket.create_connection(("127.0.0.1", server.server_port), timeout=20) as line:
+        head = f"Host: 127.0.0.1:{server.server_port}\r\n\r\n"
+        line.sendall(f"GET http://[ HTTP/1.1\r\n{head}".encode())
+        assert line.recv(100).startswith(b"HTTP/1.1 400")
+    assert capfd.readouterr().err == ""
 
 
 def test_headers_without_end(server: Server) -> None:

@@ -1,4 +1,4 @@
-"""Charge assignment (CA): which robot gets energy, where, from when, and until which level."""
+"""Charge assignment (CA): which robot charges where, from when, and up to which level."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ P = TypeVar("P", bound=Parameters)
 
 
 class ChargeAssignment(Controller[P]):
-    """Sends robots without pod to stations where they get energy, and away again.
+    """Sends robots without a pod to stations where they get energy, and away again.
 
-    It is asked before TA, about the robots of `view.asking` and `view.resting`; only in runs whose
-    robots have batteries (`view.batteries`). A robot that could not finish another task and reach a
-    station for energy after it is sent there in any case, whatever the rule says.
+    It is asked before TA, about the robots of `view.asking` and `view.resting`, and only in runs
+    whose robots have batteries (`view.batteries`). A robot that could not complete another task and
+    then reach an energy station is sent there in any case, whatever the rule decides.
     """
 
     problem = Problem.CA
@@ -30,8 +30,8 @@ class ChargeAssignment(Controller[P]):
 
     @abstractmethod
     def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
-        """Yield who is to go for energy, and who is to leave a plug-in place."""
+        """Yield the robots to be sent to charge, and those that must leave a plug-in place."""
 
     def target_share(self) -> float:
-        """Level until which robots stay that were sent in any case."""
+        """Level up to which a robot charges if it was sent in any case."""
         return 0.8

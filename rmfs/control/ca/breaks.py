@@ -23,32 +23,32 @@ class BreaksParameters(LevelParameters):
     """Parameters of CA breaks."""
 
     below_share: Share = 0.25
-    """Below this level a robot goes for energy outside breaks, too."""
+    """A robot below this level charges outside breaks, too."""
     until_share: Level = 0.9
-    """Level until which robots charge."""
+    """Level up to which robots charge."""
     breaks_s: tuple[Break, ...] = ((14400.0, 16200.0), (28800.0, 30600.0))
-    """Pairs of the first and last second of a break, in order, within a cycle."""
+    """Breaks as pairs of start and end within a cycle, in seconds, in order."""
     cycle_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 43200.0
-    """Seconds after which breaks come again; the clock is that of the scenario."""
+    """Seconds after which breaks repeat; the clock is that of the scenario."""
 
     @pydantic.model_validator(mode="after")
     def _breaks_in_order(self) -> BreaksParameters:
         times = [time for pair in self.breaks_s for time in pair]
         if any(a >= b for a, b in pairwise(times)) or (times and times[-1] > self.cycle_s):
-            raise ValueError("breaks_s must be in order, not overlap and end by cycle_s")
+            raise ValueError("breaks_s must be in order, must not overlap and must end by cycle_s")
         return self
 
 
 class Breaks(ByLevel[BreaksParameters]):
-    """Sends all robots that come free within a break (interim charging), others when they are low.
+    """Sends all robots that become free during a break, and others when they run low.
 
-    With more robots than places, they queue.
+    This is known as interim charging. If there are more robots than places, they queue.
     """
 
     parameters_model = BreaksParameters
 
     def next_event_s(self) -> float:
-        """When the next break begins."""
+        """Start of the next break."""
         given, view = self.parameters, self.view
         if view.batteries is None or not given.breaks_s:
             return inf
@@ -62,7 +62,7 @@ class Breaks(ByLevel[BreaksParameters]):
         return min(start for start in starts if start > now_s) - view.time_of_day_s
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """The upper level, if there is a break or the robot is low."""
+        """The upper level, during a break or if the robot is low."""
         given = self.parameters
         time_s = (self.view.now_s + self.view.time_of_day_s) % given.cycle_s
         is_break = any(start <= time_s < end for start, end in given.breaks_s)

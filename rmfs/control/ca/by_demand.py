@@ -21,15 +21,15 @@ class ByDemandParameters(LevelParameters):
     """Parameters of CA by-demand."""
 
     below_share: Share = 0.25
-    """Level below which a robot goes for energy while many orders arrive."""
+    """Level below which a robot charges while many orders arrive."""
     calm_below_share: Share = 0.6
-    """The same while few arrive."""
+    """Level below which a robot charges while few orders arrive."""
     until_share: Level = 0.8
-    """Level until which it stays."""
+    """Level up to which it charges."""
     window_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 900.0
-    """Arrivals of so many seconds are counted ..."""
+    """Length in seconds of the window in which arrivals are counted."""
     calm_share: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.8
-    """... and are few if their rate is below this share of the mean since the run began."""
+    """Demand is low if the rate in the window is below this share of the mean rate of the run."""
 
     @pydantic.model_validator(mode="after")
     def _calm_in_order(self) -> ByDemandParameters:
@@ -42,7 +42,7 @@ class ByDemandParameters(LevelParameters):
 
 
 class ByDemand(ByLevel[ByDemandParameters]):
-    """Sends robots earlier while the arrival rate is low, to have them when it is high."""
+    """Sends robots earlier while few orders arrive, so that they are available when many do."""
 
     parameters_model = ByDemandParameters
     hears = frozenset({Trigger.NEW_ORDER})
@@ -61,7 +61,7 @@ class ByDemand(ByLevel[ByDemandParameters]):
         self._count += 1
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """The upper level, below the one that counts now."""
+        """The upper level, if the robot is below the lower level that currently applies."""
         given = self.parameters
         low = given.calm_below_share if self.is_calm() else given.below_share
         return given.until_share if share < low else 0.0
@@ -71,7 +71,7 @@ class ByDemand(ByLevel[ByDemandParameters]):
         return self.parameters.until_share
 
     def is_calm(self) -> bool:
-        """Whether few orders arrived of late; never before two windows have passed."""
+        """Whether few orders arrived recently; never before two windows have passed."""
         now_s, window_s = self.view.now_s, self.parameters.window_s
         while self._arrivals and self._arrivals[0] < now_s - window_s:
             self._arrivals.popleft()

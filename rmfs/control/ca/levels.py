@@ -1,4 +1,4 @@
-"""What CA rules share: levels from which and to which robots charge, places, handing over."""
+"""Shared parts of CA rules: charge levels, choice of the place, and handing over a place."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ Level = Annotated[float, pydantic.Field(gt=0, le=1)]
 
 
 class PlaceParameters(Parameters):
-    """Parameters of all rules that send robots to places."""
+    """Parameters of all rules that send robots to charging places."""
 
     place: PlaceRule = "least-queued"
-    """Which place: the `least-queued`, the `nearest`, or the one that is free `soonest`."""
+    """Choice of the place: `least-queued`, `nearest`, or the one that is free `soonest`."""
     hand_over_share: Level | None = None
-    """A robot that charges gives up its place to one that waits there and has less by this share of
-    the capacity; default: never."""
+    """A charging robot gives up its place to a waiting one whose level is lower by at least this
+    share of the capacity; default: never."""
 
 
 class LevelParameters(PlaceParameters):
     """Parameters of rules with two levels."""
 
     below_share: Share = 0.3
-    """A robot goes for energy once its level is below."""
+    """A robot charges when its level falls below this."""
     until_share: Level = 0.8
-    """It stays until it has this level."""
+    """Level up to which it charges."""
 
     @pydantic.model_validator(mode="after")
     def _in_order(self) -> LevelParameters:
@@ -54,14 +54,14 @@ P = TypeVar("P", bound=PlaceParameters)
 
 
 class ByLevel(ChargeAssignment[P]):
-    """Sends robots one by one, the emptiest first."""
+    """Sends robots one by one, starting with the lowest level."""
 
     @abstractmethod
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """Level until which a robot with this one is to charge now; 0 if it is not to."""
+        """Level up to which a robot with level `share` should charge now; 0 if it should not."""
 
     def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
-        """Yield robots to be sent, then places handed over."""
+        """Yield robots to be sent, then robots that hand over their places."""
         batteries = self.view.batteries
         if batteries is None:
             return
@@ -71,14 +71,14 @@ class ByLevel(ChargeAssignment[P]):
             yield from self._hand_over(shares, self.parameters.hand_over_share)
 
     def enough_share(self) -> float:
-        """Level from which a robot may take a task for certain."""
+        """Level from which a robot can certainly take a task."""
         batteries = self.view.batteries
         return 0.0 if batteries is None else batteries.enough_share
 
     def _send(self, shares: list[float]) -> Iterator[Charge]:
         view = self.view
         robots = (*view.asking.values(), *view.resting.values())
-        # who has just left a place is not sent there again at once
+        # a robot that has just left a place is not sent back at once
         empty = [robot for robot in robots if robot.pod < 0 and robot.station < 0]
         for robot in sorted(empty, key=lambda robot: (shares[robot.index], robot.index)):
             until = self.wanted_share(robot, shares[robot.index])
@@ -90,7 +90,7 @@ class ByLevel(ChargeAssignment[P]):
             yield Charge(robot, station, until)
 
     def _hand_over(self, shares: list[float], gap: float) -> Iterator[Unplug]:
-        """Let robots leave whose place somebody waits for who has much less."""
+        """Make robots leave whose place is awaited by a robot with a much lower level."""
         for station in self.view.chargers:
             here = station.robot
             waiting = [shares[robot] for robot in station.tasks if robot != here]

@@ -1,4 +1,4 @@
-"""CA opportunity: a robot without work charges."""
+"""CA opportunity: robots charge when they have no work."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ class OpportunityParameters(LevelParameters):
     """Parameters of CA opportunity."""
 
     below_share: Share = 0.25
-    """Below this level a robot goes for energy even if there is work."""
+    """A robot below this level charges even if there is work."""
     until_share: Level = 0.8
-    """Level at which a robot leaves, at the latest."""
+    """Level at which a robot leaves at the latest."""
     idle_below_share: Share = 0.75
-    """A robot at rest charges if its level is below, and a place free."""
+    """A robot at rest charges if its level is below this and a place is free."""
     leave_above_share: Share = 0.4
-    """A robot above this level leaves its place as soon as work waits and nobody is at rest."""
+    """A robot above this level leaves its place as soon as work waits and no robot is at rest."""
     period_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 30.0
-    """How often robots at rest are looked at."""
+    """Seconds between checks of robots at rest."""
 
 
 class Opportunity(ByLevel[OpportunityParameters]):
-    """Lets robots charge whenever they have nothing to do, and calls them back when there is work.
+    """Lets robots charge whenever they are idle, and calls them back when there is work.
 
-    A robot at rest goes to a free place; one that is low goes in any case.
+    A robot at rest goes to a free place; a robot that is low goes in any case.
     """
 
     parameters_model = OpportunityParameters
@@ -45,7 +45,7 @@ class Opportunity(ByLevel[OpportunityParameters]):
     )
 
     def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
-        """Yield robots to be sent, and one to be called back."""
+        """Yield robots to be sent, and at most one to be called back."""
         yield from super().decide()
         batteries, view = self.view.batteries, self.view
         work_waits = any(station.has_open_work for station in view.stations)
@@ -59,13 +59,13 @@ class Opportunity(ByLevel[OpportunityParameters]):
                 return
 
     def next_event_s(self) -> float:
-        """Look at robots at rest from time to time."""
+        """Time of the next check of robots at rest."""
         period_s = self.parameters.period_s
         now_s = self.view.now_s
         return inf if self.view.batteries is None else (now_s // period_s + 1) * period_s
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """The upper level, if it is low, or at rest while a place is free."""
+        """The upper level, if the robot is low, or at rest while a place is free."""
         given, view = self.parameters, self.view
         free = any(not station.tasks for station in view.recovery_stations)
         low = given.idle_below_share if free and robot.index in view.resting else given.below_share

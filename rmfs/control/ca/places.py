@@ -1,4 +1,4 @@
-"""Where to get energy: the place, and how rules choose it."""
+"""Energy stations, and the rules that choose one."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ PlaceRule = Literal["least-queued", "nearest", "soonest"]
 
 
 def has_room(view: View, station: RecoveryStation) -> bool:
-    """Whether another robot may be sent there: its queue has a place."""
+    """Whether another robot may be sent there, that is, the queue has a free place."""
     return len(station.tasks) < len(view.layout.stations[station.index].queue)
 
 
 def busy_s(view: View, station: RecoveryStation) -> float:
-    """Time that all who are bound for a station, or there, take one after the other, s."""
+    """Total time needed by all robots at a station or on their way there, s."""
     kind, batteries = view.layout.stations[station.index].kind, view.batteries
     if not isinstance(kind, Charger) or batteries is None:
         return len(station.tasks) * float(getattr(kind.parameters, "swap_s", 0.0))
@@ -49,11 +49,11 @@ def choose(
     Parameters
     ----------
     rule
-        `least-queued`: fewest robots there and on their way, then the nearest; `nearest`: shortest
-        unhindered time, then the fewest robots; `soonest`: least time until those who are there,
-        or on their way, have what they came for, then the nearest.
+        `least-queued`: fewest robots there and on their way, then the nearest. `nearest`: shortest
+        unhindered time, then the fewest robots. `soonest`: least time until all robots there and on
+        their way have finished, then the nearest.
     full_too
-        Whether the robot may be sent where the queue has no place left, to wait outside.
+        Whether stations with a full queue count, so that the robot may have to wait outside.
     among
         The stations to choose from. Default: all.
     """

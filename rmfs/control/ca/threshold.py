@@ -1,4 +1,4 @@
-"""CA threshold and to-full: a robot goes for energy when its level is low."""
+"""CA threshold and to-full: a robot charges when its level is low."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ if TYPE_CHECKING:
 
 
 class Threshold(ByLevel[LevelParameters]):
-    """Sends a robot below one level, and lets it stay until another.
+    """Sends a robot to charge below one level and lets it stay up to another.
 
-    What Open-RMF calls `threshold_soc` and `recharge_soc`, and DELMIA replenish and release points.
+    The levels are called `threshold_soc` and `recharge_soc` in Open-RMF, and replenish and release
+    points in DELMIA.
     """
 
     parameters_model = LevelParameters
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """The upper level, below the lower one."""
+        """The upper level, if the robot is below the lower one."""
         given = self.parameters
         return given.until_share if share < given.below_share else 0.0
 
@@ -32,19 +33,19 @@ class ToFullParameters(PlaceParameters):
     """Parameters of CA to-full."""
 
     below_share: Share = 0.3
-    """A robot goes for energy once its level is below."""
+    """A robot charges when its level falls below this."""
 
 
 class ToFull(ByLevel[ToFullParameters]):
-    """Sends a robot below a level, and lets it stay until it is full (capacitive charging)."""
+    """Sends a robot to charge below a level and lets it stay until it is full."""
 
     parameters_model = ToFullParameters
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """All there is room for, below the level."""
+        """A full battery, if the robot is below the level."""
         return self.target_share() if share < self.parameters.below_share else 0.0
 
     def target_share(self) -> float:
-        """What counts as full."""
+        """The level that counts as full."""
         batteries = self.view.batteries
         return 1.0 if batteries is None else batteries.given.full_share

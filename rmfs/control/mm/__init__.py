@@ -1,4 +1,4 @@
-"""Method management (MM): exchange of controllers while the system runs."""
+"""Method management (MM): exchange of controllers during a run."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ P = TypeVar("P", bound=Parameters)
 
 
 class MethodManagement(Controller[P]):
-    """Says which controller is to be exchanged for which, and when; it is asked before all others.
+    """Decides which controllers are replaced, by which, and when; it is asked before all others.
 
-    The world remembers what controllers have promised (bundles on pods, robots on tasks), so that a
-    successor carries on where its predecessor stopped.
+    Commitments of a controller (bundles promised to pods, robots with tasks) are part of the world,
+    so that a successor continues where its predecessor stopped.
     """
 
     problem = Problem.MM
@@ -33,12 +33,12 @@ class MethodManagement(Controller[P]):
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Refuse, when a file is read, exchanges after which rules would not go together.
+        """Refuse, when a file is read, exchanges after which rules could not be combined.
 
         Parameters
         ----------
         choices
-            The controllers of the beginning, MM itself included.
+            The initial controllers, including MM.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""MM random: from time to time another controller, drawn from a list."""
+"""MM random: periodically installs a controller drawn from a list."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ class RandomParameters(Parameters):
     """Parameters of MM random."""
 
     period_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 7200.0
-    """Seconds between two exchanges."""
+    """Seconds between exchanges."""
     alternatives: Annotated[tuple[Rules, ...], pydantic.Field(min_length=1)] = (
         Rules(psa={"name": "nearest"}),
         Rules(psa={"name": "random"}),
         Rules(psa={"name": "station-based"}),
         Rules(psa={"name": "turnover"}),
     )
-    """What may be installed: a table for each new rule, for example `{ psa = { name = "random" }
-    }`; rules of one entry are installed together."""
+    """The alternatives: each is a set of tables, one per new rule, such as `{ psa = { name =
+    "random" } }`, installed together."""
 
 
 class RandomExchange(MethodManagement[RandomParameters]):
     """Installs an alternative drawn from a list after each period, all equally likely.
 
-    It may be the one that is there already.
+    It may be the one that is already installed.
     """
 
     parameters_model = RandomParameters
@@ -65,7 +65,7 @@ class RandomExchange(MethodManagement[RandomParameters]):
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Refuse alternatives that do not go with the other rules in every order of draws."""
+        """Refuse alternatives that cannot be combined with the others in every order of draws."""
         given = choices[Problem.MM].parameters
         assert isinstance(given, RandomParameters)
         for number, entry in enumerate(given.alternatives):
@@ -74,8 +74,8 @@ class RandomExchange(MethodManagement[RandomParameters]):
                 rule = choice.controller
                 if rule.is_dummy or rule.decides:
                     raise InputError(
-                        f"{where}: {choice.problem} {choice.name} needs others beside it; MM "
-                        "random exchanges only rules that decide their own problem and no other"
+                        f"{where}: {choice.problem} {choice.name} must be combined with others; "
+                        "MM random exchanges only rules that decide a single problem"
                     )
             new = {choice.problem: choice for choice in entry.choices()}
             check_together({**choices, **new}, where)

@@ -1,4 +1,4 @@
-"""A set of rules to be installed together, as a file writes it."""
+"""A set of rules to be installed together, as written in a file."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from rmfs.control.problems import Problem
 
 
 class Rules(RuleTables):
-    """Rules for some problems, each a table as in a controllers file, or a plain name."""
+    """Rules for some problems; each is a table as in a controllers file, or a plain name."""
 
     @pydantic.field_validator(*(problem.value for problem in Problem), mode="before")
     @classmethod
     def _in_full(cls, value: Any, info: pydantic.ValidationInfo) -> Any:
-        """Check a table and write all its parameters out."""
+        """Validate a table and write out all its parameters."""
         if isinstance(value, str):
             value = {"name": value}
         if not isinstance(value, dict):

@@ -1,4 +1,4 @@
-"""MM scheduled: controllers are exchanged at times written down beforehand."""
+"""MM scheduled: exchanges controllers at given times."""
 
 from __future__ import annotations
 
@@ -25,21 +25,21 @@ if TYPE_CHECKING:
 
 
 class PlannedExchange(Rules):
-    """Rules to be installed together at a time."""
+    """Rules to be installed together at one time."""
 
     at_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] | None = None
-    """When, in simulated seconds since the start; either this or `at_share`."""
+    """Simulated time of the exchange in seconds; either this or `at_share`."""
     at_share: Annotated[float, pydantic.Field(ge=0, le=1)] | None = None
-    """When, as a share of warm-up and duration together."""
+    """Time of the exchange as a share of warm-up and duration together."""
 
     @pydantic.model_validator(mode="after")
     def _one_time(self) -> PlannedExchange:
         if (self.at_s is None) == (self.at_share is None):
-            raise ValueError("needs either at_s or at_share")
+            raise ValueError("needs exactly one of at_s and at_share")
         return self
 
     def time_s(self, end_s: float) -> float:
-        """When it happens in a run that ends at `end_s`."""
+        """Return the time of the exchange in a run that ends at `end_s`."""
         if self.at_share is not None:
             return self.at_share * end_s
         assert self.at_s is not None
@@ -50,15 +50,14 @@ class ScheduledParameters(Parameters):
     """Parameters of MM scheduled."""
 
     exchanges: Annotated[tuple[PlannedExchange, ...], pydantic.Field(min_length=1)]
-    """What is installed when: `at_s` (s) or `at_share` (of warm-up and duration), and a table for
-    each new rule, for example `{ at_share = 0.5, psa = { name = "nearest" } }`; in order of
-    time."""
+    """The exchanges in order of time, each with `at_s` (s) or `at_share` (of warm-up and duration)
+    and a table for each new rule, for example `{ at_share = 0.5, psa = { name = "nearest" } }`."""
 
 
 class Scheduled(MethodManagement[ScheduledParameters]):
     """Exchanges controllers of any problem at given times.
 
-    Rules of one entry are installed together; a parameter that is not given has its default.
+    Rules of one entry are installed together; parameters that are not given have their defaults.
     """
 
     parameters_model = ScheduledParameters
@@ -68,7 +67,7 @@ class Scheduled(MethodManagement[ScheduledParameters]):
     ) -> None:
         super().__init__(parameters, view, rng)
         planned = [(entry.time_s(view.end_s), entry) for entry in parameters.exchanges]
-        # one that is installed during the run does not catch up on what is past
+        # a rule installed during the run does not catch up on past exchanges
         self._left = [entry for entry in planned if entry[0] >= view.now_s]
 
     def decide(self) -> Iterator[Exchange]:
@@ -83,7 +82,7 @@ class Scheduled(MethodManagement[ScheduledParameters]):
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Refuse entries out of order, and exchanges after which rules would not go together."""
+        """Refuse entries out of order, and exchanges after which rules could not be combined."""
         given = choices[Problem.MM].parameters
         assert isinstance(given, ScheduledParameters)
         shares = [entry.at_share for entry in given.exchanges]

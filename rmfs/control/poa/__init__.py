@@ -1,4 +1,4 @@
-"""Pick order assignment (POA): which order of the backlog goes to which pick station, and when."""
+"""Pick order assignment (POA): which order goes to which pick station, and when."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ P = TypeVar("P", bound=Parameters)
 
 
 class PickOrderAssignment(Controller[P]):
-    """Chooses orders of `view.orders` for stations with free slots.
+    """Assigns orders of `view.orders` to stations with free slots.
 
-    Each decision is applied at once: when the controller is resumed, the order has left the
-    backlog and taken its slot. Orders it does not choose wait until it is asked again. It may also
-    queue orders at a station, so that pods are fetched for them before a slot is free.
+    Each decision is applied at once: when the controller is resumed, the order has left the backlog
+    and occupies its slot. Orders that are not chosen wait until the next call. A controller may
+    also queue orders at a station, so that pods are fetched for them before a slot is free.
     """
 
     problem = Problem.POA
@@ -38,4 +38,4 @@ class PickOrderAssignment(Controller[P]):
 
     @abstractmethod
     def decide(self) -> Iterator[AssignOrder | AssignLines | QueueOrder | Ask[Any] | By[Any]]:
-        """Yield an order and a station, again and again, until nothing is to be assigned now."""
+        """Yield pairs of order and station until nothing should be assigned now."""

@@ -1,4 +1,4 @@
-"""Orders that compete for one station, as the criteria of POA queue see them."""
+"""Orders that compete for one station, as seen by the criteria of POA queue."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class Contest:
     Attributes
     ----------
     rows
-        Their rows in the backlog, shape (N,).
+        Rows of the orders in the backlog, shape (N,).
     for_pool
         Whether they compete for the pool; otherwise for a slot.
     sku, units
-        Of each line, units not yet bound to a pod, shape (N, L).
+        SKU and units of each line that are not yet bound to a pod, shape (N, L).
     """
 
     def __init__(
@@ -48,16 +48,16 @@ class Contest:
     def of(
         cls, view: View, station: PickStation, rows: NDArray[np.intp], *, for_pool: bool
     ) -> Contest:
-        """Let the orders of some rows compete."""
+        """Return the contest of the orders in some rows."""
         orders = view.orders
         return cls(view, station, rows, for_pool, orders.sku[rows], orders.units[rows])
 
     def at(self, station: PickStation) -> Contest:
-        """Let the same orders compete for another station."""
+        """Return a contest of the same orders for another station."""
         return Contest(self.view, station, self.rows, self.for_pool, self.sku, self.units)
 
     def narrowed(self, to: NDArray[np.bool_]) -> Contest:
-        """Keep only some of the orders."""
+        """Return a contest of some of the orders."""
         sku, units = self.sku[to], self.units[to]
         return Contest(self.view, self.station, self.rows[to], self.for_pool, sku, units)
 
@@ -70,14 +70,14 @@ class Contest:
         return [at_row[row] for row in self.rows.tolist()]
 
     def claimed(self) -> NDArray[np.int32]:
-        """Units that other orders wait for here, shape (K,): those with a slot come first."""
+        """Units needed here by other orders, shape (K,): those with a slot come first."""
         claimed: NDArray[np.int32] = self.view.need[self.station.index]
         if self.for_pool:
             claimed = claimed + self.view.queued_need[self.station.index]
         return claimed
 
     def company(self) -> NDArray[np.bool_]:
-        """SKUs that the orders wanted which these are to join, in the pool or on slots, (K,)."""
+        """Whether an order already in the pool, or on a slot, wants each SKU, shape (K,)."""
         wanted = np.zeros(len(self.view.skus), np.bool_)
         if self.for_pool:
             wanted[[line.sku for o in self.station.queued.values() for line in o.lines]] = True
@@ -88,7 +88,8 @@ class Contest:
     def inbound(self) -> tuple[list[int], NDArray[np.float64]]:
         """Pods on their way to the station, the nearest first, and their distances, m.
 
-        Distances are of the shortest way for a loaded robot from where the pod is now.
+        The distance is that of the shortest path for a loaded robot from the pod's current
+        position.
         """
         pods = list(self.station.tasks)
         far = self.view.travel.distances_to(self.station.waypoint, "path")
@@ -97,9 +98,10 @@ class Contest:
         return [pods[place] for place in nearest_first.tolist()], metres[nearest_first]
 
     def completed_by(self, pod: int) -> NDArray[np.bool_]:
-        """Orders that a pod on its way here completes, shape (N,).
+        """Whether each order is completed by a pod on its way to the station, shape (N,).
 
-        It has to have all their open units to spare, and no other pod may be bound to them.
+        The pod must have all open units of the order to spare, and no other pod may be bound to the
+        order.
         """
         spare = self.view.inventory.available[:, pod][self.sku]
         spare = spare - self.view.need[self.station.index][self.sku]
@@ -112,7 +114,7 @@ class Contest:
         return completes
 
     def completed_by_all(self) -> NDArray[np.bool_]:
-        """Orders that the pods on their way here complete together, shape (N,)."""
+        """Whether each order is completed by all pods on their way together, shape (N,)."""
         spare = self.view.inventory.inbound[self.station.index][self.sku]
         spare = spare - self.claimed()[self.sku]
         return np.asarray(((spare >= self.units) | (self.units == 0)).all(axis=1))

@@ -1,4 +1,4 @@
-"""Criteria of POA queue, of which a file chooses and sets some: the highest score wins."""
+"""Criteria of POA queue; a file selects and configures some. The highest score wins."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class DueSoon(Parameters):
 
     criterion: Literal["due-soon"] = "due-soon"
     within_s: Annotated[float, pydantic.Field(ge=0)] = 600.0
-    """So soon."""
+    """An order counts as due soon if it is due within this many seconds, or already late."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
         """1 for orders due soon, else 0."""
@@ -79,11 +79,11 @@ class Weight(Parameters):
 
 
 class FirstWave(Parameters):
-    """Orders of the first wave: those that are due together with the first one."""
+    """Orders of the first wave: those due together with the earliest one."""
 
     criterion: Literal["wave"] = "wave"
     wave_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Orders due within so many seconds of the first one are of its wave."""
+    """Orders due within this many seconds of the earliest one belong to its wave."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
         """1 for orders of the first wave and for those that are late, else 0."""
@@ -95,14 +95,14 @@ class FirstWave(Parameters):
 
 
 class Size(Parameters):
-    """The largest order."""
+    """Prefers the largest order."""
 
     criterion: Literal["size"] = "size"
     count: Literal["units", "lines"] = "units"
-    """What is counted."""
+    """Whether size is counted in units or in lines."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Units, or lines, ordered."""
+        """Number of units, or of lines."""
         if self.count == "lines":
             sizes = [len(order.lines) for order in contest.orders()]
         else:
@@ -115,7 +115,8 @@ class Completable(Parameters):
 
     criterion: Literal["completable"] = "completable"
     by: Literal["nearest-pod", "all-pods"] = "nearest-pod"
-    """Which pods: the nearest alone, no other being bound to the order, or all of them together."""
+    """Which pods: the nearest alone, if no other pod is bound to the order, or all pods
+    together."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
         """1 for completable orders, else 0."""
@@ -126,16 +127,17 @@ class Completable(Parameters):
 
 
 class InboundMatches(Parameters):
-    """Most units on pods on their way to the station, near pods counting more.
+    """Orders with the most units on pods on their way to the station; near pods count more.
 
-    An order takes its units from the nearest pods that have them to spare. Each pod and SKU it
-    takes any from gives a point; if units times metres are at most `near_unit_metres`, it gives as
-    many points as there are pods, less one for each pod that is nearer.
+    An order takes its units from the nearest pods that can spare them. Each pair of a pod and a SKU
+    taken from it scores one point. If units times metres are at most `near_unit_metres`, it scores
+    as many points as there are pods, minus one for each pod that is nearer. many points as there
+    are pods, less one for each pod that is nearer.
     """
 
     criterion: Literal["inbound-matches"] = "inbound-matches"
     near_unit_metres: Annotated[float, pydantic.Field(ge=0)] = 10.0
-    """Up to which product of units and metres a pod counts as near."""
+    """Product of units and metres up to which a pod counts as near."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
         """Sum of points."""
@@ -163,14 +165,14 @@ class InboundMatches(Parameters):
 
 
 class Related(Parameters):
-    """Most SKUs in common with the orders it is to join."""
+    """Orders with the most SKUs in common with the orders they would join."""
 
     criterion: Literal["related"] = "related"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Share of the lines without pod whose SKU an order in the pool, or on a slot, wants too.
+        """Share of the lines without a pod whose SKU another order also needs.
 
-        Which of the two depends on what the order is chosen for.
+        The other orders are those in the pool, or on slots, whichever the order is chosen for.
         """
         is_line = contest.units > 0
         shared = contest.company()[contest.sku] & is_line
@@ -179,7 +181,7 @@ class Related(Parameters):
 
 
 def _by_name(value: Any) -> Any:
-    """Let a plain name stand for a criterion with its defaults."""
+    """Accept a plain name as a criterion with default parameters."""
     return {"criterion": value} if isinstance(value, str) else value
 
 
@@ -205,19 +207,19 @@ def best(
     rng: np.random.Generator,
     first: list[Scores] | None = None,
 ) -> tuple[Contest, int] | None:
-    """Find the order that wins by the first criterion, among equals by the second, and so on.
+    """Find the order that wins by the first criterion, then by the second, and so on.
 
-    Full ties: the order that arrived first, then the contest named first.
+    Full ties go to the order that arrived first, then to the first contest.
 
     Parameters
     ----------
     first
-        The scores of all orders by the first criterion, if they are known.
+        Scores of all orders by the first criterion, if already known.
 
     Returns
     -------
     tuple or None
-        The contest of the winner and its row in the backlog; None if nobody competes.
+        Contest of the winner and its row in the backlog; None if there are no orders.
     """
     left = [contest for contest in contests if len(contest)]
     for number, criterion in enumerate(criteria):

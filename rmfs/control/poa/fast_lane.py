@@ -1,4 +1,4 @@
-"""Fast lane: orders that the pod being served at a station can complete all by itself."""
+"""Fast lane: orders that the pod being served at a station can complete alone."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class _Visit:
-    """What is known about one pod at one station.
+    """State of one pod's visit to a station.
 
-    A pod that is being served only loses units, so an order it could not complete is not looked at
-    again during the visit.
+    A pod that is being served only loses units, so an order that it cannot complete need not be
+    checked again during the visit.
 
     Attributes
     ----------
     number
-        Which visit of the station it is.
+        Number of the visit at the station.
     newest
-        Index of the newest order looked at.
+        Index of the newest order that was checked.
     fitting
-        Orders it could complete, by index.
+        Orders that it can complete, by index.
     """
 
     number: int
@@ -37,21 +37,21 @@ class _Visit:
     fitting: dict[int, Order] = field(default_factory=dict)
 
     def begin(self, number: int, newest: int) -> None:
-        """Know nothing yet of another pod."""
+        """Reset the state for another pod."""
         self.number, self.newest = number, newest
         self.fitting.clear()
 
 
 class FastLane:
-    """Assigns orders of the backlog to the station where their pod stands.
+    """Assigns orders of the backlog to stations whose current pod can complete them.
 
-    The order with the lowest rank comes first; stations in their order. Units that orders assigned
-    before are to get from the pod are not counted twice.
+    Orders come in order of rank, stations in order of number. Units of the pod that are needed by
+    previously assigned orders are not counted again.
 
     Parameters
     ----------
     rank
-        Gives the key by which orders compete; the smallest wins.
+        Returns the key by which orders compete; the smallest wins.
     """
 
     def __init__(self, view: View, rank: Callable[[Order], tuple[float, int]]) -> None:
@@ -64,7 +64,7 @@ class FastLane:
         self._newest = -1
 
     def decide(self) -> Iterator[AssignOrder]:
-        """Yield until no pod that is being served can complete an order."""
+        """Yield assignments until no pod that is being served can complete another order."""
         for index in self._promising():
             station, fitting = self._view.pick_stations[index], self._visits[index].fitting
             pod = self._view.robots[station.robot].pod
@@ -76,9 +76,9 @@ class FastLane:
                 yield AssignOrder(order, index)
 
     def _promising(self) -> list[int]:
-        """Stations whose pod may complete an order that has a slot there, ascending.
+        """Return stations with a free slot whose pod may complete an order, ascending.
 
-        Only stations with news are looked at, unless there are new orders.
+        Only stations with news are checked, unless there are new orders.
         """
         newest = next(reversed(self._view.orders.orders), -1)
         changed, serving = self._news.take(), self._serving
@@ -95,12 +95,12 @@ class FastLane:
         return sorted(i for i in self._hopeful if i in serving and self._visits[i].fitting)
 
     def _look(self, index: int, newest: int, new: dict[int, list[Order]]) -> None:
-        """Find orders that the pod at a station can complete, among all or among new ones.
+        """Find orders that the pod at a station can complete, among all orders or the new ones.
 
         Parameters
         ----------
         new
-            Orders that came after one of an index, as far as they have been looked up.
+            Orders newer than a given index, where already looked up.
         """
         station, visit = self._view.pick_stations[index], self._visits[index]
         pod = self._view.robots[station.robot].pod
@@ -119,7 +119,7 @@ class FastLane:
             self._hopeful.discard(index)
 
     def _forget_lost(self, fitting: dict[int, Order], station: int, pod: int) -> None:
-        """Forget orders that have gone elsewhere or that the pod can complete no more."""
+        """Drop orders that have been assigned elsewhere or that the pod can no longer complete."""
         backlog = self._view.orders.orders
         for index, order in list(fitting.items()):
             if index not in backlog or not self._completes(pod, order, station):
@@ -144,6 +144,6 @@ class FastLane:
                 visit.fitting[order.index] = order
 
     def _completes(self, pod: int, order: Order, station: int) -> bool:
-        """Whether the pod has all units of the order beyond what its station needs already."""
+        """Whether the pod has all units of the order beyond what its station already needs."""
         available, need = self._view.inventory.available.item, self._view.need[station].item
         return all(available(line.sku, pod) - need(line.sku) >= line.units for line in order.lines)

@@ -1,4 +1,4 @@
-"""Filling free slots order by order: what most POA rules have in common."""
+"""Filling free slots order by order: shared by most POA rules."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ class FastLaneParameters(Parameters):
     """Parameters of POA rules with a fast lane."""
 
     fast_lane: bool = False
-    """Whether one slot of each station is kept for orders that the pod being served there can
+    """Whether one slot of each station is reserved for orders that the pod being served there can
     complete."""
     fast_lane_tie_breaker: TieBreaker = "due-time"
-    """Which of several such orders: earliest due time, earliest arrival, or any."""
+    """Tie-breaker among such orders: earliest due time, earliest arrival, or random."""
 
 
 P = TypeVar("P", bound=Parameters)
 
 
 class Filling(PickOrderAssignment[P]):
-    """Assigns orders to free slots, one after the other.
+    """Assigns orders to free slots, one after another.
 
-    The fast lane, for rules that have it, comes first. The slot that is kept for it at stations
-    with more than one is free for nothing else. Stock can serve an order if it is there and no
-    order at a station waits for it.
+    The fast lane, for rules that have one, comes first; its reserved slot, at stations with more
+    than one, is used for nothing else. Stock can serve an order if all its units are in stock and
+    not needed by an order at a station.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -57,16 +57,16 @@ class Filling(PickOrderAssignment[P]):
 
     @abstractmethod
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose an order of the backlog that stock can serve, and one of these stations.
+        """Choose an order of the backlog that stock can serve, and one of the given stations.
 
         Parameters
         ----------
         stations
-            At least one station, each with a slot to be filled; ascending.
+            Stations with a slot to fill, ascending; at least one.
         """
 
     def decide(self) -> Iterator[AssignOrder]:
-        """Yield orders for the fast lane, then orders for the other slots while there are any."""
+        """Yield orders for the fast lane, then orders for the other slots."""
         if self._lane is not None:
             yield from self._lane.decide()
         while len(self.view.orders):
@@ -77,7 +77,7 @@ class Filling(PickOrderAssignment[P]):
             yield chosen
 
     def _stations_to_fill(self) -> list[PickStation]:
-        """Stations with a slot to be filled, ascending; only those with news are looked at."""
+        """Stations with a slot to fill, ascending; only those with news are checked."""
         stations, to_fill = self.view.pick_stations, self._to_fill
         for index in self._news.take():
             station = stations[index]
@@ -88,10 +88,10 @@ class Filling(PickOrderAssignment[P]):
         return [stations[index] for index in sorted(to_fill)]
 
     def servable_rows(self) -> NDArray[np.intp]:
-        """Rows of the backlog whose orders the stock can serve."""
+        """Rows of the backlog whose orders stock can serve."""
         return self.view.orders.servable(self.view.inventory.free_stock).nonzero()[0]
 
     def oldest_order(self) -> Order | None:
-        """Find the order that came first among those that stock can serve."""
+        """Find the earliest order that stock can serve."""
         orders, rows = self.view.orders, self.servable_rows()
         return orders.at_row[rows[orders.index[rows].argmin()]] if len(rows) else None

@@ -1,4 +1,4 @@
-"""POA foresight: pairs of station and order by two scores of one's choice."""
+"""POA foresight: the best pair of station and order by a primary and a secondary score."""
 
 from __future__ import annotations
 
@@ -25,19 +25,20 @@ class ForesightParameters(Parameters):
     """Parameters of POA foresight."""
 
     score: Score = "matches"
-    """What counts: units that spare stock on inbound pods can serve (`matches`); one more for each
-    line of which an inbound pod has exactly the units wanted (`depletion`), or at least these
-    (`surplus`); or how early the order is due (`due-time`)."""
+    """Primary score: units that spare stock on inbound pods can serve (`matches`); the same plus
+    one for each line for which an inbound pod has exactly the units needed (`depletion`) or at
+    least these (`surplus`); or earliness of the due time (`due-time`)."""
     tie_breaker: Score = "due-time"
-    """What counts among pairs with the same score."""
+    """Secondary score, used in a tie."""
 
 
 class Foresight(Filling[ForesightParameters]):
     """Assigns the pair of station and order with the highest score, then the next.
 
-    Ties: the second score, then the station with most free slots, then the order that arrived
-    first, then the station with the lowest number. Scores of matches count an available unit for
-    one order only; the two bonuses look at each pod by itself, whatever else is wanted of it.
+    Ties are broken by the second score, then by the station with most free slots, the order that
+    arrived first, and the station with the lowest number. In the scores, each available unit is
+    counted for one order only; the two bonuses consider each pod separately, regardless of other
+    demand for its units.
     """
 
     parameters_model = ForesightParameters
@@ -48,7 +49,7 @@ class Foresight(Filling[ForesightParameters]):
         rows = self.servable_rows()
         if not len(rows):
             return None
-        # the first of equals is wanted: order rows and columns accordingly
+        # the first of equals wins, so order rows and columns accordingly
         rows = rows[orders.index[rows].argsort()]
         stations = sorted(stations, key=lambda station: -station.free_slots)
         scores = self._scores(self.parameters.score, stations)[:, rows]
@@ -68,7 +69,7 @@ class Foresight(Filling[ForesightParameters]):
         return units if score == "matches" else units + self._bonus(stations, score == "depletion")
 
     def _bonus(self, stations: list[PickStation], exactly: bool) -> NDArray[np.int64]:
-        """Lines of each order for which some inbound pod has exactly, or at least, what is wanted.
+        """Count lines for which some inbound pod has exactly, or at least, the units needed.
 
         Returns
         -------
@@ -80,7 +81,7 @@ class Foresight(Filling[ForesightParameters]):
         bonus = np.zeros((len(stations), len(orders)), np.int64)
         for scores, station in zip(bonus, stations, strict=True):
             if station.tasks:
-                # what all pods together do not have, none of them has
+                # what all pods together lack, no single pod has
                 enough = inventory.inbound[station.index][orders.sku] >= orders.units
                 row, column = (enough & (orders.units > 0)).nonzero()
                 wanted = orders.units[row, column][:, None]

@@ -1,4 +1,4 @@
-"""POA linear: the order and station whose features have the greatest weighted sum."""
+"""POA linear: the pair of order and station with the greatest weighted sum of features."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ class LinearParameters(FastLaneParameters):
     """Parameters of POA linear."""
 
     fast_lane: bool = True
-    """Whether one slot of each station is kept for orders that the pod being served there can
+    """Whether one slot of each station is reserved for orders that the pod being served there can
     complete."""
     weights: Weights = pydantic.Field(default_factory=lambda: default_weights("poa"))
-    """Of the features of a pair of order and station, scaled (docs: learning)."""
+    """Weights of the scaled features of a pair of order and station (see the page on learning)."""
 
     @pydantic.field_validator("weights")
     @classmethod
@@ -36,8 +36,8 @@ class LinearParameters(FastLaneParameters):
 class Linear(Filling[LinearParameters]):
     """Fills free slots, each time with the best pair of a station and an order in stock.
 
-    The fast lane, unless it is switched off, comes first. Full ties: the order that came first,
-    then the station with the lowest number.
+    The fast lane, unless switched off, comes first. Full ties go to the order that arrived first,
+    then to the station with the lowest number.
     """
 
     parameters_model = LinearParameters

@@ -1,4 +1,4 @@
-"""POA lines-in-common: the order that wants most of what orders at a station want."""
+"""POA lines-in-common: the order with the most SKUs in common with orders at a station."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 class LinesInCommon(BestPair[PairParameters]):
-    """Puts orders together that want the same SKUs, whichever order and station fit best.
+    """Groups orders for the same SKUs, by the best pair of order and station.
 
-    The score of a pair of order and station is the sum, over the lines of the order, of the number
-    of orders at the station with a line for the same SKU, picked or not. The pair with the highest
-    score is assigned, until no slot is free. Ties: the tie-breaker, then the order that arrived
-    first, then the station with the lowest number.
+    The score of a pair is the sum, over the lines of the order, of the number of orders at the
+    station with a line for the same SKU, picked or not. The pair with the highest score is assigned
+    until no slot is free. Ties are broken by the tie-breaker, then by arrival, then by station
+    number.
     """
 
     parameters_model = PairParameters

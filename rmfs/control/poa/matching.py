@@ -1,4 +1,4 @@
-"""How well orders match the pods that are on their way to a station."""
+"""How well orders match the pods on their way to a station."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 def line_matches(view: View, station: int) -> NDArray[np.int32]:
     """Units of each order line that spare stock on inbound pods can serve, shape (B, L).
 
-    Spare is what is available there and what open requests of the station do not wait for, so
-    that an available unit counts for one order only.
+    Spare stock is what is available there beyond the open requests of the station, so that an
+    available unit counts for one order only.
     """
     orders = view.orders
     by_sku: NDArray[np.int32] = view.inventory.inbound[station] - view.need[station]

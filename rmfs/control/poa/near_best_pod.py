@@ -1,4 +1,4 @@
-"""POA near-best-pod: orders as they came, each to where the pod that serves it best is near."""
+"""POA near-best-pod: orders by arrival, each to the station nearest to its best pod."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ class NearBestPodParameters(Parameters):
     """Parameters of POA near-best-pod."""
 
     metric: Metric = "path"
-    """How the distance from pod to station is measured: in a straight line, along the axes, by the
-    shortest way of a loaded robot, or by its time."""
+    """Distance from pod to station: Euclidean, Manhattan, length of the shortest path of a loaded
+    robot, or its travel time."""
 
 
 class NearBestPod(Filling[NearBestPodParameters]):
-    """Sends an order to where the pod that serves it best is near.
+    """Sends an order to the station nearest to the pod that serves it best.
 
-    Orders are taken as they came; one that stock cannot serve is passed over. The best pods are
-    those, among the stored ones, with most units available for the order; the station nearest to
-    any of them gets it. Ties: the station with the lowest number. If no stored pod has a unit of
-    it, the station with the fewest open orders gets it.
+    Orders are taken by arrival; those that stock cannot serve are skipped. The best pods are the
+    stored pods with the most units available for the order; the station nearest to any of them is
+    chosen. Ties go to the station with the lowest number. If no stored pod has a unit of the order,
+    the station with the fewest open orders is chosen.
     """
 
     parameters_model = NearBestPodParameters
@@ -54,7 +54,7 @@ class NearBestPod(Filling[NearBestPodParameters]):
         return AssignOrder(order, nearest.index)
 
     def _best_pods(self, order: Order) -> NDArray[np.intp]:
-        """Find the stored pods with most units of an order; none if no pod has any."""
+        """Find the stored pods with the most units of an order; none if no pod has any."""
         skus = [line.sku for line in order.lines]
         wanted = np.array([[line.units] for line in order.lines], np.int32)
         units = np.minimum(self.view.inventory.available[skus], wanted).sum(axis=0)

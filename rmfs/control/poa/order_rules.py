@@ -1,4 +1,4 @@
-"""POA rules that choose the order first, and then, whatever it contains, a station."""
+"""POA rules that choose an order first and then a station, whatever the order contains."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
     from rmfs.world.stations import PickStation
 
 _DRAWS = 8
-"""Orders drawn from the backlog before those that can be served are looked up."""
+"""Random draws from the backlog before the orders that can be served are looked up."""
 
 
 class OrderRuleParameters(FastLaneParameters):
     """Parameters of POA rules that choose the order first."""
 
     station: Literal["random", "least-busy", "most-busy"] = "random"
-    """Which of several stations with a free slot: any, or the one with the lowest or highest share
-    of its slots taken, ties by number."""
+    """Choice among stations with a free slot: random, or the lowest or highest share of occupied
+    slots, ties by number."""
     stick_to_station: bool = False
-    """Whether the last station is taken again while it has a free slot, the one kept for the fast
-    lane apart."""
+    """Whether the last station is chosen again while it has a free slot other than the one reserved
+    for the fast lane."""
 
 
 class OrderRule(Filling[OrderRuleParameters]):
@@ -68,7 +68,7 @@ class OrderRule(Filling[OrderRuleParameters]):
 
 
 class RandomOrder(OrderRule):
-    """Fills free slots with orders drawn at random.
+    """Fills free slots with random orders.
 
     Source: rule "Default" of RAWSim-O with random order.
     """
@@ -86,21 +86,21 @@ class RandomOrder(OrderRule):
 
 
 class FirstCome(OrderRule):
-    """Fills free slots with orders as they came.
+    """Fills free slots with orders by arrival.
 
-    An order that stock cannot serve is passed over. Source: rules "Default" with first come, first
+    Orders that stock cannot serve are skipped. Source: rules "Default" with first come, first
     served, and "Random" of RAWSim-O.
     """
 
     def choose_order(self) -> Order | None:
-        """Choose the order that came first."""
+        """Choose the order that arrived first."""
         return self.oldest_order()
 
 
 class DueTime(OrderRule):
-    """Fills free slots with the orders that are due first.
+    """Fills free slots with orders by due time.
 
-    Ties: the order that came first. Source: rule "Default" of RAWSim-O with due time.
+    Ties go to the order that arrived first. Source: rule "Default" of RAWSim-O with due time.
     """
 
     def choose_order(self) -> Order | None:
@@ -113,16 +113,16 @@ class DueTime(OrderRule):
 
 
 class WorkParameters(OrderRuleParameters):
-    """Parameters of POA rules that go by the time left and the work to be done in it."""
+    """Parameters of POA rules that compare the time left with the work to be done."""
 
     line_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 60.0
-    """Seconds of work of an order line: until its pod is there."""
+    """Work per order line in seconds: the time until its pod arrives."""
     unit_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 10.0
-    """Seconds of work of a unit."""
+    """Work per unit in seconds."""
 
 
 class _ByWork(OrderRule):
-    """Chooses by due time and work; of the same score, the order that came first."""
+    """Chooses by due time and work; ties go to the order that arrived first."""
 
     parameters_model = WorkParameters
 
@@ -133,7 +133,7 @@ class _ByWork(OrderRule):
         work_s: NDArray[np.float64],
         weight: NDArray[np.float64],
     ) -> NDArray[np.float64]:
-        """Return a score of each order, the smaller the sooner."""
+        """Return the score of each order; the smallest comes first."""
 
     def choose_order(self) -> Order | None:
         """Choose the order with the smallest score."""
@@ -153,8 +153,8 @@ class _ByWork(OrderRule):
 class Slack(_ByWork):
     """Fills free slots with the orders that have the least slack.
 
-    Slack: time until an order is due, less its work (`line_s`, `unit_s`). Ties: the order that came
-    first. Source: the rule of least slack in job shops (Panwalkar, Iskander 1977).
+    Slack is the time until an order is due minus its work (`line_s`, `unit_s`). Ties go to the
+    order that arrived first. Source: the least-slack rule of job shops (Panwalkar, Iskander 1977).
     """
 
     def _scores(
@@ -167,11 +167,11 @@ class Slack(_ByWork):
 
 
 class CriticalRatio(_ByWork):
-    """Fills free slots with the orders that have the least time left per work.
+    """Fills free slots with the orders that have the least time left relative to their work.
 
-    Ratio: time until an order is due / its work (`line_s`, `unit_s`); less than 1 cannot be kept.
-    Orders by slack per remaining work come in the same order, as that is the ratio less 1. Ties:
-    the order that came first. Source: the same survey.
+    The ratio is the time until an order is due, divided by its work (`line_s`, `unit_s`); an order
+    below 1 will be late. Slack per remaining work, which is this ratio minus 1, gives the same
+    sequence. Ties go to the order that arrived first. Source: Panwalkar, Iskander (1977).
     """
 
     def _scores(
@@ -187,16 +187,17 @@ class TardinessCostParameters(WorkParameters):
     """Parameters of POA tardiness-cost."""
 
     ahead: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 2.0
-    """Mean works of the waiting orders over which urgency falls by the factor e: how far ahead the
-    rule looks."""
+    """Look-ahead of the rule: the slack over which urgency falls by the factor e, in multiples of
+    the mean work of the waiting orders."""
 
 
 class TardinessCost(_ByWork):
-    """Fills free slots with the orders whose lateness would cost most per work.
+    """Fills free slots with the orders whose lateness would be most costly relative to their work.
 
-    Cost: weight of the order's class / its work x exp(-slack / (`ahead` x mean work of the orders
-    that can be served)), with a slack (`line_s`, `unit_s`) of 0 at least. Ties: the order that came
-    first. Source: apparent tardiness cost (Vepsalainen, Morton 1987), with their `ahead` of 2.
+    The index is the weight of the order's class / its work x exp(-slack / (`ahead` x mean work of
+    the orders that can be served)), where slack (`line_s`, `unit_s`) is at least 0. Ties go to the
+    order that arrived first. Source: apparent tardiness cost (Vepsalainen, Morton 1987), with their
+    `ahead` of 2.
     """
 
     parameters_model = TardinessCostParameters
@@ -211,18 +212,18 @@ class TardinessCost(_ByWork):
         assert isinstance(given, TardinessCostParameters)
         work_s = np.maximum(work_s, 1e-9)
         slack_s = np.maximum(left_s - work_s, 0.0)
-        # as a logarithm, which does not vanish however much slack there is
+        # as a logarithm, which does not underflow for large slack
         scores: NDArray[np.float64] = slack_s / (given.ahead * work_s.mean())
         return scores - np.log(weight / work_s)
 
 
 class FrequencyAge(OrderRule):
-    """Fills free slots with old orders for SKUs that are ordered often.
+    """Fills free slots with old orders for frequently ordered SKUs.
 
-    The order with the highest product of age and frequency comes first. Age: 1 for the oldest order
-    of the backlog, 1/B less for each of the B orders that came before. Frequency: mean over its
-    lines of the units ordered of the SKU, past orders included. Ties: the order that came first.
-    Source: rule "Default" of RAWSim-O with frequency and age.
+    The order with the highest product of age and frequency comes first. Age is 1 for the oldest
+    order of the backlog and decreases by 1/B for each of the B orders. Frequency is the mean over
+    its lines of the units ordered of the SKU, including past orders. Ties go to the order that
+    arrived first. Source: rule "Default" of RAWSim-O with frequency and age.
     """
 
     def __init__(
@@ -242,7 +243,7 @@ class FrequencyAge(OrderRule):
         age[by_arrival] = np.arange(len(by_arrival), 0, -1)
         is_line = orders.units > 0
         frequency = (self._frequency.units[orders.sku] * is_line).sum(axis=1)
-        # up to here in whole numbers; factors that all orders share are left out
+        # integers up to here; factors common to all orders are left out
         scores = (age * frequency / is_line.sum(axis=1))[rows]
         best = rows[scores == scores.max()]
         return orders.at_row[first_row(best, orders, "first-come", self.draw)]

@@ -1,4 +1,4 @@
-"""Scoring all pairs of station and order: what POA rules that do so have in common."""
+"""Scoring of all pairs of station and order: shared by several POA rules."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ class PairParameters(FastLaneParameters):
     """Parameters of POA rules that score pairs."""
 
     tie_breaker: TieBreaker = "due-time"
-    """Which of several orders with the same score: earliest due time, earliest arrival, or any."""
+    """Tie-breaker among orders with the same score: earliest due time, earliest arrival, or
+    random."""
 
 
 Q = TypeVar("Q", bound=PairParameters)
@@ -29,12 +30,12 @@ Q = TypeVar("Q", bound=PairParameters)
 class BestPair(Filling[Q]):
     """Assigns the pair of station and order with the highest score, then the next.
 
-    Ties: the tie-breaker, then the order that came first, then the station with the lowest number.
+    Ties are broken by the tie-breaker, then by arrival, then by station number.
     """
 
     @abstractmethod
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Score each order at each station with numbers from 0 on, shape (S, B)."""
+        """Return nonnegative scores of each order at each station, shape (S, B)."""
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
         """Choose the best pair of a servable order and a station."""

@@ -1,4 +1,4 @@
-"""POA picker-load: orders as they came, to the picker who will be done with everything first."""
+"""POA picker-load: orders by arrival, to the picker who will finish all work first."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ class PickerLoadParameters(Parameters):
     """Parameters of POA picker-load."""
 
     fatigue_weight: Annotated[float, pydantic.Field(ge=0, le=100)] = 0.0
-    """Share by which the work of a picker at fatigue 1 counts more than its time says; evenly less
-    below. 0: only time counts; at 100 the tired get nothing while others have slots."""
+    """Share by which fatigue 1 increases the weight of a picker's work, in proportion below. 0:
+    only time counts; 100: tired pickers get nothing while others have slots."""
 
 
 class PickerLoad(Filling[PickerLoadParameters]):
-    """Balances work over pickers: who is slow, or tired, gets fewer units.
+    """Balances work over pickers: slow or tired pickers get fewer units.
 
-    Orders are taken as they came; one that stock cannot serve is passed over. It goes to the
-    station where the units of all open orders, this one among them, take its picker the least time
-    now: speed, learning and fatigue count. Stations without a picker come last. Without pickers in
-    the scenario units take the times of the layout. Ties: the lowest number.
+    Orders are taken by arrival; those that stock cannot serve are skipped. An order goes to the
+    station whose picker currently needs the least time for the units of all open orders there,
+    including this one; speed, learning and fatigue count. Stations without a picker come last. In
+    scenarios without pickers, units take the times of the layout. Ties go to the lowest number.
     """
 
     parameters_model = PickerLoadParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the order that came first, and a station by the work of its picker."""
+        """Choose the order that arrived first, and a station by the work of its picker."""
         order = self.oldest_order()
         if order is None:
             return None
@@ -49,7 +49,7 @@ class PickerLoad(Filling[PickerLoadParameters]):
         return AssignOrder(order, min(stations, key=work).index)
 
     def _unit_s(self, station: PickStation) -> float:
-        """Return what a unit counts at a station, in s."""
+        """Return the weighted time of a unit at a station, in s."""
         view, staff = self.view, self.view.staff
         if staff is None:
             return view.layout.pick_stations[station.index].unit_transfer_s

@@ -1,4 +1,4 @@
-"""POA queue: every station has a pool of orders, from which its slots are filled."""
+"""POA queue: every station has a pool of orders from which its slots are filled."""
 
 from __future__ import annotations
 
@@ -39,33 +39,33 @@ class QueueParameters(Parameters):
     """Parameters of POA queue."""
 
     queue_length: Annotated[int, pydantic.Field(ge=1)] = 20
-    """Orders in the pool of each station; no other station can have them, so all pools together
-    should hold clearly less than the backlog."""
+    """Maximum number of orders in the pool of each station. Other stations cannot take them, so all
+    pools together should hold clearly less than the backlog."""
     queue_criteria: Criteria = (InboundMatches(), Related(), DueTime())
-    """Which order joins which pool, the first criterion counting most."""
+    """Criteria for choosing which order joins which pool, in order of priority."""
     station_criteria: Criteria = (DueSoon(), Completable(), Completable(by="all-pods"))
-    """Which order of its pool a station takes."""
+    """Criteria for choosing which order of its pool a station takes."""
     fast_lane: bool = True
-    """Whether one slot of each station is kept for orders that the pod being served there can
+    """Whether one slot of each station is reserved for orders that the pod being served there can
     complete."""
     fast_lane_criteria: Criteria = (Size(), DueTime(), FirstCome())
-    """Which of several such orders."""
+    """Criteria for choosing among such orders."""
 
 
 class Queue(PickOrderAssignment[QueueParameters]):
-    """Assigns orders in two steps: to the pool of a station first, to one of its slots later.
+    """Assigns orders in two steps: first to the pool of a station, later to one of its slots.
 
     1. Pools are filled with orders that stock can serve, pair by pair of station and order. Pods
-       may be fetched for the orders of a pool, and bound to them, before they have a slot (PPS).
-    2. Fast lane: at each station with a free slot and a pod at its head, orders of the pool that
-       this pod completes get a slot; if there are none, orders that are in no pool.
-    3. Each station takes an order of its pool that stock can serve, if a slot is free besides the
-       one kept for the fast lane; then each another, and so on.
+    may be fetched for the orders of a pool, and bound to them, before they have a slot (PPS).
+    2. Fast lane: at each station with a free slot and a pod at its head, orders that this pod
+    completes get a slot: orders of the pool or, if there are none, orders in no pool.
+    3. In turn, each station with a free slot besides the one reserved for the fast lane takes an
+    order of its pool that stock can serve, until none can.
 
-    Then pools are filled up, until nothing is left to do. Only stations that are switched on have a
-    pool; an available unit counts for one order only. Full ties: the order that arrived first, then
-    the station with the lowest number. It is also asked when a pod reaches the head of a queue, so
-    that a pod fetched for the pool finds its orders on slots.
+    Then pools are filled up again, until nothing changes. Only active stations have a pool; each
+    available unit counts for one order only. Full ties go to the order that arrived first, then to
+    the station with the lowest number. The rule is also asked when a pod reaches the head of a
+    queue, so that a pod fetched for the pool finds its orders on slots.
     """
 
     parameters_model = QueueParameters
@@ -78,7 +78,7 @@ class Queue(PickOrderAssignment[QueueParameters]):
         ]
 
     def decide(self) -> Iterator[AssignOrder | QueueOrder]:
-        """Yield as described above."""
+        """Yield decisions as described above."""
         for station in self.view.pick_stations:
             if not station.active:
                 for order in list(station.queued.values()):
@@ -96,7 +96,7 @@ class Queue(PickOrderAssignment[QueueParameters]):
     # --- pools ----------------------------------------------------------------------------------
 
     def _fill_pools(self) -> Iterator[QueueOrder]:
-        """Let orders join pools, pair by pair."""
+        """Assign orders to pools, pair by pair."""
         orders, length = self.view.orders, self.parameters.queue_length
         stations = [s for s in self.view.pick_stations if s.active and len(s.queued) < length]
         if not stations:
@@ -114,7 +114,7 @@ class Queue(PickOrderAssignment[QueueParameters]):
                 return
             station, row = found[0].station, found[1]
             yield QueueOrder(orders.at_row[row], station.index)
-            # rows stay as they are while orders only join pools
+            # rows do not change while orders only join pools
             others = [contest.rows != row for contest in contests]
             contests = [c.narrowed(to) for c, to in zip(contests, others, strict=True)]
             first = [scores[to] for scores, to in zip(first, others, strict=True)]
@@ -140,7 +140,7 @@ class Queue(PickOrderAssignment[QueueParameters]):
                 yield AssignOrder(self.view.orders.at_row[row], station.index)
 
     def _completed_by(self, pod: int, station: PickStation) -> int:
-        """Choose an order of the pool, or else one in no pool, that the pod completes; -1: none."""
+        """Choose an order that the pod completes, preferably of the pool; -1 if there is none."""
         if pod not in station.tasks:
             return -1
         queued_at = self.view.orders.queued_at
@@ -155,7 +155,7 @@ class Queue(PickOrderAssignment[QueueParameters]):
         return -1
 
     def _take_turns(self) -> Iterator[AssignOrder]:
-        """Let each station take an order of its pool, again and again."""
+        """Let the stations in turn take an order of their pool, as long as possible."""
         stations = list(self.view.pick_stations)
         while stations:
             for station in list(stations):

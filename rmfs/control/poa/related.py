@@ -1,4 +1,4 @@
-"""POA related: orders as they came, to the station whose orders want the same SKUs."""
+"""POA related: orders by arrival, to the station whose orders need the same SKUs."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ class RelatedParameters(Parameters):
     """Parameters of POA related."""
 
     tie_breaker: Literal["least-busy", "most-busy", "random"] = "least-busy"
-    """Which of several stations with equally many SKUs in common: the one with the fewest or most
-    open orders, or any."""
+    """Tie-breaker among stations with equally many SKUs in common: fewest or most open orders, or
+    random."""
 
 
 class Related(Filling[RelatedParameters]):
-    """Puts orders together that want the same SKUs, so that a pod serves several of them.
+    """Groups orders for the same SKUs, so that a pod serves several of them.
 
-    Orders are taken as they came; one that stock cannot serve is passed over. It goes to the
-    station with the highest sum, over the orders there, of SKUs they share with it, picked or not.
-    Ties: the tie-breaker, then the station with the lowest number.
+    Orders are taken by arrival; those that stock cannot serve are skipped. An order goes to the
+    station with the highest sum, over the orders there, of the SKUs in common, picked or not. Ties
+    are broken by the tie-breaker, then by station number.
     """
 
     parameters_model = RelatedParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the order that came first, and a station by SKUs in common."""
+        """Choose the order that arrived first, and a station by SKUs in common."""
         order = self.oldest_order()
         if order is None:
             return None

@@ -1,4 +1,4 @@
-"""POA rollout: the base rule's order, or another one that did better when both were tried."""
+"""POA rollout: the base rule's decision, or one that did better in simulated trials."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 
 class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
-    """Tries orders and stations out before it assigns an order.
+    """Tries out orders and stations by simulation before it assigns an order.
 
-    The base rule says what it would do. That and the best other pairs of order and station (by
-    `rmfs.control.features.RANKINGS`) are tried in copies of the run, in which the base rule goes
-    on; the best one is taken. What trying costs in simulated time, the pacing says; while it goes
-    on, no order is assigned.
+    The base rule makes a default decision. This and the best other pairs of order and station (by
+    `rmfs.control.features.RANKINGS`) are tried in copies of the run, in which the base rule
+    continues; the best one is taken. The pacing determines the simulated time that trials cost;
+    meanwhile no order is assigned.
     """
 
     parameters_model = RolloutParameters
@@ -39,7 +39,7 @@ class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
         self.hears = self.base.hears  # type: ignore[misc]
 
     def decide(self) -> Iterator[Any]:
-        """Yield what the base rule says, or ask which decision is best."""
+        """Yield the base rule's decision, or ask which decision is best."""
         while not self.in_flight:
             first = next(iter(self.base.decide()), None)
             if first is None:
@@ -51,7 +51,7 @@ class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
                 yield first
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the best decision, if it still holds."""
+        """Yield the best decision, if it is still valid."""
         yield from self.best(call)
         if call.completed_us > call.requested_us:
             yield from self.decide()

@@ -1,4 +1,4 @@
-"""Which of several equally good orders comes first."""
+"""Tie-breaking between equally good orders."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ def first_row(
     tie_breaker: TieBreaker,
     draw: Callable[[int], int],
 ) -> int:
-    """Choose one of several rows of the backlog; what is still equal goes by arrival.
+    """Choose one of several rows of the backlog; remaining ties go by arrival.
 
     Parameters
     ----------
     rows
         At least one row.
     draw
-        Draws a number below the one given.
+        Draws an integer below its argument.
     """
     if len(rows) == 1:
         return int(rows[0])
@@ -45,7 +45,7 @@ def first_row(
 def order_rank(
     tie_breaker: TieBreaker, rng: np.random.Generator
 ) -> Callable[[Order], tuple[float, int]]:
-    """Return the key by which orders compete one by one; the smallest comes first."""
+    """Return the key by which orders compete one by one; the smallest wins."""
     if tie_breaker == "random":
         return partial(_at_random, rng)
     return _by_due_time if tie_breaker == "due-time" else _by_arrival

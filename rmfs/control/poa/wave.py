@@ -1,4 +1,4 @@
-"""POA wave: orders of the first departure first, and of those the ones that match pods best."""
+"""POA wave: orders of the earliest departure first, and of those the best match with pods."""
 
 from __future__ import annotations
 
@@ -20,29 +20,29 @@ class WaveParameters(PairParameters):
     """Parameters of POA wave."""
 
     wave_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Orders due within so many seconds of the first one are of its wave; 0: due when it is, as
-    those are that go with one truck."""
+    """Orders due within this many seconds of the earliest one belong to its wave; 0: only orders
+    due at the same time, as for one truck."""
     missed_last: bool = False
-    """Whether orders past their due time, whose truck has left, come after all others; otherwise
-    they are the first wave."""
+    """Whether orders past their due time, whose truck has left, come last; otherwise they are the
+    first wave."""
     fast_lane: bool = True
-    """Whether one slot of each station is kept for orders that the pod being served there can
+    """Whether one slot of each station is reserved for orders that the pod being served there can
     complete."""
 
 
 class Wave(BestPair[WaveParameters]):
-    """Fills free slots wave by wave, within a wave by pod match.
+    """Fills free slots wave by wave, and within a wave by pod match.
 
-    A wave are the orders that are due together, as those are that go with one truck. Of the first
-    wave that stock can serve, the pair of order and station is assigned that shares most units with
-    pods on their way to the station; when the wave has none left, the next begins. Ties: the
-    tie-breaker, then the order that arrived first, then the station with the lowest number.
+    A wave consists of the orders that are due together, as for one truck. Of the first wave that
+    stock can serve, the pair of order and station with the most units on pods inbound to the
+    station is assigned; when no order of the wave is left, the next wave begins. Ties are broken by
+    the tie-breaker, then by arrival, then by station number.
     """
 
     parameters_model = WaveParameters
 
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Units matched, and for orders of the first wave more than others can have."""
+        """Units matched; orders of the first wave score higher than all others."""
         scores = matches(self.view, stations)
         orders = self.view.orders
         servable = orders.servable(self.view.inventory.free_stock)

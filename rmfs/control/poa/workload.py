@@ -1,4 +1,4 @@
-"""POA workload: orders as they came, to the station with fewest, or most, open orders."""
+"""POA workload: orders by arrival, to the station with the fewest or most open orders."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ class WorkloadParameters(Parameters):
     """Parameters of POA workload."""
 
     station: Literal["least-busy", "most-busy"] = "least-busy"
-    """Whether the station with the fewest or with the most open orders is taken."""
+    """Whether the station with the fewest or with the most open orders is chosen."""
 
 
 class Workload(Filling[WorkloadParameters]):
-    """Balances open orders over the stations, or fills one station after the other.
+    """Balances open orders over the stations, or fills one station after another.
 
-    Orders are taken as they came; one that stock cannot serve is passed over. Ties between
-    stations: any.
+    Orders are taken by arrival; those that stock cannot serve are skipped. Ties between stations
+    are broken at random.
     """
 
     parameters_model = WorkloadParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the order that came first, and a station by its open orders."""
+        """Choose the order that arrived first, and a station by its open orders."""
         order = self.oldest_order()
         if order is None:
             return None

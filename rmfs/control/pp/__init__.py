@@ -1,4 +1,4 @@
-"""Path planning (PP): solved inside traffic; here are the names and parameters of its planners."""
+"""Path planning (PP): names and parameters of the planners, which run inside traffic."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ P = TypeVar("P", bound=Parameters)
 
 
 class PathPlanning(Controller[P]):
-    """Names a planner of the traffic core; its parameters are passed on.
+    """Selects a planner of the traffic core, to which its parameters are passed.
 
     Attributes
     ----------
     planner
-        Its name in the core.
+        Name of the planner in the core.
     """
 
     problem = Problem.PP
@@ -36,35 +36,35 @@ class PathPlanning(Controller[P]):
 
 
 class RollingParameters(Parameters):
-    """What all planners have in common that are asked for all robots again and again."""
+    """Parameters of planners that are called repeatedly for all robots."""
 
     period_s: float = pydantic.Field(1.0, gt=0)
-    """Least simulated time between two calls of the planner."""
+    """Minimum simulated time between two calls of the planner."""
     runs_granted: int = pydantic.Field(4, ge=1)
-    """Straight runs of its plan that a robot may be granted at once."""
+    """Maximum number of straight runs of its plan granted to a robot at once."""
     patience_s: float = pydantic.Field(30.0, ge=0)
-    """How long a robot stands still before it hops to a random neighbour."""
+    """Time for which a robot stands still before it hops to a random neighbouring waypoint."""
 
 
 class PathPlanningInPython(PathPlanning[P]):
-    """Base of planners written in Python: they see traffic, and no view of the world."""
+    """Base class of planners written in Python; they see traffic, but no view of the world."""
 
     planner = "python"
 
     @abstractmethod
     def plan(self, now_us: int, agents: list[Agent]) -> Generator[Question, Any, list[Way | None]]:
-        """Plan ways for all robots that drive; see `rmfs.traffic.planner.PathPlanner`."""
+        """Plan paths for all driving robots; see `rmfs.traffic.planner.PathPlanner`."""
 
 
 def planner_settings(choice: Choice, seed: int) -> PlannerSettings:
-    """Pass a choice of controller on to the traffic core.
+    """Convert a choice of controller into settings of the traffic core.
 
     Parameters
     ----------
     choice
-        Of the problem PP.
+        Choice for the problem PP.
     seed
-        Of the planner's random decisions, such as the hops of robots in a deadlock.
+        Seed of the planner's random decisions, such as the hops of robots in a deadlock.
     """
     controller = choice.controller
     assert issubclass(controller, PathPlanning)

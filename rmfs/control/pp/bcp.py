@@ -8,16 +8,16 @@ from rmfs.control.pp import PathPlanning, RollingParameters
 
 
 class BcpParameters(RollingParameters):
-    """What a clash costs."""
+    """Parameters of PP BCP."""
 
     bias_m: float = pydantic.Field(1.0, gt=0)
-    """Metres by which a waypoint becomes dearer for a robot whose way clashes there."""
+    """Cost in metres added to a waypoint for a robot whose path collides there."""
     rounds: int = pydantic.Field(20, ge=1)
-    """Rounds of planning in a call, if ways clash."""
+    """Maximum number of planning rounds per call if paths collide."""
 
 
 class Bcp(PathPlanning[BcpParameters]):
-    """BCP: quickest ways through space, on which clashes make waypoints dearer, and no waits."""
+    """BCP: quickest paths in space, with collisions making waypoints more expensive; no waiting."""
 
     parameters_model = BcpParameters
     planner = "bcp"

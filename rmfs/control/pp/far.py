@@ -9,24 +9,25 @@ from rmfs.control.pp import PathPlanning
 
 
 class FarParameters(Parameters):
-    """When robots evade."""
+    """Parameters of PP FAR."""
 
     period_s: float = pydantic.Field(1.0, gt=0)
-    """Least simulated time between two calls of the planner."""
+    """Minimum simulated time between two calls of the planner."""
     runs_granted: int = pydantic.Field(1, ge=1)
-    """Hops of its way that a robot may be granted at once."""
+    """Maximum number of hops of its path granted to a robot at once."""
     reroute: bool = True
-    """Whether a robot evades by another way; if not, to a random neighbouring waypoint."""
+    """Whether a robot evades by an alternative path; otherwise to a random neighbouring
+    waypoint."""
     patience_s: float = pydantic.Field(30.0, ge=0)
-    """How long a robot stands still before it evades in any case."""
+    """Time for which a robot stands still before it evades in any case."""
     wait_s: float = pydantic.Field(2.0, gt=0)
-    """How long a robot waits that is blocked, or has evaded."""
+    """Waiting time of a robot that is blocked or has evaded."""
     avoid_evading_back: bool = True
-    """Whether a robot evades to the same waypoint only once before it has moved on."""
+    """Whether a robot evades to the same waypoint at most once before it makes progress."""
 
 
 class Far(PathPlanning[FarParameters]):
-    """FAR: drives the next straight hop of the way as far as it is free, evades when blocked."""
+    """FAR: drives the next straight hop of the path as far as it is free; evades if blocked."""
 
     parameters_model = FarParameters
     planner = "far"

@@ -8,24 +8,24 @@ from rmfs.control.pp import PathPlanning, RollingParameters
 
 
 class OdIdParameters(RollingParameters):
-    """The limits of joint planning."""
+    """Parameters of PP OD&ID, which limit joint planning."""
 
     window_s: float = pydantic.Field(15.0, gt=0)
-    """How far ahead robots keep clear of each other."""
+    """Horizon within which robots avoid each other."""
     wait_s: float = pydantic.Field(2.0, gt=0)
-    """How long a robot waits that decides to wait."""
+    """Duration of a wait."""
     nodes_per_robot: int = pydantic.Field(100, ge=1)
-    """Joint states of a group that may be looked at for each robot in it."""
+    """Maximum number of joint states expanded per group, for each robot in it."""
     nodes: int = pydantic.Field(600, ge=1)
-    """Joint states that may be looked at in a call, over all groups."""
+    """Maximum number of joint states expanded per call, over all groups."""
     choices: int = pydantic.Field(4, ge=1)
-    """Straight runs that a robot chooses among in joint planning, the most promising ones."""
+    """Number of straight runs considered per robot in joint planning, the most promising ones."""
     labels: int = pydantic.Field(2_000, ge=1)
-    """Labels the search for one robot alone may look at."""
+    """Maximum number of labels in the search for a single robot."""
 
 
 class OdId(PathPlanning[OdIdParameters]):
-    """OD&ID: robots whose ways meet form a group, which is planned jointly, one move at a time."""
+    """OD&ID: robots with conflicting paths form a group that is planned jointly, move by move."""
 
     parameters_model = OdIdParameters
     planner = "od-id"

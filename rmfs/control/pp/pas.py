@@ -8,20 +8,20 @@ from rmfs.control.pp import PathPlanning, RollingParameters
 
 
 class PasParameters(RollingParameters):
-    """The window, and how hard agents push."""
+    """Parameters of PP PAS."""
 
     window_s: float = pydantic.Field(30.0, gt=0)
-    """How far ahead robots keep clear of each other."""
+    """Horizon within which robots avoid each other."""
     wait_s: float = pydantic.Field(2.0, gt=0)
-    """How long a robot waits that decides to wait."""
+    """Duration of a wait."""
     priorities: int = pydantic.Field(2, ge=0)
-    """Highest priority of a robot for which nothing is left; then it begins at 0 again."""
+    """Highest priority of a robot with no options left; after that it restarts at 0."""
     steps_per_robot: int = pydantic.Field(40, ge=1)
-    """Decisions that may be taken in a call for each robot, on average."""
+    """Maximum number of decisions per call for each robot, on average."""
 
 
 class Pas(PathPlanning[PasParameters]):
-    """PAS: all ways grow together in the order of time; who has none left makes others go back."""
+    """PAS: all paths grow together in time; a robot without options makes others backtrack."""
 
     parameters_model = PasParameters
     planner = "pas"

@@ -8,18 +8,18 @@ from rmfs.control.pp import PathPlanning, RollingParameters
 
 
 class PibtParameters(RollingParameters):
-    """What a robot tries."""
+    """Parameters of PP PIBT."""
 
     runs_granted: int = pydantic.Field(1, ge=1)
-    """Straight runs that a robot may be granted at once; PIBT plans no more than one."""
+    """Maximum number of straight runs granted to a robot at once; PIBT plans no more than one."""
     detour_s: float = pydantic.Field(30.0, gt=0)
-    """How much longer than the best way the way over a run may take."""
+    """Maximum time by which the path over a run may exceed the best path."""
     choices: int = pydantic.Field(8, ge=1)
-    """Straight runs that a robot tries, the best first."""
+    """Maximum number of straight runs that a robot tries, the best first."""
 
 
 class Pibt(PathPlanning[PibtParameters]):
-    """PIBT: the next run of each robot; who stands in its way has to leave first, if it can."""
+    """PIBT: chooses each robot's next run; robots in its way have to leave first, if they can."""
 
     parameters_model = PibtParameters
     planner = "pibt"

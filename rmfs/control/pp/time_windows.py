@@ -9,20 +9,21 @@ from rmfs.control.pp import PathPlanning
 
 
 class TimeWindowsParameters(Parameters):
-    """How hard a way is looked for."""
+    """Parameters of PP time-windows: effort spent on a search."""
 
     labels: int = pydantic.Field(50_000, ge=1)
-    """Labels a search may look at before the robot waits until all planned motion is over."""
+    """Maximum number of labels in a search before the robot waits until all planned motion is
+    over."""
     improve_labels: int = pydantic.Field(0, ge=0)
-    """Labels for each robot when a late plan and those in front of it are made anew; 0: never."""
+    """Labels per robot for replanning a late plan and those in front of it; 0: never."""
     swift: bool = False
-    """From the start: ways that may be a little later than the earliest, found much sooner."""
+    """Whether to use faster searches, whose paths may be slightly later than the earliest."""
     swift_from: int = pydantic.Field(300, ge=0)
-    """Labels a plan takes on average from which on ways are found sooner, too; 0: never."""
+    """Mean number of labels per plan above which faster searches are used anyway; 0: never."""
 
 
 class TimeWindows(PathPlanning[TimeWindowsParameters]):
-    """Plans each leg once, first come first served, around the windows others have reserved."""
+    """Plans each leg once, first come first served, around the time windows reserved by others."""
 
     parameters_model = TimeWindowsParameters
     planner = "time-windows"

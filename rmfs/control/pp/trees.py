@@ -1,4 +1,4 @@
-"""PP CBS and PBS: searches of the tree of ways to resolve conflicts."""
+"""PP CBS and PBS: tree searches that resolve conflicts between paths."""
 
 from __future__ import annotations
 
@@ -8,30 +8,30 @@ from rmfs.control.pp import PathPlanning, RollingParameters
 
 
 class TreeParameters(RollingParameters):
-    """The limits of both searches."""
+    """Parameters of PP CBS: limits of the search."""
 
     nodes: int = pydantic.Field(60, ge=1)
-    """Nodes of the tree that may be looked at in a call."""
+    """Maximum number of tree nodes per call."""
     labels: int = pydantic.Field(2_000, ge=1)
-    """Labels the search for one robot may look at."""
+    """Maximum number of labels in the search for one robot."""
 
 
 class PbsParameters(TreeParameters):
-    """The horizon."""
+    """Parameters of PP PBS."""
 
     window_s: float = pydantic.Field(20.0, gt=0)
-    """How far ahead robots keep clear of each other."""
+    """Horizon within which robots avoid each other."""
 
 
 class Cbs(PathPlanning[TreeParameters]):
-    """CBS: of two robots in conflict one keeps away; the best of all such choices, no horizon."""
+    """CBS: of two conflicting robots, one avoids the other; the best such choices, no horizon."""
 
     parameters_model = TreeParameters
     planner = "cbs"
 
 
 class Pbs(PathPlanning[PbsParameters]):
-    """PBS: of two robots in conflict one plans around the other, within a rolling horizon."""
+    """PBS: of two conflicting robots, one plans around the other, within a rolling horizon."""
 
     parameters_model = PbsParameters
     planner = "pbs"

@@ -8,34 +8,34 @@ from rmfs.control.pp import PathPlanning, RollingParameters
 
 
 class WhcaParameters(RollingParameters):
-    """The window of both variants."""
+    """Parameters of both variants of WHCA*."""
 
     window_s: float = pydantic.Field(20.0, gt=0)
-    """How far ahead robots keep clear of each other."""
+    """Horizon within which robots avoid each other."""
     labels: int = pydantic.Field(2_000, ge=1)
-    """Labels the search for one robot may look at."""
+    """Maximum number of labels in the search for one robot."""
 
 
 class WhcaVolatileParameters(WhcaParameters):
-    """The rounds of the volatile variant."""
+    """Parameters of the volatile variant."""
 
     wait_s: float = pydantic.Field(2.0, gt=0)
-    """Unit of the time that a robot of higher priority waits until others have made room."""
+    """Time step by which a robot of higher priority waits until others have made room."""
     rounds: int = pydantic.Field(10, ge=1)
-    """Rounds of planning in a call; after the last, robots without a way stand and wait."""
+    """Maximum number of planning rounds per call; after the last, robots without a path wait."""
     restart_at_once: bool = True
-    """Whether a round ends as soon as one robot finds no way."""
+    """Whether a round ends as soon as one robot finds no path."""
 
 
 class WhcaVolatile(PathPlanning[WhcaVolatileParameters]):
-    """WHCA*v: plans all robots anew in every call, and again with other priorities if one fails."""
+    """WHCA*v: replans all robots in every call, and again with other priorities if one fails."""
 
     parameters_model = WhcaVolatileParameters
     planner = "whca-v"
 
 
 class WhcaPersistent(PathPlanning[WhcaParameters]):
-    """WHCA*n: plans those that need it around the reservations that others made before."""
+    """WHCA*n: plans the robots that need it around the existing reservations of the others."""
 
     parameters_model = WhcaParameters
     planner = "whca-n"

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 Requests = Literal["assigned", "assigned-and-completable", "assigned-and-queued"]
-"""Those of assigned orders; of queued ones too that the pod completes; of all queued ones too."""
+"""Requests that count: of assigned orders; also of queued orders the pod completes; of all."""
 
 _REACH: dict[Requests, int] = {
     "assigned": 0,
@@ -32,15 +32,15 @@ class LateBinding(Parameters):
     """Parameters of every PPS rule; there are queued orders only under POA queue."""
 
     late_picks: bool = True
-    """Whether a pod on its way to a pick station is given requests that come up meanwhile."""
+    """Whether a pod on its way to a pick station gets requests that arise meanwhile."""
     late_bundles: bool = True
     """The same for bundles of a pod on its way to a replenishment station."""
     consider: Requests = "assigned-and-completable"
-    """For which requests a pod is brought: those of `assigned` orders, also those of queued orders
-    that the pod completes (`assigned-and-completable`), or those of all queued orders as well
+    """Requests for which pods are brought: those of `assigned` orders, also those of queued orders
+    that the pod completes (`assigned-and-completable`), or also those of all queued orders
     (`assigned-and-queued`)."""
     reserve: Requests = "assigned-and-completable"
-    """Which requests are bound to a pod that comes; at least those for which it is brought."""
+    """Requests that are bound to a pod that is brought; at least those in `consider`."""
 
     @pydantic.model_validator(mode="after")
     def _reserve_what_is_considered(self) -> LateBinding:

@@ -94,11 +94,11 @@ class PickCandidates(Candidates):
     Parameters
     ----------
     skus
-        The S SKUs with open requests at the station or, as far as they count, in its pool.
+        The S SKUs with open requests at the station or, if these count, in its pool.
     have
         Units available of each of them on the candidates, shape (S, C).
     queued
-        The queued orders that count.
+        The queued orders whose requests count.
     requests
         Which requests count.
     """

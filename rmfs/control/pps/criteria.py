@@ -75,9 +75,9 @@ class Fill(PodCriterion):
     prefer_fullest: bool = True
     """Whether full pods come first; otherwise empty ones."""
     binary: bool = True
-    """Whether only the two sides of the threshold are told apart."""
+    """Whether pods are only compared with the threshold, and not among themselves."""
     threshold: Share = 0.7
-    """Share of a pod's capacity, in use by stored units, that parts full pods from empty ones."""
+    """Share of used capacity that separates full pods from empty ones."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
         """1 above (or below) the threshold and 0 otherwise; or the share, signed."""
@@ -121,25 +121,24 @@ class Completeable(PodCriterion):
 
 
 class PickWorkAmount(PodCriterion):
-    """Most work at the station, with a price for the way ("pile-on" in later literature).
+    """Most work at the station, minus a cost of travel ("pile-on" in later literature).
 
-    The work is what the requests are worth that the pod can serve: by `metric`, one each; the time
-    for which the order has been on the station; or the time for which it is late, both divided by
-    the order's open requests. A plain `pile-on`, `age` or `lateness` in a file stands for the
-    three.
+    The work is the value of the requests that the pod can serve. By `metric`, a request is worth
+    one, or the time that its order has been at the station, or its lateness, the latter two divided
+    by the order's open requests. `pile-on`, `age` or `lateness` as a plain name selects the metric.
     """
 
     criterion: Literal["work-amount"] = "work-amount"
     metric: RequestValue = "picks"
-    """What a request is worth: `picks` (one), `age` or `lateness` (s per open request)."""
+    """Value of a request: `picks` (one), `age` or `lateness` (s per open request)."""
     only_positive_lateness: bool = False
-    """For `lateness`: whether orders that are not late yet count nothing, and not negatively."""
+    """For `lateness`: whether orders that are not late yet count as 0 instead of negatively."""
     time_cost: NotNegative = 1 / 3
-    """Picks (or seconds of age or lateness) that one second of travel is worth."""
+    """Cost of a second of travel, in picks (or seconds of age or lateness)."""
     completable_boost: NotNegative = 1.0
-    """Requests of orders that the pod can complete count so much more: 1 for twice."""
+    """Additional relative value of requests of orders that the pod can complete; 1: twice."""
     queued_weight: NotNegative = 0.2
-    """What a request of a queued order is worth, compared with one of an assigned order."""
+    """Value of a request of a queued order, relative to one of an assigned order."""
     boost_queued: bool = True
     """Whether the boost also goes to queued orders."""
     estimate_to_pod: bool = True
@@ -200,7 +199,7 @@ class WaveWork(PodCriterion):
 
     criterion: Literal["wave"] = "wave"
     wave_s: NotNegative = 0.0
-    """Orders due within so many seconds of the next one are of its wave."""
+    """Orders due within this many seconds of the next one belong to its wave."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
         """Units that the pod can serve of the first wave, assigned orders only."""

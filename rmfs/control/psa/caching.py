@@ -21,13 +21,13 @@ class CacheParameters(ScoreWeights, ZoneParameters):
     """Parameters of rules that decide which pods belong into a cache."""
 
     speed_weight: Weight = 0.0
-    """Weight of its speed: popularity of its units, as a share of the best pod's."""
+    """Weight of a pod's speed: the popularity of its units, relative to the best pod."""
     fill_weight: Weight = 1.0
-    """Weight of the share of the cache that is free."""
+    """Weight of the free share of the cache."""
     value_weight: Weight = 1.0
-    """Weight of the share of pods in the cache that have a lower score than the pod."""
+    """Weight of the share of pods in the cache with a lower score than the pod."""
     threshold: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.5
-    """A pod is worth a place if the weighted mean of the two is above this."""
+    """A pod gets a place if the weighted mean of the two exceeds this."""
 
     @pydantic.model_validator(mode="after")
     def _something_counts_for_caches(self) -> CacheParameters:

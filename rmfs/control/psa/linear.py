@@ -21,7 +21,7 @@ class LinearParameters(Parameters):
     """Parameters of PSA linear."""
 
     weights: Weights = pydantic.Field(default_factory=lambda: default_weights("place"))
-    """Of the features of storage places, scaled (docs: learning)."""
+    """Weights of the scaled features of storage places (see the page on learning)."""
 
     @pydantic.field_validator("weights")
     @classmethod

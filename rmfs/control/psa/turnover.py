@@ -22,7 +22,8 @@ class TurnoverPlaceParameters(TurnoverParameters):
     """Parameters of PSA turnover."""
 
     within_class: Literal["nearest", "nearest-to-station", "random"] = "nearest"
-    """Which empty place of a class: nearest to the pod, nearest to a pick station, or any."""
+    """Choice of the empty place within a class: nearest to the pod, nearest to a pick station, or
+    random."""
     metric: Metric = "time"
     """What is near there: `euclidean`, `manhattan` (m), `path` (m along the waypoints, as a loaded
     robot drives) or `time` (s, unhindered)."""

@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     Indices = NDArray[np.intp]
 
 _EQUALS = 32
-"""Of so many equal pods at most, those with the lowest numbers, the moves are measured."""
+"""Maximum number of tied pods, those of lowest number, whose moves are compared by length."""
 
 
 class CacheMoveParameters(ZoneParameters, Pauses):
     """Parameters of repositioning cache."""
 
     free_places: Annotated[int, pydantic.Field(ge=0)] = 8
-    """How many places of each cache are to be free."""
+    """Number of places of each cache to keep free."""
     empty_below: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.4
     """Pods with a smaller share of their capacity in use are moved near a replenishment station."""
     count_backlog: bool = True
@@ -50,16 +50,15 @@ class _Pairs(NamedTuple):
 
 
 class Cache(Pausing[CacheMoveParameters]):
-    """Keeps exactly so many places of each pick station's cache free.
+    """Keeps a given number of places of each pick station's cache free.
 
-    If more are free, a pod from outside all caches is moved in: on the robot's tier if possible;
-    the one with most picks for the station's open requests; with most units that any order wants;
-    the fullest; with the shortest move. If fewer are free, a pod of the cache is moved out: on the
-    robot's tier if possible; with least picks; with least wanted units; the emptiest; the nearest
-    to a pick station. It goes to the nearest place outside all zones or, if the pod is almost
-    empty, to the one nearest to a replenishment station. A move into a cache comes before a move
-    out of one. Moves are measured by Manhattan distance; ties: the lowest pod, then station, then
-    waypoint.
+    If more are free, a pod from outside all caches is moved in. It is chosen in this order: on the
+    robot's tier if possible; most picks for the station's open requests; most units ordered
+    anywhere; the fullest; the shortest move. If fewer are free, a pod of the cache is moved out: on
+    the robot's tier if possible; fewest picks; fewest ordered units; the emptiest; the nearest to a
+    pick station. It goes to the nearest place outside all zones or, if it is almost empty, to the
+    place nearest to a replenishment station. Moves into a cache come before moves out of one. Moves
+    are measured by Manhattan distance; ties: the lowest pod, then station, then waypoint.
     """
 
     parameters_model = CacheMoveParameters

@@ -41,7 +41,7 @@ class RandomStation(ReplenishmentOrderAssignment[RandomStationParameters]):
         self._last: ReplenishmentStation | None = None
 
     def decide(self) -> Iterator[SendBundle]:
-        """Yield until no bundle fits anywhere."""
+        """Yield assignments until no waiting bundle fits into any station."""
         stations = [station for station in self.view.replenishment_stations if station.active]
         # free space only shrinks meanwhile: what did not fit once need not be tried again
         too_large = inf

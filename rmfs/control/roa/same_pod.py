@@ -31,13 +31,13 @@ class SamePodParameters(Parameters):
     """Parameters of ROA same-pod."""
 
     station: StationRule = "nearest"
-    """Which of several stations with room: the nearest to the pod, the one with the lowest or
-    highest share of its capacity used, with the fewest or most bundles, or any."""
+    """Choice among stations with room: the nearest to the pod, the lowest or highest share of
+    capacity used, the fewest or most bundles, or random."""
     break_batches: bool = False
-    """Whether the bundles of a pod are sent one by one, as far as there is room."""
+    """Whether the bundles of a pod are sent individually, as far as there is room."""
     first_come_first_served: bool = True
-    """Whether a batch that fits nowhere holds up the batches after it; without meaning if batches
-    are broken."""
+    """Whether a batch that fits nowhere blocks the batches after it; without effect if batches are
+    broken."""
     same_tier: bool = True
     """Whether only stations on the present tier of the pod are considered."""
 

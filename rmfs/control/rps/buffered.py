@@ -126,14 +126,15 @@ class BufferParameters(Parameters):
     buffer_threshold: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
     """Share of a pod's capacity, stored and promised, at which its bundles are released."""
     buffer_timeout_s: Annotated[float, pydantic.Field(ge=0)] = 1200.0
-    """They are released at the latest so long after the last bundle was promised to the pod."""
+    """Time in seconds after the last promise to a pod at which its bundles are released at the
+    latest."""
 
 
 class StickyParameters(BufferParameters):
     """Parameters of RPS rules that fill one pod after the other."""
 
     stick_to_pod: bool = True
-    """Whether the last pod is taken again while it has room and until a station serves it."""
+    """Whether the last pod is chosen again while it has room and until a station serves it."""
 
 
 B = TypeVar("B", bound=BufferParameters)

@@ -56,8 +56,8 @@ class ReactiveParameters(BufferParameters):
     """Parameters of RPS reactive."""
 
     among_equals: Literal["random", "emptiest"] = "random"
-    """Which pod of those that are as easy to reach: any, or the one with the lowest share of its
-    capacity stored or promised."""
+    """Choice among pods that are equally easy to reach: random, or the lowest share of capacity
+    stored or promised."""
 
 
 class Reactive(Located[ReactiveParameters]):

@@ -26,11 +26,11 @@ class TurnoverPodParameters(TurnoverParameters):
     """Whether the pod of a class with the lowest share of its capacity stored or promised is taken;
     otherwise any."""
     buffer_thresholds: tuple[Share, ...] = (0.8, 0.8, 0.8)
-    """Per class, the share of a pod's capacity, stored and promised, at which its bundles are
+    """For each class, the share of a pod's capacity, stored and promised, at which its bundles are
     released."""
     buffer_timeouts_s: tuple[Seconds, ...] = (1200.0, 1200.0, 1200.0)
-    """Per class, they are released at the latest so long after the last bundle was promised to the
-    pod."""
+    """For each class, the time in seconds after the last promise to a pod at which its bundles are
+    released at the latest."""
 
     @pydantic.model_validator(mode="after")
     def _one_per_class(self) -> TurnoverPodParameters:

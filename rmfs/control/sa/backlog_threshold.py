@@ -1,4 +1,4 @@
-"""SA backlog-threshold: stations come and go with the work that waits."""
+"""SA backlog-threshold: switches stations depending on the waiting work."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ class BacklogThresholdParameters(Parameters):
     """Parameters of SA backlog-threshold."""
 
     pause_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 600.0
-    """Seconds between two switches of stations of one kind, and before the first."""
+    """Seconds between two switches of stations of one kind, and before the first switch."""
     orders_on: Count = 50
-    """Orders in the backlog beyond which a pick station is switched on."""
+    """Number of orders in the backlog above which a pick station is switched on."""
     bundles_on: Count = 50
-    """Bundles in the backlog beyond which a replenishment station is switched on."""
+    """Number of bundles in the backlog above which a replenishment station is switched on."""
     pick_share_off: Share = 0.7
     """Share of used slots of the active pick stations below which one is switched off."""
     replenishment_share_off: Share = 0.7

@@ -1,4 +1,4 @@
-"""SA constant-ratio: a fixed part of the stations is on."""
+"""SA constant-ratio: a fixed share of the stations is on."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ class ConstantRatioParameters(Parameters):
 
 
 class ConstantRatio(StationActivation[ConstantRatioParameters]):
-    """Switches a fixed part of the stations on, the others off, once and for all.
+    """Switches a fixed share of the stations on and the others off, permanently.
 
-    On are floor(active share x stations), of them floor(pick share x these) pick stations, those
-    with the lowest activation numbers; ties: the lowest number. At least one of each kind is on, as
-    far as there is one.
+    On are floor(active share x stations), of which floor(pick share x these) are pick stations:
+    those with the lowest activation numbers; ties: the lowest number. At least one of each kind is
+    on, if there is one.
     """
 
     parameters_model = ConstantRatioParameters

@@ -1,4 +1,4 @@
-"""SA staffed: pick stations take new work while somebody is there who is not too tired."""
+"""SA staffed: pick stations take new work while a picker is present and not too tired."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class StaffedParameters(Parameters):
     """Parameters of SA staffed."""
 
     tired: Share = 1.0
-    """Fatigue from which a picker gets no new work; 1: nobody is ever so tired."""
+    """Fatigue from which a picker gets no new work; 1: never."""
     rested: Share = 0.5
-    """Fatigue at which a picker who was tired gets work again; below `tired`."""
+    """Fatigue at which a tired picker gets work again; below `tired`."""
     look_every_s: Annotated[float, pydantic.Field(ge=1, le=86400)] = 60.0
-    """Seconds between two looks at fatigue, which changes all the time; from 1 to a day."""
+    """Seconds between checks of fatigue, from 1 to a day."""
 
     @pydantic.model_validator(mode="after")
     def _in_order(self) -> StaffedParameters:

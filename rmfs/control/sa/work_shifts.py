@@ -1,4 +1,4 @@
-"""SA work-shifts: all stations are switched on and off by the clock."""
+"""SA work-shifts: switches all stations on and off by the clock."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 class Shift(Parameters):
-    """From when on stations are on or off."""
+    """A time from which stations are on or off."""
 
     at_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
-    """Seconds since the beginning of the loop."""
+    """Seconds since the start of the loop."""
     on: bool
-    """Whether stations are on from then."""
+    """Whether stations are on from then on."""
 
 
 class WorkShiftsParameters(Parameters):
@@ -33,9 +33,10 @@ class WorkShiftsParameters(Parameters):
         Shift(at_s=21600.0, on=True),
         Shift(at_s=79200.0, on=False),
     )
-    """When stations are switched (`at_s`, s in the loop) on or off (`on`); the first one at 0."""
+    """Times (`at_s`, s in the loop) at which stations are switched on or off (`on`); the first at
+    0."""
     loop_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 86400.0
-    """Seconds after which the shifts begin again."""
+    """Length of the loop in seconds, after which the shifts repeat."""
 
     @pydantic.model_validator(mode="after")
     def _in_order(self) -> WorkShiftsParameters:
@@ -50,7 +51,7 @@ class WorkShiftsParameters(Parameters):
 class WorkShifts(StationActivation[WorkShiftsParameters]):
     """Switches all stations together, at the same times of every loop (by default a day).
 
-    The clock is that of the scenario, which has shown its `time_of_day_s` at time zero.
+    The clock is that of the scenario, which shows `time_of_day_s` at time zero.
     """
 
     parameters_model = WorkShiftsParameters

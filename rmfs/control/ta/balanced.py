@@ -1,4 +1,4 @@
-"""TA balanced: every robot works for one station; robots are divided over stations by weight."""
+"""TA balanced: every robot works for one station; robots are divided among stations by weight."""
 
 from __future__ import annotations
 
@@ -30,32 +30,32 @@ class BalancedParameters(TeamParameters):
     reposition_weight: NotNegative = 0.0
     """Weight of repositioning: robots that work for no station, and only move idle pods."""
     robots_per_station: Annotated[int, pydantic.Field(ge=1)] = 9
-    """How many robots may work for one station."""
+    """Maximum number of robots working for one station."""
     search_all: bool = False
     """Whether robots take work of all stations, the nearest first, and not only of their own."""
     other_stations: bool = False
-    """Whether a pod that has been served may go on to another station near by."""
+    """Whether a pod that has been served may continue to another station nearby."""
     search_radius_m: NotNegative = 8.0
-    """Metres to that station at most (Euclidean)."""
+    """Maximum distance to that station in m (Euclidean)."""
     reposition_before_rest: bool = True
-    """Whether robots without work move idle pods, as far as repositioning finds a move."""
+    """Whether robots without work move idle pods, if repositioning finds a move."""
 
 
 class Balanced(StationTeams[BalancedParameters]):
-    """Divides robots over the stations that have work, and lets each work for its station only.
+    """Divides robots among the stations with work; each robot works only for its station.
 
-    A robot that carries a pod goes on with it as long as the pod can serve an open request of the
-    robot's station (or, if so wished, of another one near by), then parks it. An empty robot gets
-    the pod that PPS chooses; if another robot without work stands beneath that pod, that one gets
-    the job and the two change stations. A robot for which there is nothing to do moves an idle pod,
-    if repositioning finds one, or rests.
+    A robot that carries a pod continues as long as the pod can serve an open request of the robot's
+    station (or, optionally, of another one nearby), and then parks it. An empty robot gets the pod
+    that PPS chooses; if another robot without work stands beneath that pod, that robot gets the job
+    and the two exchange stations. A robot without anything to do moves an idle pod, if
+    repositioning finds one, or rests.
 
-    Every `period_s`, if other stations have work than before, the robots are divided anew: by
-    weight, times the share of the kind's stations that have work; within a kind in turn, stations
-    far from the middle of the tier first; what exceeds the limit goes to any station below it. Then
-    robots are moved, nearest first. If no station had work, new work is not kept waiting for the
-    end of the period. The share of the robots by the weight of repositioning, rounded down, gets no
-    station. The robot that asks does not count towards its station's limit.
+    Every `period_s`, if the set of stations with work has changed, the robots are redistributed:
+    among the kinds of station by weight times the share of stations with work, and within a kind in
+    turn, stations far from the middle of the tier first; robots above the limit go to any station
+    below it. Then robots are moved, nearest first. If no station had work, new work does not wait
+    for the end of the period. The share of the robots given by the weight of repositioning, rounded
+    down, gets no station. The robot that is asked about does not count towards its station's limit.
     """
 
     parameters_model = BalancedParameters
@@ -94,7 +94,7 @@ class Balanced(StationTeams[BalancedParameters]):
         return nearest_first
 
     def go_elsewhere(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Go on to another station near by, if so wished; PPS chooses which."""
+        """Continue to another station nearby, if allowed; PPS chooses which."""
         if not self.parameters.other_stations:
             return None
         among = [s.index for s in self.view.stations if self.may_work(robot, s.index)]
@@ -104,7 +104,7 @@ class Balanced(StationTeams[BalancedParameters]):
         return self.bring(robot, robot.pod, consult.next_station(robot, stations))
 
     def looks_elsewhere(self) -> bool:
-        """Only if it searches all stations."""
+        """Whether it searches for work at all stations."""
         return self.parameters.search_all
 
     def may_be_moved(self, consult: Consult) -> bool:

@@ -27,8 +27,8 @@ class BruteForceParameters(SoloParameters):
     """Parameters of TA brute-force."""
 
     queue_cost_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 1.0
-    """Seconds a robot expects to wait at a station, times the square of the number of robots at, or
-    under way to, the station."""
+    """Expected waiting time at a station in seconds per squared number of robots at the station or
+    on their way there."""
 
 
 class _Job(NamedTuple):
@@ -40,19 +40,19 @@ class _Job(NamedTuple):
 
 
 class BruteForce(Solo[BruteForceParameters]):
-    """Compares every pod at hand, and the pod carried, at every station with work for it.
+    """Compares every available pod, and the carried pod, at every station with work for it.
 
-    The estimate is the straight way from robot to pod at top speed, the time to lift the pod (and
-    first to set down another one), and the greater of the unhindered time to the station and the
-    wait expected there. Robots look for picks as long as there are some, then for bundles as long
-    as there are some: one switch for all. If the best pod is not the one carried, that is parked on
-    the way: where the time there, and the straight way on to the other pod, add up to least.
+    The estimated time is the straight path from robot to pod at top speed, the time to lift the pod
+    (and first to set down another one), and the longer of the unhindered time to the station and
+    the expected wait there. Robots look for picks until there are none, then for bundles until
+    there are none, with a common switch for all. If the best pod is not the carried one, the latter
+    is parked on the way, where the time there plus the straight path to the other pod is least.
     Without work, pods are parked at the nearest place. Ties: the carried pod, then the station,
     then the pod with the lowest number.
 
-    It chooses pods and places itself, so PPS and PSA must be dummies; bundles go into the pods RPS
-    chose. The wait counts robots under way. Fetching the other pod is a task prepared ahead; if
-    somebody else has taken the pod by then, the robot looks anew.
+    The rule chooses pods and places itself, so PPS and PSA must be dummies; bundles go into the
+    pods chosen by RPS. Fetching the other pod is a prepared task; if another robot has taken the
+    pod by then, the robot searches again.
     """
 
     parameters_model = BruteForceParameters

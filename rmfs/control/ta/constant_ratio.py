@@ -1,4 +1,4 @@
-"""TA constant-ratio: a fixed part of the robots works for pick stations, the others replenish."""
+"""TA constant-ratio: a fixed share of the robots works for pick stations, the others replenish."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ class ConstantRatioParameters(TeamParameters):
 
 
 class ConstantRatio(StationTeams[ConstantRatioParameters]):
-    """Gives a fixed part of the robots to pick stations and the others to replenishment stations.
+    """Assigns a fixed share of the robots to pick stations, the others to replenishment stations.
 
-    Within a kind in turn, stations far from the middle of the tier first. Stations count that are
-    active, or have work left: one that was switched off finishes what it has. Every `period_s`, if
-    other stations count than before, robots are moved, nearest first. Every robot works for its
-    station only: it goes on with its pod as long as the pod can serve an open request there.
+    Within a kind, robots are dealt out in turn, stations far from the middle of the tier first.
+    Only stations that are active, or have work left, get robots. Every `period_s`, if this set of
+    stations has changed, robots are moved, nearest first. Every robot works only for its station
+    and continues with its pod as long as the pod can serve an open request there.
     """
 
     parameters_model = ConstantRatioParameters

@@ -1,4 +1,4 @@
-"""TA linear: what a robot does is the task whose features have the greatest weighted sum."""
+"""TA linear: each robot does the task with the greatest weighted sum of features."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class LinearParameters(SoloParameters):
     """Parameters of TA linear."""
 
     weights: Weights = pydantic.Field(default_factory=lambda: default_weights("ta"))
-    """Of the features of what a robot could do, scaled (docs: learning)."""
+    """Weights of the scaled features of a robot's possible tasks (see the page on learning)."""
 
     @pydantic.field_validator("weights")
     @classmethod

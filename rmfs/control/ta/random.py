@@ -1,4 +1,4 @@
-"""TA random: any pod with any work."""
+"""TA random: a random pod with work, at a random station."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ class RandomTasksParameters(SoloParameters):
     """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
     `random`."""
     switch_probability: Probability = 0.1
-    """With which a robot that asks changes from picking to replenishment, or back."""
+    """Probability that a robot that asks changes from picking to replenishment, or back."""
     keep_pod_probability: Probability = 0.95
-    """With which a robot looks for more work for the pod it carries before it parks it."""
+    """Probability that a robot looks for more work for the pod it carries before parking it."""
     reposition_probability: Probability = 0.05
-    """With which an empty robot first asks for an idle pod to move."""
+    """Probability that an empty robot first asks for an idle pod to move."""
     other_kind: bool = True
     """Whether a robot takes work of the other kind if there is none of its own."""
     prefer_same_tier: bool = True
@@ -43,11 +43,11 @@ class RandomTasksParameters(SoloParameters):
 
 
 class RandomTasks(Solo[RandomTasksParameters]):
-    """Gives each robot a pod drawn among those with work, and a station drawn where it has some.
+    """Gives each robot a random pod with work, and a random station where it has some.
 
-    A robot is a picker or a replenisher, at first by the share of pick stations, and changes now
-    and then. It chooses pods itself, so PPS must be a dummy (whose parameters say what is bound on
-    the way); PSA chooses where pods are parked.
+    A robot is a picker or a replenisher, initially by the share of pick stations, and changes from
+    time to time. The rule chooses pods itself, so PPS must be a dummy (whose parameters control
+    late binding); PSA chooses where pods are parked.
     """
 
     parameters_model = RandomTasksParameters

@@ -1,4 +1,4 @@
-"""TA rollout: what the base rule would let a robot do, or something that did better when tried."""
+"""TA rollout: the base rule's task for a robot, or one that did better in simulated trials."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ class TaskRolloutParameters(RolloutParameters):
     """Parameters of TA rollout."""
 
     over: Annotated[tuple[Part, ...], pydantic.Field(min_length=1)] = ("ta", "pps", "psa")
-    """What may be other than the base rule, and PPS and PSA, would have it: the station (`ta`), the
+    """Decisions that may differ from those of the base rule, PPS and PSA: the station (`ta`), the
     pod (`pps`), the storage place (`psa`)."""
 
 
 class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
-    """Tries tasks out before it gives one to a robot: other stations, other pods, other places.
+    """Tries out tasks by simulation: other stations, other pods, other places.
 
-    The base rule, with PPS and PSA, says what a robot would do. That is tried beside the same with
-    other pods for the station, work for other stations, or other places for the pod; the best one
-    is done. So PPS and PSA are decided by looking ahead as well, as far as `over` says. What trying
-    costs in simulated time, the pacing says; while it goes on, no robot gets a task.
+    The base rule, with PPS and PSA, makes a default decision. It is compared in trials with other
+    pods for the station, work for other stations, or other places for the pod; the best one is
+    chosen. PPS and PSA are thus decided by look-ahead as well, as far as `over` says. The pacing
+    determines the simulated time that trials cost; meanwhile no robot gets a task.
     """
 
     parameters_model = TaskRolloutParameters

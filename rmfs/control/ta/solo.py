@@ -43,7 +43,7 @@ class Solo(TaskAllocation[P]):
 
     @abstractmethod
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield a task for a robot that asks, and perhaps what it is to do after that."""
+        """Yield a task for a robot that asks, and possibly what it should do next."""
 
     @abstractmethod
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:

@@ -30,7 +30,7 @@ class TeamParameters(Parameters):
     """Parameters of rules by which robots belong to stations."""
 
     period_s: NotNegative = 30.0
-    """Seconds between re-balancings of the teams; 0 for never."""
+    """Seconds between redistributions of the robots; 0: never."""
     rest: RestRule = "middle"
     """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
     `random`."""
@@ -42,14 +42,14 @@ P = TypeVar("P", bound=TeamParameters)
 class StationTeams(TaskAllocation[P]):
     """Gives each robot work of its station.
 
-    A robot that carries a pod goes on with it as long as the pod can serve the robot's station,
-    then parks it. An empty robot gets the pod that PPS chooses; if another robot without work
-    stands beneath that pod, that one gets the job and the two change stations. A robot for which
-    there is nothing to do rests, and is given work as soon as there is some.
+    A robot that carries a pod continues as long as the pod can serve the robot's station, and then
+    parks it. An empty robot gets the pod that PPS chooses; if another robot without work stands
+    beneath that pod, that robot gets the job and the two exchange stations. A robot without
+    anything to do rests, and gets work as soon as there is some.
 
-    Every `period_s`, if the stations that count are others than before, the robots are divided
-    anew: robots are moved to stations below their goal, the nearest pair of robot and station
-    first. If none counted, this happens at once when one does.
+    Every `period_s`, if the set of relevant stations has changed, the robots are redistributed:
+    robots are moved to stations below their target, the nearest pair of robot and station first. If
+    there was no relevant station, this happens as soon as there is one.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -191,7 +191,7 @@ class StationTeams(TaskAllocation[P]):
         self._works_for[robot.index] = station
 
     def workers(self, station: int, besides: Robot) -> int:
-        """How many robots work for a station, one robot left out."""
+        """How many robots work for a station, not counting the one given."""
         return self._workers[station] - (self._works_for[besides.index] == station)
 
     def _to_rest(self, robot: Robot) -> Rest:

@@ -1,4 +1,4 @@
-"""TA swarm: stations attract robots, the more work they have and the nearer they are."""
+"""TA swarm: stations attract robots, depending on their work and distance."""
 
 from __future__ import annotations
 
@@ -33,33 +33,33 @@ class SwarmParameters(SoloParameters):
     """Parameters of TA swarm."""
 
     work_limit: Annotated[int, pydantic.Field(ge=1)] = 6
-    """Orders, or bundles, of a station that count at most: so many robots it attracts at most."""
+    """Maximum number of orders, or bundles, of a station that count, and of robots it attracts."""
     threshold_weight: NotNegative = 1.0
     """Weight (alpha) of half that limit, squared: how hard it is to attract any robot."""
     distance_weight: NotNegative = 1.0
     """Weight (beta) of the distance in m, squared (Manhattan)."""
     growth: Annotated[float, pydantic.Field(ge=1, allow_inf_nan=False)] = 1.2
-    """By which the attraction of a station grows each time another one is chosen."""
+    """Factor by which a station's attraction grows each time another station is chosen."""
     growth_limit: Annotated[float, pydantic.Field(ge=1, allow_inf_nan=False)] = 30.0
-    """Up to which it grows."""
+    """Maximum of this growth."""
     rest_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
-    """Share of stations that attract nobody, beyond which a robot may draw rest as well."""
+    """Share of stations without attraction beyond which a robot may also draw rest."""
     other_stations: bool = False
-    """Whether a pod that has been served may go on to another station near by."""
+    """Whether a pod that has been served may continue to another station nearby."""
     search_radius_m: NotNegative = 5.0
-    """Metres to that station at most (Euclidean)."""
+    """Maximum distance to that station in m (Euclidean)."""
 
 
 class Swarm(Solo[SwarmParameters]):
     """Lets each empty robot draw a station, and PPS choose a pod for it.
 
     A station's stimulus is s = max(min(orders or bundles there, limit) - robots matched with it, 0)
-    times a multiplier. It is drawn with a probability proportional to
-    s^2 / (s^2 + alpha T^2 + beta d^2), where T is half the limit, rounded down, and d the distance.
-    The multiplier of the station drawn becomes 1, those of the others grow; those of stations
-    without stimulus become 1. If more than the rest share of the stations attract nobody, by e
-    stations, rest is drawn with the weight e^3 / (stations - rest share of the stations)^3. A robot
-    stays matched with its station as long as it carries a pod.
+    times a multiplier. It is drawn with a probability proportional to s^2 / (s^2 + alpha T^2 + beta
+    d^2), where T is half the limit, rounded down, and d the distance. The multiplier of the station
+    drawn becomes 1, those of the others grow; those of stations without stimulus become 1. If more
+    than the rest share of the stations attract nobody, by e stations, rest is drawn with the weight
+    e^3 / (stations - rest share of the stations)^3. A robot stays matched with its station as long
+    as it carries a pod.
     """
 
     parameters_model = SwarmParameters

@@ -20,7 +20,7 @@ class Tracker:
     Attributes
     ----------
     hears
-        Events of which `hear` is told at once.
+        Events that are passed to `hear` immediately.
     """
 
     hears: ClassVar[frozenset[Trigger]] = frozenset()
@@ -48,7 +48,7 @@ class Trackers:
     def get(self, kind: type[T], *settings: Hashable) -> T:
         """Look up, or make, a tracker.
 
-        To be called by controllers and trackers while they are made; later it would not be told of
+        To be called by controllers and trackers at construction; later it would not be notified of
         events before the next exchange of a controller.
 
         Parameters

@@ -28,9 +28,9 @@ class TurnoverParameters(Parameters):
     place_metric: Metric = "time"
     """How the distance from a place to its nearest pick station is measured."""
     reallocation_period_s: Annotated[float, pydantic.Field(ge=0)] = 0.0
-    """Seconds after which pods and SKUs are classed anew; 0 for never."""
+    """Seconds after which pods and SKUs are reclassified; 0: never."""
     reallocation_orders: Annotated[int, pydantic.Field(ge=0)] = 0
-    """New orders after which they are; 0 for never."""
+    """Number of new orders after which pods and SKUs are reclassified; 0: never."""
 
     @pydantic.field_validator("class_borders")
     @classmethod

@@ -19,16 +19,16 @@ WHEEL_ACCELERATION_M_S2 = 1.5
 
 @dataclass
 class EmulatedBase:
-    """A base as its serial port and the floor know it.
+    """An emulated base: its true position on the floor, and what its serial port does.
 
     Attributes
     ----------
     x_m, y_m, heading_rad
-        Where it really is.
+        Its true position and heading.
     speed_factor
-        How fast its wheels turn for what they are told.
+        Ratio of the actual to the commanded speed of its wheels.
     slip
-        Up to this share of a wheel's way is lost.
+        Largest share of a wheel's travel that may be lost to slip.
     rng
         Draws the slip.
     """

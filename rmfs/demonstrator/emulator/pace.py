@@ -1,4 +1,4 @@
-"""How an emulated room keeps time: in step with the server, or as the wall clock does."""
+"""Time in an emulated room: in step with the server, or by the wall clock."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ class Address:
 
 
 class EmulatedRobot:
-    """A robot: its base on the floor, and its program while that runs."""
+    """A robot: its base on the floor, and its program, if one is running."""
 
     def __init__(
         self,
@@ -64,7 +64,7 @@ class EmulatedRobot:
         self.program = self._start(self)
 
     def kill(self) -> None:
-        """Kill the program: all it knew is gone, its connection too; the wheels stop."""
+        """Kill the program: its state and its connection are lost, and the wheels stop."""
         self.program = None
         if self.wire is not None:
             self.wire.close()

@@ -1,4 +1,4 @@
-"""What emulated robots see: the camera and the tag reader, over the emulated floor."""
+"""Sensors of emulated robots: the camera and the tag reader, over the emulated floor."""
 
 from __future__ import annotations
 

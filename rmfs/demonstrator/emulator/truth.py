@@ -1,4 +1,4 @@
-"""What really happens in an emulated room; nobody in it knows."""
+"""The true state of an emulated room, which none of its parts knows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How unkind an emulated room is."""
+"""Imperfections of an emulated room."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class Channel:
     Parameters
     ----------
     key, own, other
-        Of the session; labels of what this side writes and of what it reads.
+        Key of the session, and labels of what this side writes and of what it reads.
     now_us
         Present time.
     rest

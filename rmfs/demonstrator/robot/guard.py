@@ -1,7 +1,7 @@
 """A guard that stops the motors when the robot's program dies or hangs.
 
-The base goes on with the last speed it was told, whatever becomes of the computer's program. So the
-program runs as a child of the guard and shows after each step that it lives.
+The base keeps the speed it was last given, whatever happens to the computer's program. Therefore
+the program runs as a child of the guard and signals after each step that it is alive.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a robot has been told to do, and how far it has come."""
+"""The order that a robot carries out, and its progress."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class Order:
         return self.turned and self.passed == len(self.tags)
 
     def cut(self, upto: int) -> None:
-        """End it after so many waypoints, or where the robot is."""
+        """End it after that many waypoints, or where the robot is if that is further."""
         upto = max(upto, self.passed)
         del self.tags[upto:], self.metres[upto:]
 

@@ -14,7 +14,7 @@ class Pid:
     proportional, integral, derivative
         Weights of the error, of its integral over time (per second) and of its change (seconds).
     limit
-        The output stays within plus and minus this; the sum stands still where it is reached.
+        Limit of the absolute output; while it is reached, the integral is not updated.
     """
 
     proportional: float

@@ -45,12 +45,12 @@ class Greeting:
         return pack(message, self._secret, WELCOME)
 
     def receive(self, data: bytes) -> Guest | None:
-        """Return who is there, when he has introduced himself.
+        """Return the guest once it has introduced itself.
 
         Raises
         ------
         ProtocolError
-            If he does not know the secret or speaks another version.
+            If the guest does not know the secret or speaks another version.
         """
         for hello in self._unpacker.feed(data, self._secret, HELLO + self._nonce.encode()):
             if hello.get("type") != "hello" or hello.get("version") != VERSION:

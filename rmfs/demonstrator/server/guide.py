@@ -1,8 +1,8 @@
 """Guides real robots along the plans of the traffic layer, and keeps plans in step with them.
 
-At each tick the messages of robots are heard; a robot that has not confirmed what its plan would
-have it do before the next tick is late, and its plan and those behind it in the order of waypoint
-use are shifted; then robots whose next motion is due are told to go, as far as the way is clear.
+Each tick begins with the messages of the robots. A robot that has not confirmed what its plan
+requires before the next tick is late: its plan is shifted, with those behind it in the order of
+waypoint use. Then robots whose next motion is due are sent off, as far as the way is clear.
 So the plan never runs ahead of reality, and a robot never enters a waypoint before the one planned
 before it has left.
 """
@@ -30,11 +30,11 @@ TICK_US = 50_000
 GIVE_UP_US = 30_000_000
 """A robot silent for so long is planned around."""
 MOST_TROUBLES = 2
-"""A robot that cannot do an order after so many attempts is planned around, too."""
+"""After this many failed attempts at an order, other robots are planned around the robot, too."""
 GONE_US = 3_600_000_000
 """So much later the plan of a robot that is planned around would go on."""
 SETTLE_US = 4_000_000
-"""Time given to a robot to stop at the last waypoint it may use, when plans are made anew."""
+"""Time given to a robot to stop at the last waypoint it may use, when plans are remade."""
 
 COUNTED = (
     *("orders", "delays", "regroupings", "strayed"),
@@ -84,7 +84,7 @@ class Guide:
 
         Returns
         -------
-        What they are to be told.
+        The orders to send.
         """
         for index, message in messages:
             try:
@@ -294,7 +294,7 @@ class Guide:
         try:
             self.traffic.regroup(rests)
         except ValueError as error:
-            _log.debug("plans cannot be made anew yet: %s", error)
+            _log.debug("plans cannot be remade yet: %s", error)
             return
         self._regroup_due = False
         self.counts["regroupings"] += 1

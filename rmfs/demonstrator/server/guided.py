@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class GuidedTraffic(Traffic):
-    """Traffic in which some robots are real: time passes as their clock says.
+    """Traffic with some physical robots, whose clock determines the simulated time.
 
     Parameters
     ----------
@@ -31,9 +31,9 @@ class GuidedTraffic(Traffic):
     hub
         Their sessions.
     clock
-        Lets time pass.
+        Advances the time.
     journal
-        Of what is heard.
+        Journal of received messages.
     options
         Further parameters of `Traffic`.
     """
@@ -97,7 +97,7 @@ class GuidedTraffic(Traffic):
             self._journal.note(now_us, messages, silent)
         told = self.guide.tick(messages, silent)
         if told and not (messages or silent):
-            # what a robot has been told must be known again after a restart
+            # orders sent to robots must survive a restart
             self._journal.note(now_us, [], frozenset())
         for robot, message in told:
             self._hub.send(self._name[robot], message)
@@ -105,7 +105,7 @@ class GuidedTraffic(Traffic):
         self._clock.passed(self._hub, now_us)
 
     def end(self) -> None:
-        """End the demonstration: sessions are closed, an emulated room is told."""
+        """End the demonstration: close sessions, and notify an emulated room."""
         self._hub.send(ROOM, {"type": "end"})
         self._hub.flush(self._tick_us)
         self._hub.close()

@@ -1,7 +1,7 @@
 """Sessions with robots over TCP.
 
-Whoever does not know the secret, speaks another version, writes garbage or too much is refused and
-written to the log; the sessions of others do not notice.
+Clients without the secret, with another version, or that send invalid or too much data are
+refused and logged; other sessions are not affected.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ class Hub:
         return inbox
 
     def send(self, name: str, message: Message) -> None:
-        """Take a message for somebody; lost if there is no session (a new one begins with all)."""
+        """Send a message; dropped without a session, since a new one begins with everything."""
         session = self._sessions.get(name)
         if session is not None and session.channel is not None:
             session.channel.send(message)

@@ -1,4 +1,4 @@
-"""A robot follows a piece of its plan: what it was told, and what it has confirmed."""
+"""Progress of a robot on a piece of its plan: what was ordered, and what it has confirmed."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ class RealRobot:
     heading_rad
         Which way it looks, when it has done its pursuit.
     pursuit
-        What it was told to do.
+        The order it is carrying out.
     is_present
         Whether there is a session with it.
     heard_us
@@ -47,7 +47,7 @@ class RealRobot:
 
     @property
     def is_busy(self) -> bool:
-        """Whether it has not done what it was told."""
+        """Whether it has not completed its order."""
         return self.pursuit is not None and not self.pursuit.done
 
     def heading_at(self, layout: Layout, waypoint: int) -> float:

@@ -1,4 +1,4 @@
-"""The check of a layout before anything runs in it."""
+"""The check of a layout before a run."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ CHECKS = (population, occupancy, connection, separation, queue_lists, ways)
 
 
 def check(layout: Layout) -> list[Violation]:
-    """Return everything that is wrong with a layout, the impossible first.
+    """Return everything that is wrong with a layout, impossible things first.
 
-    Verified are: there are robots and stations of both kinds; every endpoint (storage place,
+    The check covers: there are robots, and stations of both kinds; every endpoint (storage place,
     station, elevator) can be reached and left, with and without load; the aisles are strongly
-    connected; queue lists are chains; every robot has a place to rest; bodies stay apart; the
+    connected; queue lists are chains; every robot has a place to rest; bodies stay apart; and the
     conditions W1-W3 of deadlock freedom.
     """
     found = [violation for checks in CHECKS for violation in checks(layout)]
@@ -34,7 +34,7 @@ def check(layout: Layout) -> list[Violation]:
 
 
 def refuse(layout: Layout, source: str, *, allow_not_well_formed: bool = False) -> None:
-    """Raise an error unless a layout may be simulated.
+    """Raise an error if a layout must not be simulated.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def refuse(layout: Layout, source: str, *, allow_not_well_formed: bool = False) 
     Raises
     ------
     LayoutError
-        If there are violations that are not allowed; it names them all.
+        If there are violations that are not allowed; names all of them.
     """
     problems = [
         str(violation)

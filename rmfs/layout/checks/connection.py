@@ -1,6 +1,6 @@
-"""Whether robots, empty and loaded, can get where their tasks will send them.
+"""Checks that robots, empty and loaded, can reach the places of their tasks.
 
-A loaded robot uses storage places only at the two ends of its way; an empty one may pass beneath
+A loaded robot uses storage places only at the two ends of its path; an empty one may pass beneath
 stored pods.
 """
 
@@ -70,10 +70,10 @@ def _outside(layout: Layout, fine: Mask) -> Iterator[list[str]]:
 
 
 def _loaded(layout: Layout, lost: Mask) -> Iterator[Violation]:
-    """Check the ways of pods: from every storage place to every station and back.
+    """Check the paths of pods: from every storage place to every station and back.
 
-    Elevators need no check of their own: where an empty robot gets to one, a loaded robot gets to
-    it from the last storage place on that way, and pods that must ride are checked here.
+    Elevators need no separate check: where an empty robot reaches one, a loaded robot reaches it
+    from the last storage place on that path, and pods that must ride are checked here.
     """
     tails = edge_sources(layout)
     reach = Reach(layout, ~layout.is_storage)
@@ -99,7 +99,7 @@ def _loaded(layout: Layout, lost: Mask) -> Iterator[Violation]:
 def _pod_ways(
     layout: Layout, bad: Mask, places: Mask, station: str, words: tuple[str, str]
 ) -> Iterator[Violation]:
-    """Yield the storage places without a way, or the station if that is most of them."""
+    """Yield the storage places without a path, or the station if that affects most of them."""
     verb, preposition = words
     if 2 * bad.sum() > places.sum():
         message = (

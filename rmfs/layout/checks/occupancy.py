@@ -1,4 +1,4 @@
-"""Who stands where at the start, and whether there is room for all of them."""
+"""Checks where pods, robots and stations stand at the start, and that there is room for all."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def occupancy(layout: Layout) -> Iterator[Violation]:
-    """Yield violations of places by pods, robots, stations and tiers."""
+    """Yield violations concerning the places of pods, robots, stations and tiers."""
     yield from _pods(layout)
     yield from _robots(layout)
     yield from _stations(layout)

@@ -1,4 +1,4 @@
-"""Whether there is anybody in the warehouse, and anything to do."""
+"""Checks that a layout has all that a run needs: robots, pods and stations."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def population(layout: Layout) -> Iterator[Violation]:
-    """Yield what a run needs and the layout lacks."""
+    """Yield what a run needs but the layout lacks."""
     counts = {
         "robots": layout.robots,
         "pick stations": len(layout.pick_stations),
@@ -21,4 +21,4 @@ def population(layout: Layout) -> Iterator[Violation]:
     }
     for what, count in counts.items():
         if count == 0:
-            yield Violation(IMPOSSIBLE, what, "there are none; a run needs one at least")
+            yield Violation(IMPOSSIBLE, what, "there are none; a run needs at least one")

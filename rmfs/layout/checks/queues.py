@@ -1,10 +1,10 @@
-"""Whether queue lists are queues: own places in a row, each leading towards the head (W3).
+"""Checks that queue lists are queues: chains of private places, each leading to the head (W3).
 
-W3 of the deadlock argument asks that a station admits no more robots than its queue has places.
-Traffic gives out places one by one and lets everybody else wait where it stands, so the number of
-robots is no matter of the layout, with one exception: where a queue is nothing but the station
-itself, two robots that go on to each other's station would wait for each other for ever. Nobody
-goes on from one station for energy to another.
+W3 of the deadlock argument requires that a station admits no more robots than its queue has places.
+Traffic grants places one by one and lets all other robots wait where they are, so the number of
+robots does not matter, with one exception: if a queue consists of the station alone, two robots
+that go on to each other's station would wait for each other forever. Robots never go from one
+energy station to another.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 class Queue:
     """The queue of a station, or of an elevator on one tier.
 
-    Attributes
+    The queue of a station, or of an elevator on one tier.
     ----------
     label
         What messages call it.
@@ -42,7 +42,7 @@ class Queue:
     of_elevator
         Whether an elevator is at its head.
     is_left
-        Whether robots never go on from there to another such place: those that give energy.
+        Whether robots never go on from there to a similar station: true of energy stations.
     """
 
     label: str

@@ -1,4 +1,4 @@
-"""Which waypoints a robot can get to, in a graph restricted to some waypoints."""
+"""Reachability in a graph restricted to some waypoints."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Whether bodies stay apart when robots hold the waypoints of the edges they use.
+"""Checks that bodies stay apart if robots reserve the waypoints of the edges they use.
 
-A robot on an edge holds both its ends, so two robots are kept apart by the reservations if edges
+A robot on an edge reserves both its ends. Reservations therefore keep two robots apart if edges
 without a common end, and waypoints beside an edge, are at least the sum of the radii apart
 (path-planning reference, 3.3). Pods are discs and count everywhere, since they are carried
 everywhere.
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 TOLERANCE_M = 1e-9
 LONG = 3.0
-"""Edges longer than this many times the median are compared with all others, one by one."""
+"""Edges longer than this multiple of the median are compared with all others individually."""
 
 
 def separation(layout: Layout) -> Iterator[Violation]:
@@ -55,7 +55,7 @@ def _points(layout: Layout, needed_m: float) -> Points:
 
 
 def _near_waypoints(points: Points, needed_m: float) -> tuple[Pairs, Points]:
-    """Return each waypoint that is too near to its nearest other, that other, and how near."""
+    """Return each waypoint too close to its nearest neighbour, that neighbour, and the distance."""
     if len(points) < 2:
         return np.empty((0, 2), dtype=np.int64), np.empty(0)
     # the annotations of the library allow for single points

@@ -1,4 +1,4 @@
-"""What a check reports: which element violates what, and how bad that is."""
+"""Violations: which element violates which condition, and how severe it is."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ IMPOSSIBLE: Severity = "impossible"
 NOT_WELL_FORMED: Severity = "not well-formed"
 
 MOST_SHOWN = 5
-"""Elements with the same fault that are reported one by one; further ones are counted."""
+"""Elements with the same fault that are reported individually; others are only counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Violation:
 
 
 def at(layout: Layout, waypoint: int) -> str:
-    """Say where a waypoint lies."""
+    """Describe the position of a waypoint."""
     place = f"x {layout.x_m[waypoint]:g} m, y {layout.y_m[waypoint]:g} m"
     return place if len(layout.tiers) == 1 else f"{place}, tier {layout.tier[waypoint]}"
 
@@ -75,4 +75,4 @@ def grouped(severity: Severity, elements: Iterable[str], message: str) -> Iterat
         yield Violation(severity, name, message)
     further = len(names) - MOST_SHOWN
     if further > 0:
-        yield Violation(severity, f"{further} further elements", message)
+        yield Violation(severity, f"{further} more elements", message)

@@ -1,9 +1,9 @@
-"""Condition W1: between endpoints there are ways without foreign endpoints.
+"""Condition W1: paths between endpoints do not pass through other endpoints.
 
 Endpoints are storage places and queue places: only there may a robot stand for an unlimited time.
-If the aisles (what is neither) are strongly connected, every storage place touches them both ways,
-every queue is entered from them and every head is left towards them, then a robot that waits until
-all others stand at endpoints can always go on.
+Suppose that the aisles (all other waypoints) are strongly connected, every storage place is joined
+to them in both directions, every queue is entered from them, and every head leads back to them.
+Then a robot that waits until all others stand at endpoints can always proceed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""From a drawn floor to the layout."""
+"""Builds the layout of a drawn floor."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rmfs.layout.drawn.parameters import Equipment
 
 ROBOTS_PER_PICK_STATION = 4
-"""Where nothing is said of robots."""
+"""Default number of robots per pick station."""
 
 
 def assembled(drawing: Drawing, given: Equipment, name: str) -> Layout:
@@ -31,12 +31,12 @@ def assembled(drawing: Drawing, given: Equipment, name: str) -> Layout:
     given
         Its robots, pods and stations.
     name
-        Of the layout, if `given` has none.
+        Name of the layout, if `given` has none.
 
     Raises
     ------
     InputError
-        If something is missing without which nothing can be simulated, or robots find no room.
+        If a required element is missing, or there is no room for the robots.
     """
     _refuse_incomplete(drawing)
     number = np.full(drawing.ground.shape, -1, dtype=np.int32)
@@ -114,14 +114,14 @@ def _robots(drawing: Drawing, given: Equipment, number: NDArray[np.int32]) -> ND
         wanted = len(there) or most
     if not len(there) <= wanted <= len(there) + len(room):
         raise InputError(
-            f"robots: must be from {len(there)}, as many as are drawn, to "
-            f"{len(there) + len(room)}, as many as there is room for on aisles (given: {wanted})"
+            f"robots: must be from {len(there)}, the number drawn, to {len(there) + len(room)}, "
+            f"the number for which the aisles have room (given: {wanted})"
         )
     return np.concatenate([there, draw_robots(room, wanted - len(there), given.seed, 0)])
 
 
 def _ranked(stands: list[Stand], number: NDArray[np.int32]) -> list[tuple[tuple[int, ...], int]]:
-    """Return the queue of each station, and when it is switched on: from the middle outwards."""
+    """Return each station's queue and its activation rank: from the middle outwards."""
     middle = [(size - 1) / 2 for size in number.shape]
 
     def away(which: int) -> tuple[float, int]:

@@ -1,4 +1,4 @@
-"""A floor of cells: what each of them is, and where one can drive from it."""
+"""A floor of cells: their types, and where a robot can drive from each."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Ground(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Stand:
-    """A station, and its queue from the station to the entrance."""
+    """A station and its queue, from the station to the entrance."""
 
     kind: Literal["pick", "replenishment"]
     queue: tuple[Cell, ...]
@@ -46,9 +46,9 @@ class Drawing:
     ground
         What each cell is (`Ground`), shape (H, W).
     one_way
-        Of aisles that lead to other aisles in one direction only, the step.
+        For aisles that lead to other aisles in one direction only, that direction.
     full, empty
-        Storage places with a pod at the start, and without; of the others a share has one.
+        Storage places drawn with and without a pod; of the remaining ones, a share has one.
     robots
         Where robots stand.
     stands
@@ -63,19 +63,19 @@ class Drawing:
     stands: list[Stand] = field(default_factory=list)
 
     def at(self, cell: Cell) -> Ground:
-        """Return what a cell is; nothing beyond the edge."""
+        """Return the type of a cell; `NOTHING` beyond the edge."""
         row, column = cell
         rows, columns = self.ground.shape
         inside = 0 <= row < rows and 0 <= column < columns
         return Ground(self.ground[row, column]) if inside else Ground.NOTHING
 
     def steps(self) -> Iterator[tuple[Cell, Cell]]:
-        """Yield from which cell one can drive to which.
+        """Yield pairs of cells such that a robot can drive from the first to the second.
 
         Places of a queue lead to the place ahead, stations to aisles, aisles to the entrances of
-        queues. Storage places lead to all neighbours but queues, as robots without a pod drive
-        beneath pods. A one-way cell leads to aisles in its direction only, and is entered from
-        everywhere else.
+        queues. Storage places lead to all neighbours except queues, since robots without a pod
+        drive beneath pods. A one-way cell leads to aisles only in its direction, and is entered
+        from all other sides.
         """
         places = {cell: (stand, rank) for stand in self.stands for rank, cell in
                   enumerate(stand.queue)}  # fmt: skip

@@ -1,4 +1,4 @@
-"""What is said of a drawn layout beside the picture: everything has a default."""
+"""Parameters of a drawn layout beside the picture; all have defaults."""
 
 from __future__ import annotations
 
@@ -11,25 +11,27 @@ from rmfs.layout.values import Amount, Count, Positive, Radius, Strict
 
 
 def _as_generated(key: str) -> Any:
-    """Return the field of that key of generated layouts: its default, and what it means."""
+    """Return the field of the same key in generated layouts, with its default and description."""
     field = LayoutParameters.model_fields[key]
     return Field(field.default, description=field.description)
 
 
 class Equipment(Strict):
-    """Robots, pods and stations of a layout whose cells are given."""
+    """Robots, pods and stations of a layout given by its cells."""
 
     name: str = Field("", description="name shown in results; default: that of the file")
     seed: Amount = Field(0, description="random seed for the places of pods and robots")
-    cell_m: Positive = Field(1.0, description="m from the middle of a cell to that of the next")
+    cell_m: Positive = Field(
+        1.0, description="distance between the centres of neighbouring cells, m"
+    )
     queue_length: Amount = Field(
-        3, description="places of the queue of a station for which none are given"
+        3, description="number of queue places of a station whose queue is not given"
     )
 
     robots: Count | None = Field(
         None,
-        description="robots in all; those that are not drawn stand on aisles; default: those that "
-        "are drawn, or else 4 per pick station, as far as there is room",
+        description="total number of robots; those not drawn stand on aisles; default: those "
+        "drawn, or else 4 per pick station as far as there is room",
     )
     robot_radius_m: Radius = _as_generated("robot_radius_m")
     acceleration_m_s2: Positive = _as_generated("acceleration_m_s2")
@@ -65,16 +67,16 @@ StationPlaces = Annotated[list[Place], Field(min_length=1)]
 
 
 class MapStations(Equipment):
-    """What stands beside a grid map (`NAME.map`): stations and storage places (`NAME.map.toml`)."""
+    """The stations and storage places of a grid map `NAME.map`, given in `NAME.map.toml`."""
 
     format: Literal["rmfs-map-stations/1"] = Field(description="version of this format")
     storage: str = Field(
-        "", description="signs of the map that are storage places where an aisle is beside them"
+        "", description="signs of the map that become storage places if an aisle is beside them"
     )
     pick_stations: list[StationPlaces] = Field(
         default_factory=list,
-        description="each by its cell [row, column], from 0 at the top left, and those of its "
-        "queue up to the entrance",
+        description="stations, each as a list of cells [row, column], from 0 at the top "
+        "left: the station and its queue up to the entrance",
     )
     replenishment_stations: list[StationPlaces] = Field(
         default_factory=list, description="as pick_stations"

@@ -1,4 +1,4 @@
-"""Reading a layout that is drawn as text."""
+"""Reads layouts drawn as text."""
 
 from __future__ import annotations
 
@@ -36,18 +36,18 @@ ARROWS: dict[str, Cell] = {">": (0, 1), "^": (-1, 0), "<": (0, -1), "v": (1, 0)}
 
 SIGNS = {
     ".": "aisle, both ways",
-    "> < ^ v": "one-way aisle: leads to other aisles in this direction only",
-    "x": "storage place; so many of them have a pod at the start as `pod_share` says",
+    "> < ^ v": "one-way aisle: leads to other aisles only in this direction",
+    "x": "storage place; the share `pod_share` of these have a pod at the start",
     "X": "storage place with a pod at the start",
     "o": "storage place without a pod at the start",
     "P or g": "pick station",
     "R": "replenishment station",
-    "q": "place of a queue, which leads from place to place to its station",
-    "1 ... 9": "the same by its number from the station, where queues lie side by side",
+    "q": "place of a queue; the places form a chain to the station",
+    "1 ... 9": "place of a queue by its rank from the station, where queues lie side by side",
     "r": "aisle with a robot at the start",
-    "# or @ or blank": "nothing: no robot gets there",
+    "# or @ or blank": "nothing: robots cannot go there",
 }
-"""What the signs of a picture mean."""
+"""Meanings of the signs of a picture."""
 
 _GROUND = {
     **dict.fromkeys(NOTHING, Ground.NOTHING),
@@ -60,8 +60,8 @@ _GROUND = {
 def read_picture(path: Path, overrides: Sequence[tuple[list[str], Any]] = ()) -> Layout:
     """Read a layout drawn as text.
 
-    A head of TOML (`PictureHead`), which may be left out, ends with a line ---; the picture
-    follows, a sign for each cell (`SIGNS`).
+    An optional TOML head (`PictureHead`) ends with a line `---`; the picture follows, with one sign
+    for each cell (`SIGNS`).
 
     Parameters
     ----------
@@ -129,8 +129,8 @@ class _Picture:
         """Return what is drawn."""
         stop_if_any(
             [
-                f"{self._where(cell)}: {sign!r} is no sign; valid: {', '.join(SIGNS)}"
-                + (f"; a head ends with a line {END_OF_HEAD}" if sign in "=[" else "")
+                f"{self._where(cell)}: {sign!r} is not a valid sign; valid: {', '.join(SIGNS)}"
+                + (f"; a head must end with a line {END_OF_HEAD}" if sign in "=[" else "")
                 for cell, sign in self._cells
                 if sign not in _GROUND
             ],
@@ -160,7 +160,7 @@ class _Picture:
         except ForkError as fork:
             raise InputError(
                 f"{self._path}: {self._where(fork.cell)}: the queue of the station at "
-                f"{self._where(head)} goes on in several directions; number its places 1, 2, ... "
+                f"{self._where(head)} continues in several directions; number its places 1, 2, ... "
                 "from the station"
             ) from None
 
@@ -168,8 +168,8 @@ class _Picture:
         stray = [cell for cell in self._all(PLACE + NUMBERS) if cell not in taken]
         stop_if_any(
             [
-                f"{self._where(cell)}: {self._sign(cell)!r} belongs to no queue: no way over q, or "
-                "1, 2, ... one after another, leads from it to a station (P, g or R)"
+                f"{self._where(cell)}: {self._sign(cell)!r} belongs to no queue: no path over q, "
+                "or over 1, 2, ... in order, leads from it to a station (P, g or R)"
                 for cell in stray
             ],
             self._path,

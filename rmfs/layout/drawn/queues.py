@@ -1,4 +1,4 @@
-"""Queues of stations: as they are drawn, or straight where none is drawn."""
+"""Queues of stations: as drawn, or straight by default."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NUMBERS = "123456789"
 
 
 class ForkError(ValueError):
-    """Several cells could be the next place of a queue: the one behind which, and its rank."""
+    """Several cells could be the next place of a queue; has the cell behind it, and its rank."""
 
     def __init__(self, cell: Cell, rank: int) -> None:
         self.cell, self.rank = cell, rank
@@ -26,7 +26,7 @@ class ForkError(ValueError):
 def drawn_queue(head: Cell, sign: Callable[[Cell], str], taken: set[Cell]) -> tuple[Cell, ...]:
     """Follow a queue from the station to its entrance.
 
-    The next place is the neighbour with the next number, or else the one neighbour with a q.
+    The next place is the neighbour with the next number, or else the only neighbour with a q.
 
     Parameters
     ----------
@@ -55,16 +55,15 @@ def drawn_queue(head: Cell, sign: Callable[[Cell], str], taken: set[Cell]) -> tu
 
 
 def straight_queue(drawing: Drawing, head: Cell, length: int) -> tuple[Cell, ...]:
-    """Lay a queue over aisles straight away from a station, and make its cells a queue.
+    """Lay a queue over aisles in a straight line from a station, and mark its cells.
 
-    The longest way wins, of equal ones the first of east, north, west, south. One-way cells, cells
-    beside storage places, cells where robots stand and the last way out of the station are left
-    alone.
+    The longest option is chosen, in a tie the first of east, north, west, south. One-way cells,
+    cells beside storage places, cells with robots and the last way out of the station are not used.
 
     Parameters
     ----------
     length
-        Places, the station left out; fewer where there is no room for so many.
+        Number of places without the station; the queue is shorter where there is no room.
     """
     taken = set(drawing.robots)
 

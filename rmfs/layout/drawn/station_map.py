@@ -1,4 +1,4 @@
-"""Grid maps of the path-finding community with stations and storage places."""
+"""Grid maps from path-finding benchmarks, with stations and storage places added."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def stations_file(path: Path) -> Path:
-    """Return the file that tells the stations of a map: NAME.map.toml beside NAME.map."""
+    """Return the file with the stations of a map: NAME.map.toml beside NAME.map."""
     return path.with_name(f"{path.name}.toml")
 
 
@@ -60,7 +60,7 @@ def read_station_map(path: Path, overrides: Sequence[tuple[list[str], Any]] = ()
 
 
 def _floor(rows: list[str], storage: str) -> Drawing:
-    """Return the aisles and storage places of a map; a shelf without an aisle beside is nothing."""
+    """Return the aisles and storage places of a map; shelves need an adjacent aisle."""
     signs = np.array([list(row) for row in rows])
     shelf = np.isin(signs, list(storage))
     free = ~shelf & ~np.isin(signs, list(BLOCKED))
@@ -73,7 +73,7 @@ def _floor(rows: list[str], storage: str) -> Drawing:
 
 
 def _wrong(drawing: Drawing, stations: dict[str, list[list[list[int]]]]) -> Iterator[str]:
-    """Yield cells of stations that are no aisle, are given twice, or do not lie in a row."""
+    """Yield station cells that are not aisles, are given twice, or do not form a chain."""
     seen: set[Cell] = set()
     for kind, queues in stations.items():
         for number, queue in enumerate(queues):
@@ -83,11 +83,11 @@ def _wrong(drawing: Drawing, stations: dict[str, list[list[list[int]]]]) -> Iter
                 told = f"{key}: [{cell[0]}, {cell[1]}]"
                 if drawing.at(cell) != Ground.AISLE:
                     rows, columns = drawing.ground.shape
-                    yield f"{told} is no free cell of the {rows} rows and {columns} columns"
+                    yield f"{told} is not a free cell of the {rows} rows and {columns} columns"
                 if cell in seen:
                     yield f"{told} is given twice"
                 if rank and cell not in neighbours(cells[rank - 1]):
-                    yield f"{told} is not beside the place before"
+                    yield f"{told} is not adjacent to the previous place"
                 seen.add(cell)
 
 

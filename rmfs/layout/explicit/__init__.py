@@ -1,6 +1,6 @@
-"""Explicit layouts as JSON: every waypoint, edge, station, pod and robot written out.
+"""Explicit layouts as JSON: every waypoint, edge, station, pod and robot is listed.
 
-One list entry per line, so that two versions of a layout can be compared with ordinary tools.
+Each list entry is on a line of its own, so that two versions can be compared with diff tools.
 """
 
 from rmfs.layout.explicit.reading import build as build

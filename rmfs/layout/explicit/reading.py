@@ -1,4 +1,4 @@
-"""Reading explicit layouts."""
+"""Reads explicit layouts."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ def read_json(path: Path) -> Layout:
     Raises
     ------
     InputError
-        If the file is missing, not JSON, or does not describe a layout; all problems are named.
+        If the file is missing, not JSON, or not a valid layout; names all problems.
     """
     return build(_parse(path), str(path), path.parent)
 
 
 def build(table: Table, source: str, folder: Path | None = None) -> Layout:
-    """Turn the content of an explicit layout into the layout.
+    """Build a layout from the contents of an explicit layout file.
 
     Parameters
     ----------
@@ -50,12 +50,13 @@ def build(table: Table, source: str, folder: Path | None = None) -> Layout:
     source
         Name of the file, for messages.
     folder
-        Where files with kinds of station are looked for first. Default: the working directory.
+        Folder where files with kinds of station are looked for first. Default: the working
+        directory.
 
     Raises
     ------
     InputError
-        If a value is wrong or an index points at nothing.
+        If a value is wrong or an index refers to nothing.
     """
     explicit = validate(ExplicitLayout, table, source)
     stop_if_any(list(_dangling(explicit)), source)
@@ -117,7 +118,7 @@ def _dangling(explicit: ExplicitLayout) -> Iterator[str]:
 
 
 def _references(explicit: ExplicitLayout) -> Iterator[tuple[str, int]]:
-    """Yield every waypoint that something else than an edge refers to."""
+    """Yield every waypoint that is referred to, except by edges."""
     for p, pod in enumerate(explicit.pods):
         yield f"pods.{p}.waypoint", pod.waypoint
     for r, robot in enumerate(explicit.robots):

@@ -1,6 +1,6 @@
-"""The content of a `rmfs-layout-explicit/1` file.
+"""The contents of a `rmfs-layout-explicit/1` file.
 
-Elements are named by their position in their list, counted from 0.
+Elements are identified by their position in their list, counted from 0.
 """
 
 from __future__ import annotations
@@ -19,23 +19,23 @@ class ExplicitTier(Strict):
 
     length_m: Positive = Field(description="extent in x, in m")
     width_m: Positive = Field(description="extent in y, in m")
-    height_m: float = Field(0.0, description="m above the ground, for drawing only")
+    height_m: float = Field(0.0, description="height above the ground in m, for drawing only")
 
 
 class ExplicitWaypoint(Strict):
-    """A waypoint, and the waypoints of its tier that are reached directly from it."""
+    """A waypoint, and the waypoints of its tier that can be reached directly from it."""
 
     x_m: float = Field(description="position in m, to the right")
     y_m: float = Field(description="position in m, upwards")
     tier: Index = Field(0, description="its tier")
     to: list[Index] = Field(
-        default_factory=list, description="waypoints to which an edge leads from it, one-way"
+        default_factory=list, description="waypoints to which directed edges lead"
     )
     storage: bool = Field(False, description="whether a pod may be stored there")
     queue: bool = Field(
         False,
-        description="whether it belongs to a queue without being a place of it, such as its exit; "
-        "places of queues need not be told again",
+        description="whether it belongs to a queue zone without being a place, as an exit "
+        "does; queue places need not be marked",
     )
 
 
@@ -46,10 +46,10 @@ class ExplicitPickStation(Strict):
         min_length=1, description="waypoints from the station to the entrance of its queue"
     )
     radius_m: Positive = Field(description="m")
-    order_slots: Some = Field(description="orders open at once")
-    unit_transfer_s: Seconds = Field(description="s one picked unit keeps the station busy")
-    unit_pick_s: Seconds = Field(description="s one picked unit keeps the robot")
-    activation: Count = Field(description="rank in which stations are switched on")
+    order_slots: Some = Field(description="maximum number of open orders")
+    unit_transfer_s: Seconds = Field(description="time in s for which a unit occupies the station")
+    unit_pick_s: Seconds = Field(description="time in s for which a unit occupies the robot")
+    activation: Count = Field(description="rank in which stations are switched on, from 1")
 
 
 class ExplicitReplenishmentStation(Strict):
@@ -59,9 +59,11 @@ class ExplicitReplenishmentStation(Strict):
         min_length=1, description="waypoints from the station to the entrance of its queue"
     )
     radius_m: Positive = Field(description="m")
-    capacity: Space = Field(description="space units of bundles assigned at once")
-    bundle_transfer_s: Seconds = Field(description="s one bundle keeps robot and station")
-    activation: Count = Field(description="rank in which stations are switched on")
+    capacity: Space = Field(description="maximum space units of assigned bundles")
+    bundle_transfer_s: Seconds = Field(
+        description="time in s for which a bundle occupies robot and station"
+    )
+    activation: Count = Field(description="rank in which stations are switched on, from 1")
 
 
 class ExplicitOtherStation(Strict):
@@ -74,19 +76,21 @@ class ExplicitOtherStation(Strict):
 
 
 class ExplicitOtherStations(Strict):
-    """All stations of another kind: its class, what is set of it, and where they are."""
+    """All stations of another kind: the class, its parameters, and their positions."""
 
-    kind: str = Field(description="its class: module:Class, path/to/file.py:Class, or a name")
-    parameters: dict[str, Any] = Field(default_factory=dict, description="those of the class")
-    stations: list[ExplicitOtherStation] = Field(description="where they are")
+    kind: str = Field(
+        description="class: module:Class, path/to/file.py:Class, or a registered name"
+    )
+    parameters: dict[str, Any] = Field(default_factory=dict, description="parameters of the class")
+    stations: list[ExplicitOtherStation] = Field(description="the stations")
 
 
 class ExplicitRide(Strict):
-    """Seconds from one boarding waypoint of an elevator to another."""
+    """An elevator ride from one boarding waypoint to another."""
 
     origin: Index = Field(description="boarding waypoint")
     destination: Index = Field(description="boarding waypoint on another tier")
-    travel_s: Seconds = Field(description="s of the ride")
+    travel_s: Seconds = Field(description="duration in s")
 
 
 class ExplicitElevator(Strict):
@@ -95,18 +99,18 @@ class ExplicitElevator(Strict):
     queues: list[Annotated[list[Index], Field(min_length=1)]] = Field(
         min_length=2, description="per tier, waypoints from the boarding one to the entrance"
     )
-    rides: list[ExplicitRide] = Field(description="how long each ride takes")
+    rides: list[ExplicitRide] = Field(description="durations of the rides")
 
 
 class ExplicitRobotKind(Strict):
-    """Size and motion of robots."""
+    """Size and dynamics of robots."""
 
     radius_m: Positive = Field(description="m")
     acceleration_m_s2: Rate = Field(description="m/s2")
     deceleration_m_s2: Rate = Field(description="m/s2")
     top_speed_m_s: Rate = Field(description="m/s")
-    full_turn_s: Seconds = Field(description="s for a turn of 360 degrees on the spot")
-    pod_transfer_s: Seconds = Field(description="s to lift or to set down a pod")
+    full_turn_s: Seconds = Field(description="duration of a turn of 360 degrees on the spot, s")
+    pod_transfer_s: Seconds = Field(description="duration of lifting or setting down a pod, s")
 
 
 class ExplicitPod(Strict):
@@ -120,20 +124,20 @@ class ExplicitRobot(Strict):
     """A robot and where it stands at the start."""
 
     waypoint: Index = Field(description="where it stands")
-    heading_rad: float = Field(0.0, description="0 is towards x, growing towards y")
-    kind: Index = Field(0, description="its robot kind")
+    heading_rad: float = Field(
+        0.0, description="heading: 0 is the +x direction, growing towards +y"
+    )
+    kind: Index = Field(0, description="index of its robot kind")
 
 
 class ExplicitLayout(Strict):
-    """The content of a `rmfs-layout-explicit/1` file."""
+    """The contents of a `rmfs-layout-explicit/1` file."""
 
     format: Literal["rmfs-layout-explicit/1"] = Field(description="version of this format")
     name: str = Field(min_length=1, description="name shown in results")
     tiers: list[ExplicitTier] = Field(min_length=1, description="floors")
-    pod_radius_m: Positive = Field(description="m; the largest, if they differ")
-    robot_kinds: list[ExplicitRobotKind] = Field(
-        min_length=1, description="what kinds of robots there are"
-    )
+    pod_radius_m: Positive = Field(description="pod radius in m; the largest, if they differ")
+    robot_kinds: list[ExplicitRobotKind] = Field(min_length=1, description="kinds of robots")
     pick_stations: list[ExplicitPickStation] = Field(
         default_factory=list, description="stations where units are picked"
     )

@@ -1,4 +1,4 @@
-"""Writing explicit layouts."""
+"""Writes explicit layouts."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def save_json(layout: Layout, path: Path) -> None:
-    """Write a layout as an explicit layout file, whole or not at all.
+    """Write a layout as an explicit layout file, completely or not at all.
 
     Raises
     ------
@@ -35,7 +35,7 @@ def save_json(layout: Layout, path: Path) -> None:
 
 
 def _table(layout: Layout) -> Table:
-    """Return the content of the file for a layout; values that are defaults are left out."""
+    """Return the contents of the file for a layout; default values are left out."""
     return {
         "format": FORMAT,
         "name": layout.name,

@@ -18,20 +18,21 @@ if TYPE_CHECKING:
 def generate(parameters: LayoutParameters, folder: Path | None = None) -> Layout:
     """Generate the layout that the parameters describe.
 
-    Storage blocks two deep lie between horizontal and vertical aisles, a ring road runs round
-    them, and each side with stations or elevators adds a hall and a buffer zone with their queues.
-    The same parameters give the same layout.
+    Storage blocks two places deep lie between horizontal and vertical aisles and are surrounded by
+    a ring road. Each side with stations or elevators adds a hall and a buffer zone with their
+    queues. The layout is determined by the parameters.
 
     Parameters
     ----------
     folder
-        Where files with kinds of station are looked for first. Default: the working directory.
+        Folder where files with kinds of station are looked for first. Default: the working
+        directory.
 
     Raises
     ------
     InputError
-        If there is no such kind of station, a parameter of it is wrong, or the layout does not fit
-        into memory.
+        If there is no such kind of station, one of its parameters is wrong, or the layout does not
+        fit into memory.
     """
     size = extent(parameters)
     tiles = size.rows * size.columns * parameters.tiers

@@ -1,6 +1,6 @@
-"""From the tiles of a tier to the layout of the whole warehouse.
+"""Assembles the layout of the whole warehouse from the tiles of a tier.
 
-All tiers are alike; waypoints are numbered tier by tier, row by row.
+All tiers are identical; waypoints are numbered tier by tier, row by row.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ class Assembly:
     Parameters
     ----------
     parameters
-        Of the layout, already validated.
+        Validated parameters of the layout.
     folder
-        Where files with kinds of station are looked for first.
+        Folder where files with kinds of station are looked for first.
     """
 
     def __init__(self, parameters: LayoutParameters, folder: Path | None = None) -> None:
@@ -129,7 +129,7 @@ class Assembly:
         return [(tail + offset, head + offset) for offset in offsets for tail, head in edges]
 
     def _ranked(self, kind: str) -> list[tuple[tuple[int, ...], int]]:
-        """Return the queue of each station of a kind, and when it is switched on."""
+        """Return each station's queue and its activation rank, for one kind."""
         found = self._stations(kind)
         return [*zip(found, self._activation(found), strict=True)]
 
@@ -171,7 +171,7 @@ class Assembly:
         return tuple(self._elevator(zone) for zone in zones)
 
     def _elevator(self, zone: Buffer) -> Elevator:
-        """Join the same place on every tier by one lift."""
+        """Connect the same place on all tiers by an elevator."""
         tiers = range(self._parameters.tiers)
         queues = [self._queue(zone, tier) for tier in tiers]
         waypoints = tuple(queue[0] for queue in queues)

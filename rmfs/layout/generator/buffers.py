@@ -30,7 +30,7 @@ class Buffer:
     queue
         Tiles from the station back to the entrance.
     tiles
-        All tiles of the zone: those of the queue and those between station and exit.
+        All tiles of the zone: the queue, and the tiles between station and exit.
     entrances
         Edges that lead into the zone from tiles of the hall: one for every second segment.
     steps

@@ -1,7 +1,7 @@
-"""Conditions between layout parameters that are each right by themselves.
+"""Conditions between layout parameters whose values are valid individually.
 
-Every rule names the keys it reads, so that it is left out when one of them is already known to be
-wrong, and returns a list of problems, each a sentence that begins with the key to change.
+Every condition names the keys it reads, so that it is skipped when one of them is already known to
+be wrong. It returns a list of problems, each a sentence that starts with the key to change.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ AISLES = ("horizontal_aisles", "vertical_aisles")
 SIZE = (*AISLES, *STATIONS, "block_length", "single_lane", "hall_width", "buffer_width")
 
 MOST_TILES = 4_000_000
-"""More would not fit into memory; the largest published layout has 12,000."""
+"""Limit set by memory; the largest published layout has 12,000 tiles."""
 
 
 def _even_aisles(p: LayoutParameters) -> list[str]:
     if not p.two_directional_aisles:
         why = "one-way aisles need"
     elif p.hall_pattern == "highway" and p.single_lane:
-        # the one-way rows and columns of the halls alternate round the whole tier
+        # the one-way rows and columns of the halls alternate all around the tier
         why = '"highway" halls round single-lane aisles need'
     else:
         return []
@@ -76,7 +76,7 @@ def _elevators(p: LayoutParameters) -> list[str]:
     if p.tiers > 1 and p.elevators.total == 0:
         return [f"elevators: {p.tiers} tiers need at least one, for example elevators.north=1"]
     if p.tiers == 1 and p.elevators.total:
-        return [f"elevators: one tier has none (given: {p.elevators.total})"]
+        return [f"elevators: must be 0 with one tier (given: {p.elevators.total})"]
     return []
 
 
@@ -84,7 +84,7 @@ def _size(p: LayoutParameters) -> list[str]:
     size = extent(p)
     tiles = size.rows * size.columns * p.tiers
     if tiles > MOST_TILES:
-        return [f"tiers, aisles, block_length: {tiles} tiles, at most {MOST_TILES} are possible"]
+        return [f"tiers, aisles, block_length: {tiles} tiles; at most {MOST_TILES} are allowed"]
     return []
 
 
@@ -106,7 +106,7 @@ def _queues_fit(p: LayoutParameters) -> list[str]:
         chosen = [] if crowded else sites(p, side)
         if any(not 0 <= site.entrance < length for site in chosen):
             problems.append(
-                f"entry_exit_distance: a queue on the {side.name.lower()} side begins outside "
+                f"entry_exit_distance: a queue on the {side.name.lower()} side would start outside "
                 f"the tier (given: {p.entry_exit_distance})"
             )
     return problems

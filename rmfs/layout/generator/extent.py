@@ -1,4 +1,4 @@
-"""How large a tier is: the storage rectangle and what each side adds to it.
+"""Dimensions of a tier: the storage rectangle and what each side adds to it.
 
 RAWSim-O default layout: tiles of 1 m x 1 m; the storage rectangle (blocks, aisles, ring road) lies
 in the middle, and each side with stations or elevators adds a hall and a buffer zone.
@@ -18,7 +18,7 @@ BLOCK_DEPTH = 2
 """Rows of a storage block."""
 
 RING_WIDTH = 1
-"""Tiles the ring road is wide."""
+"""Width of the ring road in tiles."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,24 +59,24 @@ class Extent:
 
 
 def lanes(parameters: LayoutParameters) -> int:
-    """Return how many tiles an aisle is wide."""
+    """Return the width of an aisle in tiles."""
     return 1 if parameters.single_lane else 2
 
 
 def aisles_at(parameters: LayoutParameters, side: Direction) -> int:
-    """Return how many aisles end at a side."""
+    """Return the number of aisles that end at a side."""
     across = side in (Direction.EAST, Direction.WEST)
     return parameters.horizontal_aisles if across else parameters.vertical_aisles
 
 
 def block_at(parameters: LayoutParameters, side: Direction) -> int:
-    """Return how many tiles of a storage block lie along a side."""
+    """Return the length of a storage block along a side, in tiles."""
     across = side in (Direction.EAST, Direction.WEST)
     return BLOCK_DEPTH if across else parameters.block_length
 
 
 def sites_at(parameters: LayoutParameters, side: Direction) -> int:
-    """Return how many stations and elevators stand on a side of a tier."""
+    """Return the number of stations and elevators on a side of a tier."""
     name = side.name.lower()
     groups = [parameters.pick_stations, parameters.replenishment_stations, parameters.elevators]
     groups += parameters.other_stations.values()

@@ -1,7 +1,7 @@
-"""Stations within the storage area: pockets beside an aisle, each in the place of a storage place.
+"""Stations within the storage area: pockets beside an aisle, each replacing a storage place.
 
-They are spread evenly over the blocks, and over the kinds in turn. A pocket is entered from the
-aisle beside it and left to it, and leads nowhere else, so that nobody drives through.
+They are spread evenly over the blocks, with the kinds in turn. A pocket is entered from the aisle
+beside it, is left to the same aisle and leads nowhere else, so that no robot drives through it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 GOLDEN = 0.618033988749895
-"""Steps of this size fill a circle evenly."""
+"""Step size, relative to a circle, that covers it evenly."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Pocket:
     Attributes
     ----------
     kind
-        Of station.
+        Kind of station.
     tile, aisle
         Where it stands, and the tile of the aisle beside it.
     """
@@ -64,7 +64,7 @@ def pockets(parameters: LayoutParameters, kinds: NDArray[np.int8]) -> list[Pocke
 
 
 def _spread(count: int, total: int) -> list[int]:
-    """Choose blocks evenly: by an irrational step, so that no line of blocks is preferred."""
+    """Choose blocks evenly, with an irrational step so that no line of blocks is preferred."""
     chosen: list[int] = []
     place = 0.5
     while len(chosen) < count:
@@ -77,7 +77,7 @@ def _spread(count: int, total: int) -> list[int]:
 
 
 def _in_turn(wanted: list[str]) -> list[str]:
-    """Order kinds so that those of each are spread among the others."""
+    """Order the stations so that those of each kind are spread among the others."""
     seen: dict[str, int] = {}
     ranked = []
     for kind in wanted:

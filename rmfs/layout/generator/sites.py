@@ -23,7 +23,7 @@ class Site:
     Attributes
     ----------
     kind
-        Of station: its name; or `elevator`.
+        Kind of station, by name, or `elevator`.
     exit, entrance
         Where its buffer opens into the hall: tiles along the side, counted from the corner of the
         ring road at the low end (north or west).
@@ -56,7 +56,7 @@ def sites(parameters: LayoutParameters, side: Direction) -> list[Site]:
 
 
 def _towards_low_end(parameters: LayoutParameters, side: Direction) -> bool:
-    """Tell whether a buffer stretches from its exit north or west, against the ring road."""
+    """Whether a buffer extends from its exit north or west, against the ring road."""
     low = side in (Direction.WEST, Direction.SOUTH)
     return low if parameters.counter_clockwise_ring else not low
 

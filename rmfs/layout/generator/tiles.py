@@ -1,4 +1,4 @@
-"""What every tile of a tier is: storage, aisle, crossing, ring road, hall, buffer or nothing."""
+"""The kind of every tile of a tier: storage, aisle, crossing, ring road, hall, buffer or none."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ ROAD = (Kind.ROW_AISLE, Kind.COLUMN_AISLE, Kind.CROSSING, Kind.RING, Kind.HALL)
 
 
 def tile_kinds(parameters: LayoutParameters) -> NDArray[np.int8]:
-    """Return the kind of each tile of a tier, shape (rows, columns), buffers not yet in it."""
+    """Return the kind of each tile of a tier, shape (rows, columns), without buffers."""
     size = extent(parameters)
     kinds = np.full((size.rows, size.columns), Kind.NOTHING, dtype=np.int8)
     rectangle = kinds[size.top : size.top + size.height, size.left : size.left + size.width]
@@ -61,7 +61,7 @@ def _storage_rectangle(parameters: LayoutParameters) -> NDArray[np.int8]:
 
 
 def _aisle_lines(aisles: int, block: int, width: int) -> NDArray[np.bool_]:
-    """Tell which rows (columns) between the sides of the ring road are aisles, ring included."""
+    """Return which rows (columns) between the sides of the ring road are aisles, ring included."""
     period = [False] * block + [True] * width
     return np.array([False, *(period * aisles), *([False] * block), False])
 

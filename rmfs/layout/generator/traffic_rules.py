@@ -67,7 +67,7 @@ class TrafficRules:
                 return self._from_hall(tile)
 
     def _is_grid(self, kind: Kind) -> bool:
-        """Tell whether tiles of this kind lead to all four neighbours."""
+        """Whether tiles of this kind lead to all four neighbours."""
         if kind == Kind.STORAGE:
             return True
         if kind == Kind.HALL and self._parameters.hall_pattern == "highway":
@@ -75,7 +75,7 @@ class TrafficRules:
         return self._parameters.two_directional_aisles
 
     def _from_ring(self, tile: Tile) -> set[Direction]:
-        """Go on round the ring, into storage places, and where lanes and aisles run that way."""
+        """Follow the ring, or turn into storage places, lanes and aisles that run that way."""
         flows = {self._along_row(tile), self._along_column(tile)}
         storage = {d for d in Direction if self._kind(d.step(tile)) == Kind.STORAGE}
         return flows | storage
@@ -101,12 +101,12 @@ class TrafficRules:
         return flows
 
     def _has_line(self, beyond: int) -> bool:
-        """Tell whether traffic runs along the hall this many tiles outside the ring road."""
+        """Whether traffic runs along the hall this many tiles outside the ring road."""
         highway = self._parameters.hall_pattern == "highway"
         return highway or self._parameters.hall_width - beyond < LOOP_LINES
 
     def _line(self, with_ring: Direction, position: int, length: int) -> Direction:
-        """Return the sense of a line: the outermost runs with the ring road, then alternating."""
+        """Return the direction of a line: they alternate, the outermost runs with the ring."""
         inner = (self._parameters.hall_width - _beyond(position, length)) % 2
         return self._sense(with_ring.opposite if inner else with_ring)
 
@@ -119,7 +119,7 @@ class TrafficRules:
         return self._sense(Direction.NORTH if north else Direction.SOUTH)
 
     def _sense(self, direction: Direction) -> Direction:
-        """Return the direction as it is for a counter-clockwise ring, or else the opposite."""
+        """Return the direction for a counter-clockwise ring, otherwise the opposite."""
         return direction if self._parameters.counter_clockwise_ring else direction.opposite
 
     def _kind(self, tile: Tile) -> Kind:

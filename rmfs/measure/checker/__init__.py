@@ -1,15 +1,15 @@
-"""The independent trace checker: proof that what was driven was safe.
+"""The independent trace checker, which proves that all motion in a trace was safe.
 
-It reads a layout and a trace, and shares no code and no notion with the planner: it knows positions
-over time, not reservations. From the trace it rebuilds where every robot is at every moment, as
-pieces of constant acceleration, and proves on these (not by sampling) that
+It reads a layout and a trace and shares neither code nor concepts with the planner: it knows
+positions over time, not reservations. From the trace it reconstructs the position of every robot at
+every moment, as pieces of constant acceleration, and proves on these (without sampling) that
 
 * each trace is gapless and continuous, within the robot's kinematics, along edges and elevators
   that exist (`continuity`);
 * no two robot discs overlap on a tier; a robot that carries a pod is as large as the pod
-  (`sweep` finds who is near whom, `distance` bounds their distance from below, `separation`);
-* pods are conserved, stand one to a place, and no carried pod touches a stored one (`pods`);
-* a queue place and an elevator hold one robot each (`occupancy`).
+  (`sweep` finds nearby pairs, `distance` bounds their distance from below, `separation`);
+* pods are conserved, never share a place, and no carried pod touches a stored one (`pods`);
+* a queue place and an elevator each hold at most one robot (`occupancy`).
 """
 
 from __future__ import annotations
@@ -35,34 +35,38 @@ def check(
     trace: Mapping[str, Any],
     until_us: int | None = None,
     *,
-    slow: Sequence[Slow] = (),
+    slow: Sequence[Slow] | None = None,
 ) -> CheckReport:
     """Check a whole trace.
 
     Parameters
     ----------
     layout
-        Where robots and pods are when the trace begins, and what they may do.
+        Initial positions of robots and pods, and the rules for motion.
     trace
         The trace's columns by name: arrays of equal length or a pandas frame.
     until_us
-        When the trace ends, in microseconds: every robot must be told of until then. Motions that
-        reach it may end later or be cut short. Default: when the last row of all begins.
+        End of the trace in microseconds; it must cover every robot up to then. Motions that reach
+        it may end later or be cut short. Default: the start of the last motion.
     slow
-        Times at which robots drive slower than they should; they must do so then.
+        Periods in which robots are limited to a share of their top speed, and outside of which they
+        are not. Default: the top speed of each run is that of the trace, if it does not exceed the
+        robot's.
 
     Raises
     ------
     InputError
-        If the columns cannot be interpreted as a trace of this layout.
+        If the columns are not a valid trace of this layout.
     """
     rows = read(layout, trace)
-    end_us = int(rows.t0_us.max(initial=0)) if until_us is None else until_us
-    limits = Kinematics.of(layout, rows.robot).slowed(rows, slow)
+    end_us = rows.end_us if until_us is None else until_us
+    robots = Kinematics.of(layout, rows.robot)
+    limits = robots.told(rows) if slow is None else robots.slowed(rows, slow)
     pieces = motion.cut(layout, rows, limits)
     collisions, pairs = separation.check(layout, rows, limits, pieces)
     findings = [
         *continuity.check(layout, rows, limits, end_us),
+        *continuity.speeds(rows, limits),
         *collisions,
         *pods.check(layout, rows, pieces),
         *occupancy.check(layout, rows),

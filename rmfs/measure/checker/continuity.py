@@ -1,4 +1,4 @@
-"""Each robot on its own: no gap, no jump, no motion beyond its kinematics, no way without edges."""
+"""Checks of single robots: gaps, jumps, kinematic limits, and motion along edges."""
 
 from __future__ import annotations
 
@@ -21,12 +21,15 @@ if TYPE_CHECKING:
 ROUNDING_S = 2e-6
 """Durations are whole microseconds: up to one for the start and one for the end."""
 
+SAME_SPEED_M_S = 1e-9
+"""A share of a top speed is a product, which is rounded."""
+
 ANGLE_RAD = 1e-5
 """Headings closer than this are equal: over 100 m a run strays less than 1 mm aside."""
 
 
 def check(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) -> list[Finding]:
-    """Check every robot's trace by itself.
+    """Check every robot's trace separately.
 
     Parameters
     ----------
@@ -47,7 +50,7 @@ def check(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) -> li
 def _findings(
     kind: FindingKind, trace: Trace, wrong: Mask, amount: Floats, *, end: bool = False
 ) -> list[Finding]:
-    """One finding per row marked wrong, at the row's start (or end)."""
+    """Return one finding per marked row, at the row's start (or end)."""
     time_us = trace.t1_us if end else trace.t0_us
     return [
         Finding(
@@ -62,7 +65,7 @@ def _findings(
 
 
 def _presence(layout: Layout, trace: Trace, until_us: int) -> list[Finding]:
-    """Every robot is told of from the common start to the common end."""
+    """Check that rows cover every robot from the common start to the common end."""
     begin_us = int(trace.t0_us.min(initial=until_us))
     absent = np.setdiff1d(np.arange(layout.robots), trace.robot)
     span = (until_us - begin_us) / MICROSECONDS
@@ -79,7 +82,7 @@ def _presence(layout: Layout, trace: Trace, until_us: int) -> list[Finding]:
 
 
 def _gaps(trace: Trace) -> list[Finding]:
-    """Each row begins when the one before it ends, and lasts."""
+    """Check that each row has a positive duration and starts when the previous one ends."""
     missing = np.zeros(len(trace))
     missing[:-1] = (trace.t0_us[1:] - trace.t1_us[:-1]) / MICROSECONDS
     wrong = ~trace.is_last & (missing != 0)
@@ -91,7 +94,7 @@ def _gaps(trace: Trace) -> list[Finding]:
 
 
 def _jumps(layout: Layout, trace: Trace) -> list[Finding]:
-    """Each row begins where the one before it ends; the first where the layout puts the robot."""
+    """Check that each row starts where the previous one ends, the first where the layout says."""
     before = np.asarray(layout.robot_waypoint)[trace.robot].astype(np.int64)
     before[1:][trace.follows] = trace.to_wp[:-1][trace.follows]
     moved = np.hypot(
@@ -107,7 +110,7 @@ def _jumps(layout: Layout, trace: Trace) -> list[Finding]:
 
 
 def _headings(layout: Layout, trace: Trace) -> list[Finding]:
-    """Headings change in turns only, and a run points where the robot looks."""
+    """Check that headings change only in turns, and that robots drive in their heading."""
     before = np.asarray(layout.robot_heading_rad, np.float64)[trace.robot]
     before[1:][trace.follows] = trace.heading1_rad[:-1][trace.follows]
     broken = _angle(before, trace.heading0_rad)
@@ -132,10 +135,10 @@ def _angle(one: Floats, other: Floats) -> Floats:
 
 
 def _durations(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) -> list[Finding]:
-    """Runs, turns, rides and pod transfers take the time that the robot or elevator needs.
+    """Check that motions take the time that the robot or elevator needs.
 
-    A run that ends too early would have exceeded a speed or an acceleration, whatever its shape,
-    as the profile is the fastest within the limits; one that lasts longer is not what was told.
+    A run shorter than the fastest speed profile must have exceeded a speed or an acceleration,
+    whatever its shape; a longer one is not the motion that was recorded.
     """
     needed = np.full(len(trace), np.nan)
     is_run, is_turn = trace.kind == Motion.RUN, trace.kind == Motion.TURN
@@ -154,12 +157,20 @@ def _durations(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) 
     return _findings(FindingKind.DURATION, trace, wrong, off)
 
 
+def speeds(trace: Trace, limits: Kinematics) -> list[Finding]:
+    """Each run tells the top speed that holds for it."""
+    if trace.top_speed_m_s is None:
+        return []
+    off = np.where(trace.kind == Motion.RUN, trace.top_speed_m_s - limits.top_speed_m_s, 0.0)
+    return _findings(FindingKind.SPEED, trace, np.abs(off) > SAME_SPEED_M_S, off)
+
+
 def _travel(layout: Layout) -> dict[tuple[int, int], float]:
     return {pair: time for one in layout.elevators for pair, time in one.travel_s.items()}
 
 
 def _rides(layout: Layout, trace: Trace) -> list[Finding]:
-    """A ride leads from a waypoint of an elevator to another of the same elevator."""
+    """Check that rides connect waypoints of the same elevator."""
     pairs = _travel(layout)
     wrong = np.zeros(len(trace), np.bool_)
     for row in np.flatnonzero(trace.kind == Motion.LIFT_RIDE):
@@ -168,7 +179,7 @@ def _rides(layout: Layout, trace: Trace) -> list[Finding]:
 
 
 def _edges(layout: Layout, trace: Trace) -> list[Finding]:
-    """Every run goes straight along edges of the layout, in their direction."""
+    """Check that every run follows edges of the layout straight and in their direction."""
     is_run = trace.kind == Motion.RUN
     ways, way_of = np.unique(
         np.stack([trace.from_wp[is_run], trace.to_wp[is_run]]), axis=1, return_inverse=True
@@ -181,8 +192,8 @@ def _edges(layout: Layout, trace: Trace) -> list[Finding]:
 def _drivable(layout: Layout, origin: NDArray[np.int64], target: NDArray[np.int64]) -> Mask:
     """Whether a straight chain of edges leads from each origin to its target.
 
-    All ways advance together, one edge per round: from every waypoint reached, each edge that
-    keeps the direction and does not overshoot is followed.
+    All paths advance together, one edge per round: every edge that keeps the direction and does not
+    overshoot is followed.
     """
     start = np.asarray(layout.edge_start, np.int64)
     reached = np.zeros(len(origin), np.bool_)

@@ -1,11 +1,11 @@
-"""Narrow phase: do two moving points come closer than a limit? Proven, not sampled.
+"""Narrow phase: proves whether two moving points come closer than a limit, without sampling.
 
 Each point moves with constant acceleration, so the squared distance over a common time interval is
 a polynomial of degree four. In Bernstein form on that interval its graph lies in the convex hull of
-its coefficients: if the smallest coefficient is not below the limit, neither is the distance, at
-any moment. The first and last coefficient are values of the polynomial, so either below the limit
-proves a violation. Where neither holds the interval is halved (de Casteljau). The bound approaches
-the true minimum with the square of the interval's length, so this ends after a few rounds.
+its coefficients: if no coefficient is below the limit, neither is the distance at any time. The
+first and last coefficients are values of the polynomial, so either below the limit proves a
+violation. If neither applies, the interval is halved (de Casteljau). The bound converges to the
+true minimum quadratically in the length of the interval, so a few rounds suffice.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     Index = NDArray[np.int64]
 
 ROUNDS = 40
-"""Halvings before an interval counts as touching the limit, not violating it: it is then 1e-12 of
-the motion, over which the squared distance changes less than rounding does."""
+"""Halvings after which an interval counts as touching the limit without violating it: it is then
+1e-12 of the motion, over which the squared distance changes by less than rounding."""
 
 EXACT = 1e-12
-"""Squared distances closer than this, in m², are the same."""
+"""Squared distances that differ by less than this, in m², count as equal."""
 
 _TO_BERNSTEIN = np.array(
     [
@@ -110,9 +110,9 @@ def _halved(b: Floats) -> tuple[Floats, Floats]:
 
 
 def minimum(power: Floats) -> tuple[Floats, Floats]:
-    """Return where on [0, 1] each polynomial is least, and its value there.
+    """Return where on [0, 1] each polynomial is smallest, and its value there.
 
-    By the same bounds: halves that cannot hold less than what is known already are dropped.
+    Uses the same bounds: halves that cannot contain a smaller value are dropped.
 
     Returns
     -------
@@ -126,7 +126,7 @@ def minimum(power: Floats) -> tuple[Floats, Floats]:
     for _ in range(ROUNDS):
         for at_end, argument in ((0, begin), (4, begin + width)):
             reached = coefficients[:, at_end]
-            # of several halves of one polynomial the least is assigned last
+            # if several halves belong to one polynomial, the smallest is assigned last
             order = np.argsort(-reached, kind="stable")
             better = order[reached[order] < value[which[order]]]
             where[which[better]], value[which[better]] = argument[better], reached[better]

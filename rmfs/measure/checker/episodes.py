@@ -1,4 +1,4 @@
-"""Violations that follow each other in time are one event, told once at its worst."""
+"""Groups consecutive violations into events, each reported once at its worst moment."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ def worst(who: tuple[Index, Index], begin_s: Floats, end_s: Floats, amount: Floa
     Parameters
     ----------
     who
-        What names the bodies: two numbers per violation.
+        Identifies the bodies: two numbers per violation.
     begin_s, end_s
         The time each violation lies in, shape (K,).
     amount
-        How bad each is, shape (K,).
+        Severity of each violation, shape (K,).
     """
     chosen: list[int] = []
     last_who, last_end = (-1, -1), -np.inf

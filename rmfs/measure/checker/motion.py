@@ -1,7 +1,7 @@
 """Positions over time: a trace cut into pieces of constant acceleration.
 
-Derived from the physics alone: from rest, a robot accelerates with a to the speed v, keeps it,
-and brakes with d to rest. Over the length L the greatest speed reached is
+Derived from physics alone: a robot accelerates from rest with a to the speed v, keeps it, and
+brakes with d to rest. Over a distance L the greatest speed reached is
 
     v = min(top speed, sqrt(2 L a d / (a + d)))
 

@@ -1,4 +1,4 @@
-"""Places for one robot: a queue place, and an elevator with all its waypoints."""
+"""Resources that hold at most one robot: queue places, and elevators with all their waypoints."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def check(layout: Layout, trace: Trace) -> list[Finding]:
     elevator = np.full(layout.waypoints, -1)
     for number, one in enumerate(layout.elevators):
         elevator[list(one.waypoints)] = number
-    # who stands on an elevator's waypoint has it: the cabin cannot be elsewhere
+    # a robot on an elevator's waypoint occupies it: the cabin cannot be elsewhere
     in_elevator = standing | (trace.kind == Motion.LIFT_RIDE)
     return [
         *_shared(
@@ -41,15 +41,15 @@ def check(layout: Layout, trace: Trace) -> list[Finding]:
 
 
 def _shared(trace: Trace, resource: Index, kind: FindingKind) -> list[Finding]:
-    """Find rows of different robots that hold one resource at the same time.
+    """Find rows of different robots that hold the same resource at the same time.
 
-    Sorted by begin, some neighbours overlap whenever any two rows do: every shared use is found,
-    though not every pair of those involved.
+    Sorted by start time, some neighbours overlap whenever any two rows do. Every shared use is
+    therefore found, though not every pair of robots involved.
 
     Parameters
     ----------
     resource
-        What each row holds, -1 for nothing, shape (K,).
+        Resource that each row holds, -1 for none, shape (K,).
     """
     rows = np.flatnonzero(resource >= 0)
     rows = rows[np.lexsort((trace.t0_us[rows], resource[rows]))]

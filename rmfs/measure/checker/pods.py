@@ -1,4 +1,4 @@
-"""Pods: conserved, stored one to a place, and never run into by a robot that carries another."""
+"""Checks that pods are conserved, never share a place, and never collide with carried pods."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     Index = NDArray[np.int64]
 
 WAYS_AT_ONCE = 256
-"""How many ways are compared with all places together: bounds the memory."""
+"""Number of paths compared with all places at a time; limits memory."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stays:
-    """Which pod stood where and when, sorted by place; each array of shape (S,)."""
+    """Which pod stood where and when, sorted by place; arrays of shape (S,)."""
 
     pod: Index
     place: Index
@@ -37,13 +37,13 @@ class Stays:
 
 
 def check(layout: Layout, trace: Trace, pieces: Pieces) -> list[Finding]:
-    """Find every pod mishandled and every stored pod run into."""
+    """Find every mishandled pod and every collision with a stored pod."""
     stays, found = ledger(layout, trace)
     return [*_carrying(trace), *found, *_crossings(layout, trace, pieces, stays)]
 
 
 def _carrying(trace: Trace) -> list[Finding]:
-    """The pod on a robot changes only by lifting and setting down."""
+    """Check that the pod on a robot changes only by lifting and setting down."""
     before = np.full(len(trace), -1, np.int64)
     kept = trace.follows & (trace.kind[:-1] != Motion.SET_DOWN)
     before[1:][kept] = trace.pod[:-1][kept]
@@ -65,7 +65,7 @@ def _carrying(trace: Trace) -> list[Finding]:
 def ledger(layout: Layout, trace: Trace) -> tuple[Stays, list[Finding]]:
     """Follow every pod from place to robot to place.
 
-    A pod counts as stored until its lifting begins and from the end of its setting down.
+    A pod is stored until its lifting starts, and again from the end of its setting down.
     """
     begin_s = float(trace.t0_us.min() if len(trace) else 0) / MICROSECONDS
     place = [int(waypoint) for waypoint in layout.pod_waypoint]
@@ -104,7 +104,7 @@ def _handlings(trace: Trace) -> list[tuple[int, int, int, int, int]]:
     downs = np.flatnonzero((trace.kind == Motion.SET_DOWN) & (trace.pod >= 0))
     rows = np.concatenate([lifts, downs])
     time = np.concatenate([trace.t0_us[lifts], trace.t1_us[downs]])
-    # at one moment, what ends comes before what begins: a pod may be lifted as soon as it stands
+    # at equal times, ends come before starts: a pod may be lifted as soon as it stands
     order = np.lexsort((trace.robot[rows], trace.kind[rows] == Motion.LIFT, time))
     columns = (time, trace.kind[rows], trace.robot[rows], trace.pod[rows], trace.from_wp[rows])
     t, k, r, p, w = (column[order].tolist() for column in columns)
@@ -119,7 +119,7 @@ def _sorted(stays: list[tuple[int, int, float, float]]) -> Stays:
 
 
 def _crossings(layout: Layout, trace: Trace, pieces: Pieces, stays: Stays) -> list[Finding]:
-    """A carried pod keeps clear of every stored one: their discs do not overlap."""
+    """Check that the discs of carried and stored pods do not overlap."""
     row, stay = _meetings(layout, trace, stays)
     # every piece of the row against the stay
     first = np.searchsorted(pieces.row, row, side="left")

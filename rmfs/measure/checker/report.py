@@ -13,6 +13,7 @@ class FindingKind(StrEnum):
     JUMP = "jump"
     HEADING = "heading"
     DURATION = "duration"
+    SPEED = "speed"
     EDGE = "edge"
     ELEVATOR_PAIR = "elevator pair"
     ROBOTS_OVERLAP = "robots overlap"
@@ -24,10 +25,11 @@ class FindingKind(StrEnum):
 
 
 MEANING = {
-    FindingKind.GAP: "{amount:g} s are missing from the trace (negative: told twice)",
+    FindingKind.GAP: "{amount:g} s are missing from the trace (negative: covered twice)",
     FindingKind.JUMP: "position jumps by {amount:g} m",
     FindingKind.HEADING: "heading is off by {amount:g} rad",
-    FindingKind.DURATION: "motion lasts {amount:+g} s against the robot's limits",
+    FindingKind.DURATION: "motion takes {amount:+g} s compared with the robot's limits",
+    FindingKind.SPEED: "top speed in the trace is off by {amount:+g} m/s",
     FindingKind.EDGE: "no straight chain of edges carries this run of {amount:g} m",
     FindingKind.ELEVATOR_PAIR: "no elevator connects this place with waypoint {amount:g}",
     FindingKind.ROBOTS_OVERLAP: "discs overlap by {amount:g} m",
@@ -37,7 +39,7 @@ MEANING = {
     FindingKind.ELEVATOR_SHARED: "elevator shared for {amount:g} s",
     FindingKind.QUEUE_PLACE_SHARED: "queue place shared for {amount:g} s",
 }
-"""One sentence per kind; `amount` is the number stored in the finding."""
+"""Message for each kind; `amount` is the number stored in the finding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,13 +49,13 @@ class Finding:
     Attributes
     ----------
     time_s
-        When it happens; for overlaps the time of closest approach.
+        Time of the violation; for overlaps the time of closest approach.
     robots
         The robots concerned, ascending.
     place
         Waypoint nearest to the event, or -1.
     amount
-        How much, in the unit that `MEANING` states for the kind.
+        Size of the violation, in the unit stated in `MEANING`.
     """
 
     kind: FindingKind
@@ -63,7 +65,7 @@ class Finding:
     amount: float
 
     def __str__(self) -> str:
-        """Return one line for people."""
+        """Return one readable line."""
         who = " and ".join(f"robot {robot}" for robot in self.robots) or "no robot"
         where = f" at waypoint {self.place}" if self.place >= 0 else ""
         what = MEANING[self.kind].format(amount=self.amount)
@@ -72,16 +74,16 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class CheckReport:
-    """The verdict over one trace.
+    """The result of checking a trace.
 
     Attributes
     ----------
     findings
         Every violation, by time.
     pieces
-        Rows of the trace.
+        Number of rows of the trace.
     pairs
-        Pairs of motions whose distance was bounded in the narrow phase.
+        Number of pairs of motions whose distance was bounded in the narrow phase.
     """
 
     findings: list[Finding] = field(default_factory=list)
@@ -90,12 +92,12 @@ class CheckReport:
 
     @property
     def ok(self) -> bool:
-        """Whether the trace breaks no rule."""
+        """Whether the trace violates no rule."""
         return not self.findings
 
     @property
     def collisions(self) -> int:
-        """Number of times two bodies overlap: robot with robot, or carried with stored pod."""
+        """Number of overlaps of two bodies: two robots, or a carried and a stored pod."""
         bodies = (FindingKind.ROBOTS_OVERLAP, FindingKind.POD_CROSSED)
         return sum(finding.kind in bodies for finding in self.findings)
 
@@ -104,7 +106,7 @@ class CheckReport:
         return [finding for finding in self.findings if finding.kind == kind]
 
     def summary(self, limit: int = 10) -> str:
-        """Return the verdict in a few lines: counts per kind and the first findings."""
+        """Return the result in a few lines: counts per kind and the first findings."""
         if self.ok:
             return f"trace is safe: {self.pieces} motions, {self.pairs} close pairs proven apart"
         counts = {kind: len(self.of(kind)) for kind in FindingKind}

@@ -1,4 +1,4 @@
-"""No two robots on a tier touch each other."""
+"""Checks that no two robots on a tier collide."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     Index = NDArray[np.int64]
 
 TOLERANCE_M = 1e-6
-"""Overlaps up to this are rounding."""
+"""Overlaps up to this size count as rounding errors."""
 
 
 def radii(layout: Layout, trace: Trace, limits: Kinematics) -> Floats:
-    """Return the radius of the disc each row keeps clear: the pod's where it is greater, in m."""
+    """Return the radius of the disc of each row, m: the robot's, or the pod's if it is larger."""
     loaded = np.maximum(limits.radius_m, layout.pod_radius_m)
     return np.where(trace.pod >= 0, loaded, limits.radius_m)
 
@@ -40,7 +40,7 @@ def check(
     Returns
     -------
     tuple
-        One finding per pair of robots and stretch of time, and the number of pairs of motions
+        One finding per pair of robots and time interval, and the number of pairs of motions
         bounded.
     """
     radius = radii(layout, trace, limits)[pieces.row]

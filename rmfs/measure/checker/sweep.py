@@ -1,8 +1,8 @@
-"""Broad phase: which pairs of motions are near each other in time and space.
+"""Broad phase: finds pairs of motions that are close in time and space.
 
-Time is cut into slabs; in each, a motion is a box around the way it drives there. All boxes of all
-slabs and tiers are laid side by side on one axis and swept once, so that the work grows with the
-boxes that really are close, not with the square of the fleet.
+Time is divided into slabs; in each, a motion is a box around the path driven there. The boxes of
+all slabs and tiers are placed side by side on one axis and swept once, so that the work grows with
+the number of close boxes and not with the square of the fleet.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SLAB_S = 2.0
 """Length of a time slab: about the length of a motion, so that few motions span many."""
 
 BOXES_AT_ONCE = 50_000
-"""About how many boxes are made and swept together: bounds the memory whatever the run's length."""
+"""Approximate number of boxes made and swept at a time; limits memory for runs of any length."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,7 @@ def close_pairs(
     Parameters
     ----------
     radius_m, tier, robot
-        What each piece keeps clear around it, where it is, and whose it is, shape (K,).
+        Clearance radius, tier and robot of each piece, shape (K,).
 
     Yields
     ------
@@ -88,7 +88,7 @@ def _windows(pieces: Pieces, robots: int) -> Iterator[tuple[int, int]]:
         return
     first = int(np.floor(pieces.t0_s.min() / SLAB_S))
     last = int(np.ceil(pieces.t1_s.max() / SLAB_S))
-    # every robot has a box in every slab, and one more wherever a piece begins
+    # every robot has a box in every slab, plus one wherever a piece starts
     per_slab = robots + len(pieces) / (last - first)
     step = max(1, int(BOXES_AT_ONCE / per_slab))
     for begin in range(first, last, step):
@@ -98,12 +98,12 @@ def _windows(pieces: Pieces, robots: int) -> Iterator[tuple[int, int]]:
 def boxes(pieces: Pieces, radius_m: Floats, tier: Index, begin: int, end: int) -> Boxes:
     """Cut each piece at the slab borders and bound what is left, grown by its radius.
 
-    A piece drives along a line and never turns back, so its ends bound it.
+    A piece follows a line and never turns back, so its end points bound it.
 
     Parameters
     ----------
     begin, end
-        The slabs wanted, `end` excluded.
+        Range of slabs, `end` excluded.
     """
     first = np.maximum(np.floor(pieces.t0_s / SLAB_S).astype(np.int64), begin)
     last = np.minimum(np.ceil(pieces.t1_s / SLAB_S).astype(np.int64), end)
@@ -133,7 +133,7 @@ def _sweep(part: Boxes, robot: Index) -> tuple[Index, Index]:
     """Find the overlapping boxes of one batch, sorted by lane and left border."""
     if not len(part):
         return part.piece, part.piece
-    # lanes are laid side by side, further apart than the hall is wide
+    # lanes are placed side by side, farther apart than the hall is wide
     width = float(part.x1_m.max() - part.x0_m.min()) + 1.0
     shift = (part.lane - part.lane[0]) * width
     until = np.searchsorted(part.x0_m + shift, part.x1_m + shift, side="right")

@@ -1,4 +1,4 @@
-"""The trace as the checker reads it: validated columns and the robots' kinematics beside them."""
+"""The trace as the checker reads it: validated columns, and the robots' kinematics."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MICROSECONDS = 1e6
 
 
 class Motion(IntEnum):
-    """What one row of a trace describes."""
+    """The kind of motion in a row of a trace."""
 
     HOLD = 0
     TURN = 1
@@ -43,7 +43,10 @@ COLUMNS = {
     "heading1_rad": np.float64,
     "pod": np.int64,
 }
-"""The columns of a trace, with the type the checker computes in."""
+"""The columns of a trace, with the types used by the checker."""
+
+TOP_SPEED = "top_speed_m_s"
+"""Column with the top speed of each run: that of the robot, or less while it is slow."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +57,8 @@ class Trace:
     ----------
     robot, t0_us, t1_us, kind, from_wp, to_wp, heading0_rad, heading1_rad, pod
         The columns, each of shape (K,).
+    top_speed_m_s
+        Of runs; None if the trace says nothing, so that all drive as fast as they can.
     """
 
     robot: NDArray[np.int64]
@@ -65,6 +70,7 @@ class Trace:
     heading0_rad: NDArray[np.float64]
     heading1_rad: NDArray[np.float64]
     pod: NDArray[np.int64]
+    top_speed_m_s: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -81,25 +87,36 @@ class Trace:
         """Whether the row is the last of its robot, shape (K,)."""
         return np.append(~self.follows, True)[: len(self)]
 
+    @property
+    def end_us(self) -> int:
+        """Until when every robot must be told of: when the last motion of all begins.
+
+        A turn and what follows it are one motion.
+        """
+        begins = self.t0_us.copy()
+        follows = self.follows & (self.kind[:-1] == Motion.TURN)
+        begins[1:][follows] = self.t0_us[:-1][follows]
+        return int(begins.max(initial=0))
+
     def is_kind(self, *kinds: Motion) -> NDArray[np.bool_]:
         """Return which rows are of one of these kinds, shape (K,)."""
         return np.isin(self.kind, kinds)
 
 
 def read(layout: Layout, columns: Mapping[str, Any]) -> Trace:
-    """Take the columns of a trace and make sure that they can be interpreted at all.
+    """Validate the columns of a trace.
 
     Parameters
     ----------
     columns
-        Arrays by name (extra ones are ignored); a pandas frame will do. They are sorted here if
-        they are not.
+        Arrays by name, or a pandas frame; extra columns are ignored. Rows are sorted here if
+        necessary.
 
     Raises
     ------
     InputError
-        If a column is missing, lengths differ, or a row names a robot, waypoint, pod or kind that
-        does not exist.
+        If a column is missing, lengths differ, or a row refers to a robot, waypoint, pod or kind
+        that does not exist.
     """
     missing = [name for name in COLUMNS if name not in columns]
     if missing:
@@ -107,7 +124,7 @@ def read(layout: Layout, columns: Mapping[str, Any]) -> Trace:
     arrays: dict[str, NDArray[Any]] = {
         name: np.asarray(columns[name]).astype(dtype) for name, dtype in COLUMNS.items()
     }
-    if len({len(array) for array in arrays.values()}) > 1:
+    if len({len(columns[name]) for name in (*COLUMNS, TOP_SPEED) if name in columns}) > 1:
         raise InputError("trace: columns differ in length")
     limits = {
         "robot": (0, layout.robots),
@@ -127,18 +144,27 @@ def read(layout: Layout, columns: Mapping[str, Any]) -> Trace:
     for name in ("heading0_rad", "heading1_rad"):
         if not np.isfinite(arrays[name]).all():
             row = int(np.argmin(np.isfinite(arrays[name])))
-            raise InputError(f"trace: row {row}: {name} {arrays[name][row]} is no angle")
+            raise InputError(f"trace: row {row}: {name} {arrays[name][row]} is not an angle")
+    if TOP_SPEED in columns:
+        arrays[TOP_SPEED] = np.asarray(columns[TOP_SPEED]).astype(np.float64)
+        runs = arrays["kind"] == Motion.RUN
+        wrong = runs & ~(arrays[TOP_SPEED] > 0)
+        if len(wrong) and wrong.any():
+            row = int(np.argmax(wrong))
+            raise InputError(
+                f"trace: row {row}: {TOP_SPEED} {arrays[TOP_SPEED][row]} is not a valid speed"
+            )
     order = np.lexsort((arrays["t0_us"], arrays["robot"]))
     return Trace(**{name: array[order] for name, array in arrays.items()})
 
 
 class Slow(NamedTuple):
-    """A robot drives with a share of its top speed.
+    """A period in which a robot is limited to a share of its top speed.
 
     Attributes
     ----------
     from_us, to_us
-        What begins in [from_us, to_us) is slow.
+        Motions that start in [from_us, to_us) are slow.
     """
 
     robot: int
@@ -149,7 +175,7 @@ class Slow(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Kinematics:
-    """The limits of the robot of each row, each of shape (K,).
+    """The limits of the robot of each row, arrays of shape (K,).
 
     Attributes
     ----------
@@ -175,10 +201,15 @@ class Kinematics:
             }
         )
 
-    def slowed(self, trace: Trace, slow: Sequence[Slow]) -> Kinematics:
-        """Return the limits with the top speeds of robots that are slow at times."""
-        if not slow:
+    def told(self, trace: Trace) -> Kinematics:
+        """Return the limits with the top speeds that the trace tells, as far as these are less."""
+        if trace.top_speed_m_s is None:
             return self
+        top = np.where(trace.kind == Motion.RUN, trace.top_speed_m_s, self.top_speed_m_s)
+        return replace(self, top_speed_m_s=np.minimum(top, self.top_speed_m_s))
+
+    def slowed(self, trace: Trace, slow: Sequence[Slow]) -> Kinematics:
+        """Return the limits, with reduced top speeds in the given periods."""
         top = self.top_speed_m_s.copy()
         for one in slow:
             meant = (trace.robot == one.robot) & (trace.t0_us >= one.from_us)

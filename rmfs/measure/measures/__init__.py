@@ -1,4 +1,4 @@
-"""The measures of rmfs: one module per subject, each declaring and computing its columns."""
+"""The measures of rmfs: one module per topic, each declaring and computing its columns."""
 
 from __future__ import annotations
 
@@ -51,4 +51,4 @@ SHIPPED: tuple[type[Measure], ...] = (
     Optimisers,
     Speed,
 )
-"""What every run is measured by, in the order of the footprint's further columns."""
+"""The measures of every run, in the order of the footprint's further columns."""

@@ -1,4 +1,4 @@
-"""Who decided, and how long that took."""
+"""Number and duration of decisions, by their source."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SOURCES = {
     "stale": "of solutions that no longer held",
     "failed": "by the own rule because an optimiser failed or found nothing",
 }
-"""Where decisions come from if somebody asks optimisers."""
+"""Sources of decisions in runs with optimisers."""
 
 
 class Decisions(Measure):
@@ -29,7 +29,7 @@ class Decisions(Measure):
             "decision_wall_s",
             REAL,
             "s",
-            "Wall time spent in controllers, also where they came to no decision",
+            "Wall time spent in controllers, including calls without a decision",
             measured=True,
             better=LESS,
         ),
@@ -38,7 +38,7 @@ class Decisions(Measure):
                 f"{source}_decision_share",
                 REAL,
                 "share",
-                f"Decisions {what} / all of these four kinds; empty if nobody asks optimisers",
+                f"Decisions {what} / all of these four kinds; empty without optimisers",
                 better=LESS if source in ("stale", "failed") else NEITHER,
             )
             for source, what in SOURCES.items()
@@ -61,7 +61,7 @@ class Optimisers(Measure):
     """Questions to optimisers."""
 
     columns = (
-        Column("optimiser_calls", INTEGER, "calls", "Decision problems handed to an optimiser"),
+        Column("optimiser_calls", INTEGER, "calls", "Questions to optimisers"),
         Column(
             "optimiser_gap_mean",
             REAL,
@@ -74,21 +74,21 @@ class Optimisers(Measure):
             "optimiser_gap_abs_mean",
             REAL,
             "",
-            "The same, not relative: in the unit of the objectives, seconds for most models",
+            "Mean absolute gap, in the unit of the objectives, seconds for most models",
             better=LESS,
         ),
         Column(
             "paced_s",
             REAL,
             "s",
-            "Simulated time from questions to optimisers to their answers, added up",
+            "Total simulated time from questions to optimisers to their answers",
             better=LESS,
         ),
         Column(
             "optimiser_failures",
             INTEGER,
             "calls",
-            "Questions whose optimiser died, hung or raised",
+            "Questions whose optimiser crashed, hung or raised an error",
             better=LESS,
         ),
         Column(

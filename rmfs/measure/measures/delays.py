@@ -1,4 +1,4 @@
-"""Where the time of orders goes."""
+"""Breakdown of order turnover times."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LESS = ("drive_hindered", "queue", "wait_assignment", "wait_pod", "wait_robot",
 
 
 class Delays(Measure):
-    """The time from arrival to completion of orders, split without remainder."""
+    """Time from arrival to completion of orders, broken down completely."""
 
     columns = tuple(
         Column(

@@ -1,4 +1,4 @@
-"""What went wrong while the warehouse ran."""
+"""Disturbances of the run."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ class Disturbances(Measure):
             "disturbed_s",
             REAL,
             "s",
-            "How long these lasted, added up, within the measured time",
+            "Total duration of these disturbances within the measured time",
         ),
         Column(
             "late_motions",
             INTEGER,
             "motions",
-            "Motions that began late, where the scenario says that motions do",
+            "Motions that started late, in scenarios with late motions",
         ),
-        Column("lateness_s", REAL, "s", "By how much these began late, added up"),
+        Column("lateness_s", REAL, "s", "Total delay of these motions"),
         Column(
             "plans_repaired",
             INTEGER,
             "plans",
-            "Plans made anew because a robot in front began a motion late",
+            "Plans that were replanned because a robot in front started a motion late",
         ),
     )
 

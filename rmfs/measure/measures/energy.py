@@ -1,4 +1,4 @@
-"""What robots drew from their batteries; empty cells where energy is not counted."""
+"""Energy drawn by robots; empty cells if energy is not modelled."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Energy(Measure):
             "energy_kwh",
             REAL,
             "kWh",
-            "Drawn by all robots, less what braking gave back; empty where energy is not counted",
+            "Drawn by all robots, less recovered braking energy; empty if energy is not modelled",
             better=LESS,
         ),
         Column("energy_wh_per_unit", REAL, "Wh", "energy_kwh / units_picked", better=LESS),
@@ -38,8 +38,8 @@ class Energy(Measure):
         Column("energy_drive_kwh", REAL, "kWh", "Drawn for driving"),
         Column("energy_turn_kwh", REAL, "kWh", "Drawn for turning on the spot"),
         Column("energy_lift_kwh", REAL, "kWh", "Drawn for lifting pods"),
-        Column("energy_standby_kwh", REAL, "kWh", "Drawn by electronics, all the time"),
-        Column("energy_recuperated_kwh", REAL, "kWh", "Given back by braking"),
+        Column("energy_standby_kwh", REAL, "kWh", "Drawn by electronics at all times"),
+        Column("energy_recuperated_kwh", REAL, "kWh", "Recovered by braking"),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
@@ -60,17 +60,17 @@ class Energy(Measure):
 
 
 class Batteries(Measure):
-    """What became of the batteries."""
+    """Charging and levels of the batteries."""
 
     columns = (
         Column(
             "energy_charged_kwh",
             REAL,
             "kWh",
-            "Taken up where there is power, and by swaps; empty without batteries, as are the "
-            "following columns",
+            "Charged at chargers and by swaps; empty without batteries, as are the following "
+            "columns",
         ),
-        Column("charging_share", REAL, "share", "Robot time standing where there is power"),
+        Column("charging_share", REAL, "share", "Robot time spent at charging waypoints"),
         Column(
             "charge_task_share",
             REAL,
@@ -83,7 +83,7 @@ class Batteries(Measure):
             "robots_stranded",
             COUNT_OR_EMPTY,
             "robots",
-            "How often a robot stood still with an empty battery, until it was rescued",
+            "Number of times that a robot stopped with an empty battery until it was rescued",
             better=LESS,
         ),
         Column(
@@ -94,7 +94,9 @@ class Batteries(Measure):
             better=LESS,
         ),
         Column("battery_level_mean_share", REAL, "share", "Mean level, of samples every minute"),
-        Column("battery_level_least_share", REAL, "share", "Least level of any robot, likewise"),
+        Column(
+            "battery_level_least_share", REAL, "share", "Least level of any robot, sampled alike"
+        ),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What was simulated: the columns that tell one run from another."""
+"""Identification of the run: the columns that distinguish it from others."""
 
 from __future__ import annotations
 
@@ -12,12 +12,14 @@ if TYPE_CHECKING:
 
 
 class Heading(Measure):
-    """Names, seed, times, and the size of the warehouse: what does as much with less is better."""
+    """Names, seed, times, and the size of the warehouse."""
 
     columns = (
         Column("layout", TEXT, "", "Name of the layout"),
         Column("scenario", TEXT, "", "Name of the scenario"),
-        Column("controllers", TEXT, "", "Name of the set of controllers, and exchanges by hand"),
+        Column(
+            "controllers", TEXT, "", "Name of the set of controllers, and interactive exchanges"
+        ),
         Column("seed", INTEGER, "", "Seed of all random streams of the run"),
         Column("warmup_s", REAL, "s", "Simulated time before the measured time"),
         Column("duration_s", REAL, "s", "Measured time"),

@@ -1,4 +1,4 @@
-"""How far and how long robots drove, and what they did otherwise."""
+"""Distances and time budgets of robots."""
 
 from __future__ import annotations
 
@@ -43,15 +43,15 @@ class Motion(Measure):
             "trip_delay_mean_s",
             REAL,
             "s",
-            "Mean of trip time less a lower bound of the time the trip takes without other robots; "
-            "trips to stations are left out, since the bound there depends on the queue place",
+            "Mean difference between the trip time and a lower bound of it without other robots; "
+            "trips to stations are excluded, since their bound depends on the queue place",
             better=LESS,
         ),
         Column("pods_lifted", INTEGER, "lifts", "Pods lifted"),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Add up what traffic counted."""
+        """Add up the counts of the traffic model."""
         motion, trips = run.recorder.motion, run.tables["trips"]
         lasted = trips["end_s"] - trips["start_s"]
         delay = (lasted - trips["unhindered_s"])[trips["kind"] != "to_station"]
@@ -91,14 +91,14 @@ class RobotTime(Measure):
             "robot_waiting_share",
             REAL,
             "share",
-            "Robot time standing with a way to go, or in a queue",
+            "Robot time standing on the way or in a queue",
             better=LESS,
         ),
         Column("robot_turning_share", REAL, "share", "Robot time turning on the spot"),
         Column("robot_served_share", REAL, "share", "Robot time standing at a station"),
         Column("robot_transfer_share", REAL, "share", "Robot time lifting or setting down a pod"),
         Column("robot_riding_share", REAL, "share", "Robot time in an elevator"),
-        Column("robot_idle_share", REAL, "share", "Robot time standing without anything to do"),
+        Column("robot_idle_share", REAL, "share", "Robot time standing idle"),
         *(Column(f"tasks_{task}", INTEGER, "tasks", f"Tasks {task} started") for task in TASKS),
     )
 

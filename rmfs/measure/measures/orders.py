@@ -1,4 +1,4 @@
-"""What became of pick orders, and how long it took."""
+"""Times and numbers of pick orders."""
 
 from __future__ import annotations
 
@@ -71,32 +71,32 @@ class OrderTimes(Measure):
 
 
 class Backlog(Measure):
-    """Orders that came, and those that wait."""
+    """Numbers of arrived and waiting orders."""
 
     columns = (
         Column(
             "backlog_orders_mean",
             REAL,
             "orders",
-            "Time average of the number of orders that wait for a station",
+            "Time average of the number of orders waiting for a station",
             better=LESS,
         ),
         Column(
             "backlog_orders_end",
             INTEGER,
             "orders",
-            "Orders that wait for a station at the end",
+            "Orders waiting for a station at the end",
             better=LESS,
         ),
-        Column("open_orders_mean", REAL, "orders", "Time average of the orders open at stations"),
+        Column("open_orders_mean", REAL, "orders", "Time average of the open orders at stations"),
         Column("orders_created", INTEGER, "orders", "Orders that arrived"),
-        Column("order_redraws", INTEGER, "draws", "Drawn orders that the stock could not serve"),
+        Column("order_redraws", INTEGER, "draws", "Drawn order lines that stock could not serve"),
         Column(
             "orders_short",
             INTEGER,
             "orders",
-            "Orders for which stock was short when they arrived: there was less than they and the "
-            "orders before them want; they wait",
+            "Orders for which stock was insufficient on arrival, given all earlier orders; they "
+            "wait",
             better=LESS,
         ),
     )

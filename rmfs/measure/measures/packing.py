@@ -1,4 +1,4 @@
-"""What became of orders after the pick stations; empty cells where the scenario has no packing."""
+"""Orders after the pick stations; empty cells if the scenario has no packing."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ class Packing(Measure):
             "orders_packed",
             COUNT_OR_EMPTY,
             "orders",
-            "Orders packed; empty where the scenario has no packing, as are the following columns",
+            "Orders packed; empty without packing in the scenario, as are the following columns",
             better=MORE,
         ),
-        Column("orders_packed_split_share", REAL, "share", "Of these, those in several totes"),
+        Column("orders_packed_split_share", REAL, "share", "Of these, orders in several totes"),
         Column("totes_per_order", REAL, "totes", "Totes of the packed orders, mean", better=LESS),
         Column(
             "order_cycle_mean_s",
@@ -49,8 +49,8 @@ class Packing(Measure):
             "wall_slots_mean",
             REAL,
             "slots",
-            "Slots of the put wall in use, from a tote's arrival until the last is there, time "
-            "average; what was carried there by hand counts, too",
+            "Time average of used slots of the put wall, from the arrival of a tote to that of "
+            "the last of its order; includes totes carried by hand",
             better=LESS,
         ),
         Column("wall_slots_max", REAL, "slots", "Most slots in use at a time", better=LESS),
@@ -58,7 +58,7 @@ class Packing(Measure):
             "totes_held_mean",
             REAL,
             "totes",
-            "Totes that pick stations could not let go, time average: slots of stations blocked",
+            "Time average of totes that could not leave pick stations, which block slots there",
             better=LESS,
         ),
         Column(
@@ -72,7 +72,7 @@ class Packing(Measure):
             "totes_by_hand",
             COUNT_OR_EMPTY,
             "totes",
-            "Totes carried away by hand because their station had waited for too long",
+            "Totes carried by hand because their station had waited too long",
             better=LESS,
         ),
         Column(
@@ -85,7 +85,7 @@ class Packing(Measure):
             "packing_wait_mean_s",
             REAL,
             "s",
-            "Mean time for which an order that is all there waits for a packer",
+            "Mean time for which a complete order waits for a packer",
             better=LESS,
         ),
     )
@@ -126,7 +126,7 @@ class Packing(Measure):
 
 
 def slots_in_use(totes: pd.DataFrame, *, per_part: bool) -> Steps:
-    """Follow the slots of the wall that are in use.
+    """Return the number of used slots of the wall over time.
 
     Parameters
     ----------

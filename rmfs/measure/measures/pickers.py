@@ -1,4 +1,4 @@
-"""People at the pick stations; empty cells where the scenario has no pickers."""
+"""Pickers at the pick stations; empty cells if the scenario has no pickers."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ class Pickers(Measure):
             "pickers_mean",
             REAL,
             "pickers",
-            "Pickers present, time average; empty where the scenario has no pickers, as are the "
+            "Time average of pickers present; empty without pickers in the scenario, as are the "
             "following columns",
         ),
         Column(
             "pick_time_mean_s",
             REAL,
             "s",
-            "Mean time for which a unit kept its picker, rework included",
+            "Mean time for which a unit occupied its picker, rework included",
             better=LESS,
         ),
         Column("pick_time_variation", REAL, "share", "Coefficient of variation of these times"),
@@ -37,7 +37,7 @@ class Pickers(Measure):
             "picker_work_variation",
             REAL,
             "share",
-            "Coefficient of variation of the busy shares of all who were present: 0 if the work is "
+            "Coefficient of variation of the busy shares of all pickers present; 0 if the work is "
             "balanced",
             better=LESS,
         ),
@@ -45,16 +45,16 @@ class Pickers(Measure):
             "picker_fatigue_mean",
             REAL,
             "share",
-            "Fatigue of the picker when a pick began, mean over units",
+            "Mean fatigue of the picker at the start of a pick",
             better=LESS,
         ),
-        Column("picker_fatigue_max", REAL, "share", "The same, largest", better=LESS),
+        Column("picker_fatigue_max", REAL, "share", "Greatest fatigue of a picker", better=LESS),
         Column("pick_errors", COUNT_OR_EMPTY, "units", "Units picked wrongly", better=LESS),
         Column(
             "pick_errors_unnoticed",
             COUNT_OR_EMPTY,
             "units",
-            "Of these, units that nobody noticed",
+            "Of these, units that were not noticed",
             better=LESS,
         ),
         Column(

@@ -1,4 +1,4 @@
-"""How paths were planned, and whether they were safe."""
+"""Path planning, and safety of the paths."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ class Planning(Measure):
 
     columns = (
         Column("plans", INTEGER, "plans", "Paths planned and accepted"),
-        Column("plan_failures", INTEGER, "plans", "Searches that found no path yet", better=LESS),
+        Column("plan_failures", INTEGER, "plans", "Searches that found no path", better=LESS),
         Column(
             "replans",
             INTEGER,
             "plans",
-            "Paths changed before they were driven to the end",
+            "Paths changed before they were completed",
         ),
         Column("expansions", INTEGER, "labels", "Labels expanded by the path planner"),
         Column(

@@ -1,4 +1,4 @@
-"""What several measures reckon with: ratios, and spreads of times."""
+"""Functions shared by several measures: ratios and quartiles."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ NOTHING = float("nan")
 
 
 def ratio(amount: float, by: float) -> float:
-    """Divide; empty where there is nothing to divide by."""
+    """Divide; nan if the divisor is 0."""
     return amount / by if by else NOTHING
 
 

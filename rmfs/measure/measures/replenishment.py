@@ -1,4 +1,4 @@
-"""What became of bundles, and how full the pods are."""
+"""Times of bundles, and the fill level of pods."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ class Replenishment(Measure):
             "backlog_bundles_mean",
             REAL,
             "bundles",
-            "Time average of the bundles not yet given pod and station",
+            "Time average of the number of bundles without a pod or station",
             better=LESS,
         ),
         Column(
             "backlog_bundles_end",
             INTEGER,
             "bundles",
-            "Bundles not yet given both at the end",
+            "Bundles without a pod or station at the end",
             better=LESS,
         ),
     )
@@ -51,14 +51,14 @@ class Replenishment(Measure):
 
 
 class Inventory(Measure):
-    """How full the pods are."""
+    """Fill level of the pods."""
 
     columns = (
         Column(
             "inventory_share_mean",
             REAL,
             "share",
-            "Time average of the space that stored units use / capacity of all pods",
+            "Time average of the space used by stored units / capacity of all pods",
         ),
     )
 

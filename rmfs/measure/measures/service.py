@@ -1,4 +1,4 @@
-"""Whether orders were done in time: packed, where the scenario has packing, else picked."""
+"""On-time service: orders packed, or picked if the scenario has no packing, by their due time."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class Service(Measure):
             "on_time_share",
             REAL,
             "share",
-            "Orders done by their due time, of those that were done or cancelled in the measured "
-            "time or are overdue at its end; done: packed, where the scenario has packing, else "
+            "Orders done by their due time, as a share of those done or cancelled in the measured "
+            "time or overdue at its end; an order is done when packed or, without packing, when "
             "picked",
             better=MORE,
         ),
@@ -35,24 +35,23 @@ class Service(Measure):
             "on_time_urgent_share",
             REAL,
             "share",
-            'The same of urgent orders: those of the first class (orders.due.mode = "priority" or '
-            '"classes"); empty without classes, as is the next',
+            'The same for urgent orders: those of the first class (orders.due.mode = "priority" or '
+            '"classes"); empty without classes, as is the next column',
             better=MORE,
         ),
-        Column("on_time_ordinary_share", REAL, "share", "The same of all others", better=MORE),
+        Column("on_time_ordinary_share", REAL, "share", "The same for all others", better=MORE),
         Column(
             "on_time_weighted_share",
             REAL,
             "share",
-            "The same of all orders, each counted with the weight of its class "
-            '(orders.due.mode = "classes")',
+            'The same for all orders, weighted by class (orders.due.mode = "classes")',
             better=MORE,
         ),
         Column(
             "lateness_p95_s",
             REAL,
             "s",
-            "95th percentile of done less due time, negative if early, of the orders done",
+            "95th percentile of completion less due time of the orders done, negative if early",
             better=LESS,
         ),
         Column("lateness_max_s", REAL, "s", "Greatest of the same", better=LESS),
@@ -60,14 +59,14 @@ class Service(Measure):
             "orders_overdue_end",
             INTEGER,
             "orders",
-            "Orders that are past their due time and not done at the end",
+            "Orders past their due time and not done at the end",
             better=LESS,
         ),
         Column(
             "oldest_order_end_s",
             REAL,
             "s",
-            "Time since the arrival of the oldest order that is not done at the end",
+            "Age of the oldest order not done at the end",
             better=LESS,
         ),
     )

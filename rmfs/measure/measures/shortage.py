@@ -12,42 +12,42 @@ if TYPE_CHECKING:
 
 
 class ShortOrders(Measure):
-    """Orders cancelled and delivered in part, and those that are stuck at the end."""
+    """Orders cancelled, delivered in part, or stuck at the end."""
 
     columns = (
         Column(
             "orders_cancelled",
             INTEGER,
             "orders",
-            "Orders given up because stock could not serve them (orders.shortage)",
+            "Orders cancelled because stock could not serve them (orders.shortage)",
             better=LESS,
         ),
         Column(
             "orders_partial",
             INTEGER,
             "orders",
-            "Orders completed without some units for the same reason",
+            "Orders completed without some units because stock could not serve them",
             better=LESS,
         ),
         Column(
             "units_not_delivered",
             INTEGER,
             "units",
-            "Units of cancelled orders, and those that completed orders lack",
+            "Units of cancelled orders, and units missing from completed orders",
             better=LESS,
         ),
         Column(
             "orders_stuck_end",
             INTEGER,
             "orders",
-            "Orders that wait for a station at the end and that stock cannot serve",
+            "Orders waiting for a station at the end that stock cannot serve",
             better=LESS,
         ),
         Column(
             "oldest_stuck_end_s",
             REAL,
             "s",
-            "Time since the arrival of the oldest of these; empty without any",
+            "Age of the oldest of these orders; empty if there are none",
             better=LESS,
         ),
     )

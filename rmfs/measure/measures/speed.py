@@ -1,4 +1,4 @@
-"""What the simulation itself took."""
+"""Wall time and memory of the simulation."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Speed(Measure):
             "wall_s",
             REAL,
             "s",
-            "Wall time of the whole simulation, loading excluded",
+            "Wall time of the whole simulation, without loading",
             measured=True,
             better=LESS,
         ),
@@ -37,7 +37,7 @@ class Speed(Measure):
             "peak_rss_mb",
             REAL,
             "MB",
-            "Largest memory the process has used",
+            "Peak memory of the process",
             measured=True,
             better=LESS,
         ),

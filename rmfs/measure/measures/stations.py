@@ -1,4 +1,4 @@
-"""How busy the stations were."""
+"""Utilisation of the stations."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Stations(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Take means over the stations of each kind; empty where there are none."""
+        """Return means over the stations of each kind; empty if there are none."""
         stations = run.tables["stations"]
         told: dict[str, float] = {}
         for share in ("idle", "active"):

@@ -1,4 +1,4 @@
-"""How much was done: counts, rates, and how near they come to what is possible."""
+"""Throughput: counts, rates, and their ratio to an upper bound."""
 
 from __future__ import annotations
 
@@ -59,15 +59,15 @@ class Throughput(Measure):
 
 
 class Potential(Measure):
-    """What the stations could have picked at most."""
+    """Upper limits of what the stations could have picked."""
 
     columns = (
         Column(
             "units_per_h_bound",
             REAL,
             "1/h",
-            "No run of this layout with these SKUs picks more in such a time, under any "
-            "controllers, demand or seed: proven (see bounds)",
+            "Proven upper bound for any run of this layout with these SKUs and this duration, "
+            "whatever the controllers, demand or seed (see bounds)",
         ),
         Column(
             "units_score", REAL, "share", "units_per_h / units_per_h_bound; at most 1", better=MORE
@@ -76,14 +76,14 @@ class Potential(Measure):
             "units_per_h_at_pile_on",
             REAL,
             "1/h",
-            "What the pick stations would pick with the pile-on of this run, never waiting for a "
-            "pod longer than motion needs (see measures): sum over stations",
+            "Units that the pick stations would pick with the pile-on of this run if they never "
+            "waited longer for a pod than motion requires (see measures): sum over stations",
             better=MORE,
         ),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Compare with what no run can exceed, and with stations that never wait."""
+        """Compare with the upper bound, and with stations that never wait."""
         duration_s = run.logs.duration_s
         layout = at_best(run.layout, run.world.staff)
         if layout is None:

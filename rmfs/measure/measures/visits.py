@@ -1,4 +1,4 @@
-"""What a pod's stay at a station is worth."""
+"""Visits of pods to stations, and what is handled in each."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ if TYPE_CHECKING:
 
 
 class Visits(Measure):
-    """Visits of pods, and what was handled in one."""
+    """Number of visits, and units, lines, orders and bundles per visit."""
 
     columns = (
         Column(
             "pick_visits",
             INTEGER,
             "visits",
-            "Stays of a pod at a pick station in which at least one unit was picked; a pod that "
-            "keeps its place for further requests makes one visit",
+            "Visits of a pod to a pick station in which at least one unit was picked; a pod that "
+            "stays for further requests makes one visit",
         ),
         Column(
             "units_per_visit", REAL, "units", "Pile-on: units_picked / pick_visits", better=MORE
@@ -39,14 +39,13 @@ class Visits(Measure):
             "replenishment_visits",
             INTEGER,
             "visits",
-            "Stays of a pod at a replenishment station in which at least one bundle was stored",
+            "Visits of a pod to a replenishment station in which at least one bundle was stored",
         ),
         Column(
             "late_bound_units_per_visit",
             REAL,
             "units",
-            "Units picked that were bound to the pod after its robot had got the task / "
-            "pick_visits",
+            "Units bound to a pod after its robot got the task, and picked / pick_visits",
             better=MORE,
         ),
     )

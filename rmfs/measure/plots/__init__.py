@@ -1,4 +1,4 @@
-"""Pictures of runs: one function per picture, each draws into the axes it is given."""
+"""Plots of runs: one function per plot, each drawing into given axes."""
 
 from rmfs.measure.plots.backlog import backlog as backlog
 from rmfs.measure.plots.delays import delays as delays

@@ -1,4 +1,4 @@
-"""What waits, over time."""
+"""Backlogs over time."""
 
 from __future__ import annotations
 

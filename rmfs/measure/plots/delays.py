@@ -1,4 +1,4 @@
-"""Where the time of orders went."""
+"""Breakdown of order turnover over time."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ LABELS = {
     "service": ("served", colours.STATES["served"], ".."),
     "wait_order": ("waiting for the rest of the order", colours.ELEVATOR, "xx"),
 }
-"""Label, colour and hatch of each part, from below to above."""
+"""Label, colour and hatch of each part, from bottom to top."""
 
 BINS = 24
 
 
 def delays(orders: pd.DataFrame, ax: Axes) -> None:
-    """Draw the mean parts of the turnover of orders by the time of their completion, stacked.
+    """Plot the mean parts of order turnover by completion time, stacked.
 
     Parameters
     ----------
     orders
-        A table `delays`.
+        The table `delays`.
     """
     each = orders.groupby("order").mean(numeric_only=True)
     ended = each["completed_s"].to_numpy() / 3600.0

@@ -1,4 +1,4 @@
-"""Where robots drive and wait: the heat map (paper, figure 5b)."""
+"""Heat map of where robots drive and wait (paper, figure 5b)."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 SIDE_M = 1.0
-"""Side of the square that stands for a waypoint: the distance of neighbours."""
+"""Side length of the square of a waypoint: the distance between neighbours."""
 
 UNUSED = "0.94"
-"""Grey of waypoints without any count."""
+"""Grey of waypoints with a zero count."""
 
 
 def heat(frame: pd.DataFrame, ax: Axes, *, column: str = "visits", tier: int = 0) -> None:
-    """Draw one count of every waypoint of a tier, in colours on a logarithmic scale.
+    """Plot a count for every waypoint of a tier, in colours on a logarithmic scale.
 
-    The colours grow darker with the count, so the picture reads the same in grey.
+    Colours get darker with the count, so that the plot is also readable in greyscale.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def heat(frame: pd.DataFrame, ax: Axes, *, column: str = "visits", tier: int = 0
     column
         `visits`, `loaded_visits` or `waiting_s`.
     tier
-        The floor. Default the lowest.
+        Index of the tier. Default 0.
 
     Raises
     ------

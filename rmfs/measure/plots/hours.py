@@ -26,12 +26,12 @@ def per_hour(series: pd.DataFrame, column: str, bin_s: float) -> tuple[Floats, F
     Parameters
     ----------
     bin_s
-        Least length of a bin; shorter where the run is too short for three.
+        Minimum length of a bin; less if the run is too short for three bins.
 
     Returns
     -------
     tuple
-        Middle of each bin in h, and rate in 1/h.
+        Midpoint of each bin in h, and rate in 1/h.
     """
     end, length = series["time_s"].to_numpy(), series["interval_s"].to_numpy()
     begin_s, total_s = float(end[0] - length[0]), float(length.sum())

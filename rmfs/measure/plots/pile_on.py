@@ -1,4 +1,4 @@
-"""How many units were picked per visit of a pod."""
+"""Distribution of the units picked per visit of a pod."""
 
 from __future__ import annotations
 

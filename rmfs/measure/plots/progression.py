@@ -16,16 +16,16 @@ if TYPE_CHECKING:
 def progression(
     series: pd.DataFrame, ax: Axes, *, bin_s: float = 600.0, bound_per_h: float | None = None
 ) -> None:
-    """Draw units per hour as a solid line, km per hour as a dashed one on an axis of its own.
+    """Plot units per hour as a solid line and km per hour as a dashed line on a second axis.
 
     Parameters
     ----------
     series
         The table `series` of a run.
     bin_s
-        Length of time that is summed up into one point.
+        Length of the time bins.
     bound_per_h
-        Units per hour that no run exceeds, drawn as a dotted line. Default none.
+        Upper bound on units per hour, drawn as a dotted line. Default: none.
     """
     time_h, units = per_hour(series, "units_picked", bin_s)
     _, metres = per_hour(series, "distance_m", bin_s)

@@ -1,4 +1,4 @@
-"""What the robots did, over time."""
+"""States of robots over time."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STATES = {
     "waiting": ("waiting, queueing", "waiting", ""),
     "idle": ("idle", "idle", "oo"),
 }
-"""Label, name of the colour, and hatch of each state, from below to above."""
+"""Label, name of the colour, and hatch of each state, from bottom to top."""
 
 
 def robots(series: pd.DataFrame, ax: Axes) -> None:

@@ -1,4 +1,4 @@
-"""How busy each station was."""
+"""Utilisation of each station."""
 
 from __future__ import annotations
 

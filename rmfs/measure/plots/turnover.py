@@ -1,4 +1,4 @@
-"""How long orders took."""
+"""Distribution of order turnover times."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the rate of picked units has settled."""
+"""Convergence of the rate of picked units, for choosing a warm-up."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 
 def warmup(series: pd.DataFrame, ax: Axes, *, column: str = "units_picked") -> None:
-    """Draw a count per minute, Welch's moving average, and what MSER-5 and Welch propose.
+    """Plot a count per minute, Welch's moving average, and the proposals of MSER-5 and Welch.
 
-    The warm-up that the run left out is left out here too: make a run with `warmup_s = 0` for it.
+    The warm-up is not recorded in the series, so use a run with `warmup_s = 0`.
 
     Parameters
     ----------
     series
         The table `series` of a run.
     column
-        Count to look at.
+        Column of the count.
     """
     rate = (series[column] / series["interval_s"] * 3600.0).to_numpy(float)
     time_h = series["time_s"].to_numpy() / 3600.0

@@ -1,4 +1,4 @@
-"""The tables of a run but the footprint, each made from what the recorder wrote down."""
+"""The tables of a run except the footprint, each made from the recorded data."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ MAKERS = {
     "answers": answers,
     "controllers": controllers,
 }
-"""How each table but the footprint is made from what happened."""
+"""The function that makes each table except the footprint."""
 
 DECLARED: dict[str, Sequence[Column]] = {
     "series": SERIES,
@@ -112,16 +112,16 @@ DECLARED: dict[str, Sequence[Column]] = {
     "answers": ANSWERS,
     "controllers": CONTROLLERS,
 }
-"""Their columns."""
+"""The columns of these tables."""
 
 
 class Made(Mapping[str, "pd.DataFrame"]):
-    """The tables but the footprint, each made when it is first asked for.
+    """The tables except the footprint, each made on first access.
 
     Parameters
     ----------
     logs
-        What happened.
+        The recorded data.
     """
 
     def __init__(self, logs: Logs) -> None:

@@ -1,4 +1,4 @@
-"""What a pick station would pick at a given pile-on, if the next pod were always at hand."""
+"""The rate of a pick station at a given pile-on if the next pod were always ready."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) -> float:
     """Return the rate at which a station picks with a given pile-on if it never waits.
 
-    Of p units of a visit, all but the last keep robot and station for max(T, K), where T is
-    `unit_transfer_s` and K is `unit_pick_s`. After the last the robot leaves when K is over, the
-    next one stands there at least a change c later, and its first pick begins when T is over too.
-    So a visit lasts at least (p - 1) max(T, K) + max(T, K + c), which is linear in p: the mean
-    pile-on gives the bound for the mean.
+    Of the p units of a visit, all but the last occupy robot and station for max(T, K), where T is
+    `unit_transfer_s` and K is `unit_pick_s`. After the last, the robot leaves when K is over, the
+    next one arrives at least a change c later, and its first pick starts when T is over, too. A
+    visit therefore lasts at least (p - 1) max(T, K) + max(T, K + c). This is linear in p, so the
+    mean pile-on gives a bound on the mean.
 
     Parameters
     ----------
@@ -40,11 +40,12 @@ def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) ->
 
 
 def change_s(layout: Layout, waypoint: int) -> float:
-    """Return the least time between a robot's leave to go and the next one's arrival, in s.
+    """Return the minimum time between one robot's departure and the next one's arrival, in s.
 
-    The robot turns from the edge it came on to one that leads away, and clears the waypoint when it
-    reaches the next one; only then may another enter the last edge before the waypoint. The fastest
-    robot counts, and runs that go on behind these two edges pass their ends at full speed.
+    The robot turns from the edge it arrived on to one that leads away, and clears the waypoint when
+    it reaches the next one; only then may another enter the last edge before the waypoint. The
+    fastest robot is used, and runs that continue beyond these two edges pass their ends at full
+    speed.
     """
     inward, outward = list(_edges_in(layout, waypoint)), list(_edges_out(layout, waypoint))
     if not inward or not outward:
@@ -65,7 +66,7 @@ def change_s(layout: Layout, waypoint: int) -> float:
 
 
 def _drive_s(length_m: float, acceleration_m_s2: float, top_speed_m_s: float) -> float:
-    """Return the time to speed up from rest over a length, or, reversed, to brake to rest."""
+    """Return the time to accelerate from rest over a length, or, reversed, to brake to rest."""
     ramp_m = top_speed_m_s**2 / (2 * acceleration_m_s2)
     if length_m <= ramp_m:
         return sqrt(2 * length_m / acceleration_m_s2)

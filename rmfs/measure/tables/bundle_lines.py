@@ -1,4 +1,4 @@
-"""The table of the bundles of a file, with all that the file says of them."""
+"""The table of bundles read from a file, with all columns of the file."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ BUNDLE_LINES = (
     Column("pod", INTEGER, "", "Pod, -1 while undecided"),
     Column("station", INTEGER, "", "Replenishment station, -1 while undecided"),
     Column("file_line", INTEGER, "", "Line (CSV) or row (Parquet) of the file of bundles"),
-    Column("file_order", TEXT, "", "What the file has as order; may be empty"),
+    Column("file_order", TEXT, "", "Order in the file; may be empty"),
     Column("file_sku", TEXT, "", "The SKU's name, or its number where it has none"),
 )
 """Further columns of the file follow, each as `file_NAME`."""
 
 KEPT = ("sku", "units", "created_s", "stored_s", "pod", "station")
-"""Columns of the table of bundles that are here as well."""
+"""Columns copied from the table of bundles."""
 
 
 def bundle_lines(logs: Logs) -> pd.DataFrame:
-    """Every bundle in the table of bundles that comes from a file; else nothing."""
+    """Make a row for every bundle in the table of bundles that comes from a file."""
     stream = logs.recorder.bundle_stream
     bundles = seen_bundles(logs)
     bundles = bundles[bundles["in_file"] >= 0]

@@ -1,4 +1,4 @@
-"""The tables of ways: trips from waypoint to waypoint, and edges."""
+"""The tables of trips between waypoints, and of edges."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 
 CONNECTIONS = (
-    Column("from_waypoint", INTEGER, "", "Where trips began"),
-    Column("to_waypoint", INTEGER, "", "Where they led"),
+    Column("from_waypoint", INTEGER, "", "Start of the trips"),
+    Column("to_waypoint", INTEGER, "", "End of the trips"),
     Column("from_kind", TEXT, "", "pick, replenishment, storage, elevator, queue or road"),
     Column("to_kind", TEXT, "", "Likewise"),
     Column("trips", INTEGER, "trips", "Trips between the two, in this direction"),
@@ -31,8 +31,8 @@ CONNECTIONS = (
 )
 
 EDGES = (
-    Column("from_waypoint", INTEGER, "", "Where the edge begins"),
-    Column("to_waypoint", INTEGER, "", "Where it ends"),
+    Column("from_waypoint", INTEGER, "", "Start of the edge"),
+    Column("to_waypoint", INTEGER, "", "End of the edge"),
     Column("ride", FLAG, "", "Whether it is an elevator ride to another tier"),
     Column("passages", INTEGER, "passages", "Robots that drove it"),
     Column("loaded_passages", INTEGER, "passages", "Of these, with a pod"),
@@ -90,7 +90,7 @@ def edges(logs: Logs) -> pd.DataFrame:
 
 
 def waypoint_kinds(layout: Layout) -> NDArray[np.str_]:
-    """Name what each waypoint is for."""
+    """Return the use of each waypoint as a word."""
     kinds = np.full(layout.waypoints, "road", dtype="<U13")
     kinds[layout.is_queue] = "queue"
     kinds[layout.is_storage] = "storage"

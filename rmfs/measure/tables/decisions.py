@@ -31,7 +31,7 @@ _OF_ANSWERS: dict[str, Callable[[Answer], Any]] = {
     "built": lambda answer: answer.built,
     "scale": lambda answer: answer.scale,
 }
-"""What both tables of questions tell of an answer."""
+"""Columns that describe answers in both tables of questions."""
 
 
 DECISIONS = (
@@ -39,7 +39,7 @@ DECISIONS = (
         "time_s",
         REAL,
         "s",
-        "When a controller was asked that came to a decision, or when it asked an optimiser, since "
+        "When a controller was asked and made a decision, or when it asked an optimiser, since "
         "the start of the run",
     ),
     Column("problem", TEXT, "", "Decision problem: roa, poa, rps, pps, psa, ta, sa, mm, ca"),
@@ -47,36 +47,36 @@ DECISIONS = (
         "source",
         TEXT,
         "",
-        "rule: one call of a controller, with the decisions it took by itself; optimiser: one "
-        "question to an optimiser, with the decisions based on the answer. What follows after "
-        "`wall_s` is empty for rules",
+        "rule: a call of a controller, with the decisions it made itself; optimiser: a question "
+        "to an optimiser, with the decisions based on the answer. The columns after `wall_s` are "
+        "empty for rules",
     ),
-    Column("decisions", INTEGER, "decisions", "Decisions given; for optimisers applied + fallback"),
-    Column("wall_s", REAL, "s", "Wall time it took", measured=True),
+    Column("decisions", INTEGER, "decisions", "Decisions made; for optimisers applied + fallback"),
+    Column("wall_s", REAL, "s", "Wall time", measured=True),
     Column("call", COUNT_OR_EMPTY, "", "Number of the question, from the start of the run"),
-    Column("sizes", TEXT, "", "How large the question was"),
+    Column("sizes", TEXT, "", "Dimensions of the question"),
     Column("outcome", TEXT, "", "solution, nothing, failed, abandoned, or waiting at the end"),
-    Column("failure", TEXT, "", "Why it failed"),
+    Column("failure", TEXT, "", "Reason for a failure"),
     Column("completed_s", REAL, "s", "When the answer took effect"),
     Column("paced_s", REAL, "s", "completed_s - time_s"),
-    Column("backend", TEXT, "", "Who solved it"),
+    Column("backend", TEXT, "", "Back end that solved it"),
     Column("status", TEXT, "", "How the solver ended: optimal, feasible, infeasible, limit"),
     Column("objective", REAL, "", "Value of the solution, in the model's own unit"),
-    Column("bound", REAL, "", "What is proven about the best value"),
+    Column("bound", REAL, "", "Proven bound on the best value"),
     Column("gap_abs", REAL, "", "abs(objective - bound), in the unit of the objective"),
     Column(
         "gap",
         REAL,
         "share",
-        "gap_abs relative to the cost of the pods called (pile-on models; empty where none is) or "
+        "gap_abs relative to the cost of the pods called (pile-on models; empty if none is) or "
         "to abs(objective)",
     ),
     Column("work", REAL, "", "Deterministic work, in the unit of the back end"),
-    Column("built", REAL, "", "Entries of the solver's model that were built besides"),
-    Column("build_s", REAL, "s", "Wall time in which the solver's model was built", measured=True),
-    Column("solve_s", REAL, "s", "Wall time of the solver without that", measured=True),
+    Column("built", REAL, "", "Entries of the solver's model that were built in addition"),
+    Column("build_s", REAL, "s", "Wall time of building the solver's model", measured=True),
+    Column("solve_s", REAL, "s", "Wall time of the solver without building", measured=True),
     Column("applied", COUNT_OR_EMPTY, "decisions", "Decisions of the solution that were applied"),
-    Column("stale", COUNT_OR_EMPTY, "decisions", "Decisions of it that no longer held"),
+    Column("stale", COUNT_OR_EMPTY, "decisions", "Decisions of it that were no longer valid"),
     Column(
         "fallback",
         COUNT_OR_EMPTY,
@@ -88,18 +88,20 @@ DECISIONS = (
 ANSWERS = (
     Column("call", INTEGER, "", "Number of the question, from the start of the run"),
     Column("problem", TEXT, "", "Decision problem of the controller that asked"),
-    Column("state", TEXT, "", "Hash of the question and of the state it was asked in"),
-    Column("requested_us", INTEGER, "µs", "Simulated time at which it was asked"),
-    Column("completed_us", INTEGER, "µs", "Simulated time at which it took effect; -1: not yet"),
+    Column("state", TEXT, "", "Hash of the question and of the state of the world"),
+    Column("requested_us", INTEGER, "µs", "Simulated time of the question"),
+    Column(
+        "completed_us", INTEGER, "µs", "Simulated time of the effect of its answer; -1: not yet"
+    ),
     Column("outcome", TEXT, "", "As in `decisions`"),
-    Column("failure", TEXT, "", "Why it failed"),
-    Column("backend", TEXT, "", "Who solved it; empty without an answer"),
+    Column("failure", TEXT, "", "Reason for a failure"),
+    Column("backend", TEXT, "", "Back end that solved it; empty without an answer"),
     Column("status", TEXT, "", "How the solver ended; empty without an answer"),
     Column("objective", REAL, "", "Value of the solution"),
-    Column("bound", REAL, "", "What is proven about the best value"),
+    Column("bound", REAL, "", "Proven bound on the best value"),
     Column("work", REAL, "", "Deterministic work, in the unit of the back end"),
-    Column("built", REAL, "", "Entries built or gone through besides"),
-    Column("scale", REAL, "", "What the gap is relative to; empty: the objective"),
+    Column("built", REAL, "", "Entries built in addition"),
+    Column("scale", REAL, "", "Reference of the relative gap; empty: the objective"),
     Column("wall_s", REAL, "s", "Wall time of solver and building", measured=True),
     Column("build_s", REAL, "s", "Wall time of building", measured=True),
     Column("solution", TEXT, "", "The solution as JSON; empty without one"),
@@ -107,21 +109,21 @@ ANSWERS = (
 
 CONTROLLERS = (
     Column("problem", TEXT, "", "Decision problem"),
-    Column("calls", INTEGER, "calls", "How often its controller was asked"),
+    Column("calls", INTEGER, "calls", "Number of calls of its controller"),
     Column("decisions", INTEGER, "decisions", "Decisions given"),
     Column("wall_s", REAL, "s", "Wall time of all calls", measured=True),
     Column("wall_mean_s", REAL, "s", "Mean wall time of a call", measured=True),
-    Column("optimiser_calls", INTEGER, "calls", "Questions it handed to an optimiser"),
+    Column("optimiser_calls", INTEGER, "calls", "Questions to optimisers"),
     Column(
-        "optimiser_decisions", INTEGER, "decisions", "Decisions it took by solutions of optimisers"
+        "optimiser_decisions", INTEGER, "decisions", "Decisions made by solutions of optimisers"
     ),
     Column(
         "heuristic_decisions",
         INTEGER,
         "decisions",
-        "Decisions it took by its own rule; 0 for a controller that never asks optimisers",
+        "Decisions made by its own rule; 0 for a controller that never asks optimisers",
     ),
-    Column("stale_decisions", INTEGER, "decisions", "Decisions of solutions that no longer held"),
+    Column("stale_decisions", INTEGER, "decisions", "Decisions of solutions no longer valid"),
     Column(
         "failed_decisions",
         INTEGER,
@@ -132,7 +134,7 @@ CONTROLLERS = (
 
 
 def decisions(logs: Logs) -> pd.DataFrame:
-    """One row per call of a controller that came to a decision, and one per question it asked."""
+    """Make a row per call of a controller that made a decision, and per question it asked."""
     import pandas as pd
 
     calls = _calls(logs)
@@ -157,7 +159,7 @@ def decisions(logs: Logs) -> pd.DataFrame:
 
 
 def answers(logs: Logs) -> pd.DataFrame:
-    """One row per question to an optimiser, warm-up included: what a replay needs."""
+    """Make a row per question to an optimiser, warm-up included, as needed for a replay."""
     asked = logs.recorder.questions
     solutions = logs.recorder.solutions
     return tidy(
@@ -178,7 +180,7 @@ def answers(logs: Logs) -> pd.DataFrame:
 
 
 def controllers(logs: Logs) -> pd.DataFrame:
-    """One row per decision problem whose controller was asked in the measured time."""
+    """Make a row per decision problem whose controller was asked in the measured time."""
     asked = dict(sorted(logs.recorder.asked.items()))
     calls = np.array([number for number, _ in asked.values()])
     wall_s = np.array([wall for _, wall in asked.values()])
@@ -220,12 +222,12 @@ def _by_problem(questions: list[Call], count: Callable[[Call], int]) -> Counter[
 
 
 def _measured(logs: Logs) -> list[Call]:
-    """Questions asked in the measured time."""
+    """Return the questions asked in the measured time."""
     return [call for call in logs.recorder.questions if call.requested_us >= logs.start_s * 1e6]
 
 
 def _questions(asked: list[Call]) -> dict[str, Any]:
-    """Columns of the rows of questions."""
+    """Return columns that describe questions."""
     told = _told(asked)
     del told["scale"]
     return {
@@ -252,7 +254,7 @@ def _questions(asked: list[Call]) -> dict[str, Any]:
 
 
 def _told(asked: list[Call]) -> dict[str, list[Any]]:
-    """Return what answers tell of themselves; empty where there is none."""
+    """Return columns that describe answers; empty where there is none."""
     empty = dict.fromkeys(_OF_ANSWERS, nan) | {"backend": "", "status": ""}
     return {
         name: [empty[name] if call.answer is None else tell(call.answer) for call in asked]

@@ -1,11 +1,11 @@
-"""The table of delays: where the time of every order line went, without remainder.
+"""The table of delays: a complete breakdown of the time of every order line.
 
-Between the arrival of an order and its completion lie, for each of its lines, moments that follow
-each other: the order is assigned to a station; a robot gets the task to bring the pod of the last
-unit of the line; it lifts the pod; it enters the queue zone; it stands at the station; the unit has
-been handled; the order is complete. The time between two moments has a name, and all of them add up
-to the turnover of the order. What had happened before the order was assigned (a pod that was on its
-way already) is not the order's time, and counts for nothing.
+For each line, several moments lie between the arrival and the completion of its order: the order is
+assigned to a station; a robot gets the task to bring the pod of the line's last unit; it lifts the
+pod; it enters the queue zone; it reaches the station; the unit has been handled; the order is
+complete. The time between each pair of moments has a name, and together they add up to the turnover
+of the order. Anything before the assignment of the order (a pod that was already under way) is not
+part of the order's time.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ if TYPE_CHECKING:
     Integers = NDArray[np.int64]
 
 PARTS = {
-    "wait_assignment": "waiting for POA to put the order on a station",
+    "wait_assignment": "waiting for POA to assign the order to a station",
     "wait_pod": "waiting for a pod to be chosen while some robot was at rest",
     "wait_robot": "waiting for a pod to be chosen while all robots had work",
     "drive_free": "the robot driving to the pod and with it to the queue zone, as long as that "
-    "takes without others; lifting included",
-    "drive_hindered": "what these drives took longer because of others",
+    "takes without other robots; lifting included",
+    "drive_hindered": "additional time of these drives because of other robots",
     "queue": "in the queue zone",
     "service": "at the station, until the last unit of the line was handled",
     "wait_order": "waiting at the slot for the other lines of the order",
 }
-"""What the time of an order line is made of, in the order in which it passes."""
+"""The parts of the time of an order line, in chronological order."""
 
 DELAYS = (
     Column("order", INTEGER, "", "Ordinal of arrival of the order"),
@@ -56,7 +56,7 @@ _PICK, _REST = TASKS.index("pick"), TASKS.index("rest")
 
 
 def delays(logs: Logs) -> pd.DataFrame:
-    """One row per line of the orders completed in the measured time."""
+    """Make a row per line of the orders completed in the measured time."""
     lines = _lines(logs)
     created, completed = lines["created_s"].to_numpy(), lines["completed_s"].to_numpy()
     robot, picked = lines["robot"].to_numpy(), lines["time_s"].to_numpy()
@@ -93,7 +93,7 @@ def delays(logs: Logs) -> pd.DataFrame:
 
 
 def by_order(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return the parts of each order's time, in s: the mean of its lines; they add up alike."""
+    """Return the parts of each order's time, in s: the means over its lines, with the same sum."""
     columns = ["turnover_s", *(f"{part}_s" for part in PARTS)]
     return frame.groupby("order")[columns].mean()
 
@@ -106,7 +106,7 @@ def _lines(logs: Logs) -> pd.DataFrame:
 
 
 def _time_at_rest(logs: Logs, at_s: Floats) -> Floats:
-    """Return for how long, up to each time, some robot had nothing to do."""
+    """Return, for each time, how long some robot had been idle until then."""
     tasks, robots = logs.tasks, logs.layout.robots
     first = np.full(robots, logs.end_s)
     np.minimum.at(first, tasks["robot"].to_numpy(), tasks["begin_s"].to_numpy())
@@ -122,18 +122,18 @@ def _time_at_rest(logs: Logs, at_s: Floats) -> Floats:
 
 
 class _Moments:
-    """What the robot of each line did before it was picked, in s.
+    """Times of the robot of each line before the pick, in s.
 
     Attributes
     ----------
     task
-        When it was told to bring the pod.
+        When it got the task to bring the pod.
     lift
-        When it lifted the pod; `task` if it carried the pod already.
+        When it lifted the pod; `task` if it already carried the pod.
     queue
-        When it reached the queue zone; `lift` if it was at the station already.
+        When it reached the queue zone; `lift` if it was already at the station.
     visit
-        When it stood at the station.
+        When it reached the station.
     to_pod, to_station
         The drives between these.
     """
@@ -154,12 +154,12 @@ class _Moments:
 
 
 class _Drives:
-    """The last trip of a kind of each robot within a stretch of time.
+    """The last trip of a given kind of each robot within a time interval.
 
     Attributes
     ----------
     end
-        When it ended; the begin of the stretch where there was none.
+        Its end; the start of the interval if there was none.
     """
 
     def __init__(
@@ -183,10 +183,10 @@ class _Drives:
         self._is_to_pod = kind == _TO_POD
 
     def hindered(self, from_s: Floats, to_s: Floats) -> Floats:
-        """Return the hindered time of the part of each drive that lies in a stretch of time.
+        """Return the hindered time of the part of each drive that lies in a time interval.
 
-        A part of a drive is hindered as much as the whole. On the way to a pod, what passes before
-        the robot sets off counts as well: somebody stood beneath the pod.
+        Hindrance is distributed evenly over a drive. For drives to a pod, the time before the robot
+        starts counts as well, when another robot was standing beneath the pod.
         """
         since = self._from if self._is_to_pod else self._begin
         until = to_s if self._is_to_pod else self.end

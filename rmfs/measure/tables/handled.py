@@ -1,4 +1,4 @@
-"""The tables of what was handled at stations: picks, bundles and visits."""
+"""The tables of picks, bundles and visits."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ PICKS = (
         "picker",
         INTEGER,
         "",
-        "Who picked it, as in the table of pickers; -1 where the scenario has no pickers: then the "
+        "Picker, as in the table of pickers; -1 if the scenario has no pickers, in which case the "
         "following columns are empty, too",
     ),
-    Column("handling_s", REAL, "s", "For how long it kept the picker, rework included"),
-    Column("layer", INTEGER, "", "Layer of the pod, 0 at the floor; -1 where pods have none"),
-    Column("fatigue", REAL, "share", "Of the picker when the pick began"),
+    Column("handling_s", REAL, "s", "How long it occupied the picker, rework included"),
+    Column("layer", INTEGER, "", "Layer of the pod, 0 at the bottom; -1 if pods have none"),
+    Column("fatigue", REAL, "share", "Fatigue of the picker at the start of the pick"),
     Column("error", FLAG, "", "Whether a wrong unit was picked"),
-    Column("noticed", FLAG, "", "Whether that was noticed and put right"),
-    Column("face", INTEGER, "", "Face of the pod; -1 where pods have none"),
+    Column("noticed", FLAG, "", "Whether that was noticed and corrected"),
+    Column("face", INTEGER, "", "Face of the pod; -1 if pods have none"),
     Column("turned", FLAG, "", "Whether the pod was turned at the station for it"),
 )
 
 BUNDLES = (
     Column("sku", INTEGER, "", "SKU"),
     Column("units", INTEGER, "units", "Units"),
-    Column("space", REAL, "space units", "Space they need together"),
+    Column("space", REAL, "space units", "Total space of the units"),
     Column("created_s", REAL, "s", "Arrival"),
     Column("assigned_s", REAL, "s", "When pod and station were both decided; empty if not yet"),
     Column("stored_s", REAL, "s", "Storage; empty if not yet"),
@@ -56,15 +56,15 @@ VISITS = (
     Column("station", INTEGER, "", "Station"),
     Column("pod", INTEGER, "", "Pod"),
     Column("robot", INTEGER, "", "Robot"),
-    Column("begin_s", REAL, "s", "When the robot stood at the station; may lie in the warm-up"),
-    Column("end_s", REAL, "s", "When it was told to leave; empty if not yet"),
+    Column("begin_s", REAL, "s", "When the robot reached the station; may be in the warm-up"),
+    Column("end_s", REAL, "s", "When it was sent away; empty if not yet"),
     Column("units", INTEGER, "units", "Units picked in the measured time"),
     Column("bundles", INTEGER, "bundles", "Bundles stored in the measured time"),
 )
 
 
 def picks(logs: Logs) -> pd.DataFrame:
-    """One row per unit picked in the measured time."""
+    """Make a row per unit picked in the measured time."""
     frame = logs.units_now.reset_index(drop=True)
     if logs.recorder.pickers.staff is not None:
         frame = frame.join(logs.picks_by_hand)
@@ -75,7 +75,7 @@ def picks(logs: Logs) -> pd.DataFrame:
 
 
 def bundles(logs: Logs) -> pd.DataFrame:
-    """Every bundle that was waiting or stored during the measured time, by arrival."""
+    """Make a row per bundle that was waiting or stored during the measured time, by arrival."""
     frame = seen_bundles(logs).drop(columns="in_file")
     frame["turnover_s"] = frame["stored_s"] - frame["created_s"]
     frame["throughput_time_s"] = frame["stored_s"] - frame["assigned_s"]
@@ -90,6 +90,6 @@ def seen_bundles(logs: Logs) -> pd.DataFrame:
 
 
 def visits(logs: Logs) -> pd.DataFrame:
-    """One row per stay of a pod at a station that had not ended before the measured time."""
+    """Make a row per visit of a pod to a station that did not end before the measured time."""
     frame = logs.visits
     return tidy("visits", VISITS, frame[~(frame["end_s"] < logs.start_s)].reset_index(drop=True))

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 
 class Logs:
-    """What happened in a run, as frames.
+    """The recorded data of a run, as frames.
 
-    Those that end in `_now` hold the measured time only; the others also hold the warm-up, because
-    what was begun then carries over.
+    Names ending in `_now` contain only the measured time; the others also contain the warm-up,
+    because work started then carries over.
     """
 
     def __init__(self, recorder: Recorder) -> None:
@@ -62,7 +62,7 @@ class Logs:
 
     @cached_property
     def orders(self) -> pd.DataFrame:
-        """Orders that ever arrived, by ordinal."""
+        """All orders that arrived, by ordinal."""
         waiting = [order_row(order) for order in self.recorder.open_orders.values()]
         return framed(self.recorder.orders, waiting).sort_values("order", ignore_index=True)
 
@@ -78,13 +78,13 @@ class Logs:
 
     @cached_property
     def bundles(self) -> pd.DataFrame:
-        """Bundles that ever arrived; those not stored yet have neither time nor robot."""
+        """All bundles that arrived; those not stored yet have neither time nor robot."""
         waiting = [(*bundle_row(bundle), -1) for bundle in self.recorder.open_bundles.values()]
         return framed(self.recorder.bundles, waiting)
 
     @cached_property
     def busy(self) -> pd.DataFrame:
-        """When stations handled something, by station and time."""
+        """Periods in which stations handled something, by station and time."""
         frame = framed(self.recorder.busy)
         return frame.sort_values(["station", "begin_s"], ignore_index=True)
 
@@ -118,7 +118,7 @@ class Logs:
 
     @cached_property
     def tasks(self) -> pd.DataFrame:
-        """From when to when each robot had each task; a task lasts until the next one starts."""
+        """Start and end of each task of each robot; a task lasts until the next one starts."""
         frame = framed(self.recorder.tasks)
         frame = frame.sort_values(["robot", "begin_s"], kind="stable", ignore_index=True)
         robot, begin = frame["robot"].to_numpy(), frame["begin_s"].to_numpy()
@@ -129,9 +129,9 @@ class Logs:
 
     @cached_property
     def visits(self) -> pd.DataFrame:
-        """Stays of pods at stations, with the `units` and `bundles` handled in the measured time.
+        """Visits of pods to stations, with the `units` and `bundles` handled in the measured time.
 
-        Each unit or bundle belongs to the last visit to its station that began before it.
+        Each unit or bundle belongs to the last visit to its station that started before it.
         """
         frame = framed(self.recorder.visits)
         frame = frame.sort_values(["station", "begin_s"], ignore_index=True)
@@ -146,7 +146,7 @@ class Logs:
 
 
 def framed(log: Log, more: Sequence[tuple[Any, ...]] = ()) -> pd.DataFrame:
-    """Return a log as a frame, with more rows of the same columns at its end."""
+    """Return a log as a frame, with additional rows of the same columns."""
     import pandas as pd
 
     columns = log.columns()

@@ -1,4 +1,4 @@
-"""The tables that traffic counts: trips and heat."""
+"""The tables of trips and of the heat map, as counted by traffic."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ TRIP_KINDS = np.array(["to_pod", "to_station", "to_storage", "to_rest"])
 TRIPS = (
     Column("robot", INTEGER, "", "Robot"),
     Column("kind", TEXT, "", "to_pod, to_station, to_storage or to_rest"),
-    Column("from_waypoint", INTEGER, "", "Where it began"),
-    Column("to_waypoint", INTEGER, "", "Where it led"),
-    Column("start_s", REAL, "s", "When the robot was told to drive"),
+    Column("from_waypoint", INTEGER, "", "Start of the trip"),
+    Column("to_waypoint", INTEGER, "", "End of the trip"),
+    Column("start_s", REAL, "s", "When the robot got the order to drive"),
     Column("end_s", REAL, "s", "Arrival (for a station: at its queue zone)"),
-    Column("station", INTEGER, "", "Station it led to, -1 for another kind"),
+    Column("station", INTEGER, "", "Destination station, -1 for another kind"),
     Column("loaded", FLAG, "", "Whether the robot carried a pod"),
     Column("distance_m", REAL, "m", "Distance driven"),
     Column(
@@ -40,17 +40,17 @@ TRIPS = (
         "hindered_s",
         REAL,
         "s",
-        "end_s - start_s - unhindered_s: what others cost it; for a station it may be a little "
-        "below 0, since who drives on into the queue does not stop at its border",
+        "end_s - start_s - unhindered_s: delay by other robots; slightly negative for some trips "
+        "to stations, since robots do not stop at the border of the queue zone",
     ),
-    Column("energy_wh", REAL, "Wh", "Drawn on the way; empty where energy is not counted"),
+    Column("energy_wh", REAL, "Wh", "Drawn on the trip; empty if energy is not modelled"),
 )
 
 _PURPOSES = {
     "pick": "bound for a pick station (fetching its pod included), or at one",
     "replenish": "bound for a replenishment station (fetching its pod included), or at one",
     "store": "otherwise carrying a pod or fetching one",
-    "rest": "without a pod to care for",
+    "rest": "without a pod or a task for one",
 }
 
 HEAT = (
@@ -64,7 +64,7 @@ HEAT = (
         Column(f"{task}_visits", INTEGER, "visits", f"Robots that passed or stopped, {what}")
         for task, what in _PURPOSES.items()
     ),
-    Column("waiting_s", REAL, "s", "Time that robots stood here, idle ones not counted"),
+    Column("waiting_s", REAL, "s", "Time that robots stood here, excluding idle ones"),
     Column("loaded_waiting_s", REAL, "s", "Time that robots stood here with a pod"),
     *(
         Column(f"{task}_waiting_s", REAL, "s", f"Time that robots stood here, {what}")
@@ -74,7 +74,7 @@ HEAT = (
 
 
 def trips(logs: Logs) -> pd.DataFrame:
-    """Trips that ended during the measured time, by their end."""
+    """Make a row per trip that ended during the measured time, by its end."""
     told = logs.recorder.trips
     station = np.full(logs.layout.waypoints, -1)
     station[[one.waypoint for one in logs.layout.stations]] = np.arange(len(logs.layout.stations))
@@ -100,7 +100,7 @@ def trips(logs: Logs) -> pd.DataFrame:
 
 
 def heat(logs: Logs) -> pd.DataFrame:
-    """One row per waypoint."""
+    """Make a row per waypoint."""
     layout, counted = logs.layout, logs.recorder.heat
     return tidy(
         "heat",
@@ -119,7 +119,7 @@ def heat(logs: Logs) -> pd.DataFrame:
 
 
 def _by_task(layout: Layout, counted: dict[str, NDArray[Any]], what: str) -> dict[str, Any]:
-    """Add up what was counted per station, which is what traffic knows, per kind of task."""
+    """Sum the counts per station, as known to traffic, by kind of task."""
     tasks = list(_PURPOSES)
     kind_of = {"pick": tasks.index("pick"), "replenishment": tasks.index("replenish")}
     store, rest = tasks.index("store"), tasks.index("rest")

@@ -1,4 +1,4 @@
-"""The table of the lines of orders from a file, with all that the file says of them."""
+"""The table of order lines read from a file, with all columns of the file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ORDER_LINES = (
     Column("order", INTEGER, "", "Order, as in the table of orders"),
     Column("sku", INTEGER, "", "SKU, as in the table of SKUs"),
     Column("units", INTEGER, "units", "Units ordered"),
-    Column("picked_s", REAL, "s", "When the pick of its last unit ended; empty if not yet"),
+    Column("picked_s", REAL, "s", "When its last unit was picked; empty if not yet"),
     Column("file_line", INTEGER, "", "Line (CSV) or row (Parquet) of the file of orders"),
     Column("file_order", TEXT, "", "The order's name in the file"),
     Column("file_sku", TEXT, "", "The SKU's name, or its number where it has none"),
@@ -32,7 +32,7 @@ ORDER_LINES = (
 
 
 def order_lines(logs: Logs) -> pd.DataFrame:
-    """Every line of the orders in the table of orders that come from a file; else nothing."""
+    """Make a row for every line of orders in the table of orders that come from a file."""
     stream = logs.recorder.order_stream
     orders = seen(logs)
     orders = orders[orders["in_file"] >= 0]
@@ -70,7 +70,7 @@ def with_columns_of(file: OrderFile, line: NDArray[np.int64], frame: pd.DataFram
 def _lines(
     orders: pd.DataFrame, stream: OrderStream
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the order of each line to be shown, and the line's place in the stream."""
+    """Return the order of each included line, and the line's position in the stream."""
     counts = _counts(orders, stream)
     begins = np.cumsum(counts) - counts
     within = np.arange(counts.sum()) - np.repeat(begins, counts)
@@ -79,13 +79,13 @@ def _lines(
 
 
 def _counts(orders: pd.DataFrame, stream: OrderStream) -> NDArray[np.int64]:
-    """Return how many lines each order has."""
+    """Return the number of lines of each order."""
     counts: NDArray[np.int64] = np.diff(stream.first_line)[orders["in_file"].to_numpy()]
     return counts
 
 
 def _picked_s(logs: Logs, order: NDArray[np.int64], sku: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return when each line was finished, nan if it was not; an order has a SKU only once."""
+    """Return when each line was finished, or nan; an order has a SKU only once."""
     skus, done = len(logs.world.skus), logs.lines
     keys = done["order"].to_numpy(np.int64) * skus + done["sku"].to_numpy(np.int64)
     by_key = np.argsort(keys, kind="stable")

@@ -23,13 +23,13 @@ ORDERS = (
     Column("name", TEXT, "", "Its name in the file of orders; empty if it was drawn"),
     Column("priority", TEXT, "", "Its class; empty where orders have none (mode classes)"),
     Column("station", INTEGER, "", "Pick station, -1 while waiting for one"),
-    Column("lines", INTEGER, "lines", "Order lines, without those cut to nothing"),
+    Column("lines", INTEGER, "lines", "Order lines, without those cut to zero units"),
     Column("units", INTEGER, "units", "Units ordered"),
     Column("created_s", REAL, "s", "Arrival"),
     Column("due_s", REAL, "s", "Due time"),
     Column("assigned_s", REAL, "s", "Assignment to the station; empty if not yet"),
     Column("completed_s", REAL, "s", "Completion; empty if not yet"),
-    Column("cancelled_s", REAL, "s", "When it was given up for lack of stock; empty otherwise"),
+    Column("cancelled_s", REAL, "s", "When it was cancelled for lack of stock; else empty"),
     Column("units_cut", INTEGER, "units", "Units not delivered for lack of stock"),
     Column("turnover_s", REAL, "s", "completed_s - created_s"),
     Column("throughput_time_s", REAL, "s", "completed_s - assigned_s"),
@@ -39,13 +39,13 @@ ORDERS = (
         "energy_wh",
         REAL,
         "Wh",
-        "Drawn by robots for its units so far (docs/energy.md); empty where energy is not counted",
+        "Drawn by robots for its units so far (docs/energy.md); empty if energy is not modelled",
     ),
 )
 
 
 def orders(logs: Logs) -> pd.DataFrame:
-    """Every order that was waiting, open, completed or cancelled during the measured time."""
+    """Make a row per order that was waiting, open, completed or cancelled in the measured time."""
     frame = seen(logs)
     frame["name"] = _names(logs, frame.pop("in_file"))
     frame["priority"] = _priorities(logs, frame["priority"])
@@ -61,7 +61,7 @@ def orders(logs: Logs) -> pd.DataFrame:
 
 
 def seen(logs: Logs) -> pd.DataFrame:
-    """Orders that were waiting, open, completed or cancelled during the measured time."""
+    """Return the orders that were waiting, open, completed or cancelled in the measured time."""
     frame = logs.orders
     gone = (frame["completed_s"] < logs.start_s) | (frame["cancelled_s"] < logs.start_s)
     return frame[~gone].reset_index(drop=True)
@@ -71,21 +71,21 @@ def _priorities(logs: Logs, number: pd.Series[int]) -> NDArray[Any]:
     """Return the names of classes by their numbers."""
     due = logs.recorder.due
     names = due.names if isinstance(due, ClassesDue) else ()
-    # an order without a class has number -1: the last of these
+    # orders without a class have number -1, the last element
     return np.array([*names, ""], dtype=object)[number.to_numpy()]
 
 
 def _names(logs: Logs, in_file: pd.Series[int]) -> NDArray[Any]:
-    """Return the names of orders by their places in the file."""
+    """Return the names of orders by their positions in the file."""
     stream = logs.recorder.order_stream
     if stream is None or stream.file is None:
         return np.full(len(in_file), "", dtype=object)
-    # an order that was drawn has place -1: the last of these
+    # drawn orders have position -1, the last element
     return np.array([*stream.file.names, ""], dtype=object)[in_file.to_numpy()]
 
 
 def _pods(logs: Logs, order: pd.Series[int]) -> NDArray[np.int64]:
-    """Return from how many pods units were picked for each order."""
+    """Return the number of pods from which units were picked for each order."""
     pods = logs.layout.pods
     both = np.unique(logs.units["order"].to_numpy() * pods + logs.units["pod"].to_numpy())
     number = np.bincount(both // pods, minlength=int(order.max()) + 1 if len(order) else 0)

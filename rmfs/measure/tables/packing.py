@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 PARCELS = (
     Column("order", INTEGER, "", "Ordinal of arrival of the order"),
-    Column("totes", INTEGER, "totes", "In which it left pick stations so far; one per part"),
+    Column("totes", INTEGER, "totes", "Totes that have left pick stations; one per part"),
     Column("created_s", REAL, "s", "Arrival of the order"),
     Column("due_s", REAL, "s", "Its due time"),
     Column("picked_s", REAL, "s", "When its last tote left its pick station; empty if not yet"),
     Column("arrived_s", REAL, "s", "When its first tote reached the wall; empty if none does"),
     Column("consolidated_s", REAL, "s", "When its last tote reached the wall; empty likewise"),
-    Column("packing_s", REAL, "s", "When a packer began with it; empty if not yet"),
+    Column("packing_s", REAL, "s", "When a packer started with it; empty if not yet"),
     Column("packed_s", REAL, "s", "When it was packed; empty if not yet"),
     Column("cycle_s", REAL, "s", "packed_s - created_s"),
 )
@@ -31,20 +31,20 @@ TOTES = (
     Column("station", INTEGER, "", "Pick station"),
     Column("released_s", REAL, "s", "When it left the pick station"),
     Column("arrived_s", REAL, "s", "When it reached the wall; empty if not yet, or never"),
-    Column("consolidated_s", REAL, "s", "When all totes of the order were there; empty likewise"),
-    Column("by_hand", FLAG, "", "Carried by hand after its station had waited for too long"),
+    Column("consolidated_s", REAL, "s", "When all totes of the order had arrived; empty likewise"),
+    Column("by_hand", FLAG, "", "Carried by hand after its station had waited too long"),
 )
 
 
 def parcels(logs: Logs) -> pd.DataFrame:
-    """Orders of which something had left pick stations and that were not packed at the start."""
+    """Make a row per order that had reached the packing stage and was not packed before."""
     frame = _seen(logs).sort_values("order", ignore_index=True)
     frame["cycle_s"] = frame["packed_s"] - frame["created_s"]
     return tidy("parcels", PARCELS, frame)
 
 
 def totes(logs: Logs) -> pd.DataFrame:
-    """All totes of the table of parcels."""
+    """Make a row per tote of the orders in the table of parcels."""
     frame = framed(logs.recorder.packing.totes)
     frame = frame[frame["order"].isin(_seen(logs)["order"])]
     frame = frame.sort_values(["order", "released_s"], kind="stable", ignore_index=True)
@@ -52,6 +52,6 @@ def totes(logs: Logs) -> pd.DataFrame:
 
 
 def _seen(logs: Logs) -> pd.DataFrame:
-    """Keep what was not packed before the measured time."""
+    """Return the orders that were not packed before the measured time."""
     frame = framed(logs.recorder.packing.parcels)
     return frame[~(frame["packed_s"] < logs.start_s)]

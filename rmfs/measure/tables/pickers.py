@@ -21,21 +21,21 @@ PICKERS = (
     Column("picker", INTEGER, "", "Number; those of the first shift come first"),
     Column("shift", INTEGER, "", "Number of the shift"),
     Column("station", INTEGER, "", "Pick station"),
-    Column("speed", REAL, "share", "1 is that of the station's times"),
+    Column("speed", REAL, "share", "Relative speed; 1: the station's times"),
     Column("present_s", REAL, "s", "Time at the station"),
     Column("work_s", REAL, "s", "Of this, time with a unit"),
-    Column("busy_share", REAL, "share", "work_s / present_s; empty for who was never there"),
+    Column("busy_share", REAL, "share", "work_s / present_s; empty for pickers never present"),
     Column("units_picked", INTEGER, "units", "Units picked"),
     Column("unit_mean_s", REAL, "s", "Mean time of a unit, rework included; empty without any"),
     Column("fatigue_mean", REAL, "share", "Fatigue when picks began, mean; empty likewise"),
-    Column("fatigue_max", REAL, "share", "The same, largest"),
+    Column("fatigue_max", REAL, "share", "Greatest fatigue when picks started"),
     Column("errors", INTEGER, "units", "Units picked wrongly"),
     Column("errors_unnoticed", INTEGER, "units", "Of these, not noticed"),
 )
 
 
 def pickers(logs: Logs) -> pd.DataFrame:
-    """One row per picker of the scenario, for the measured time."""
+    """Make a row per picker of the scenario, for the measured time."""
     staff = logs.recorder.pickers.staff
     people = [] if staff is None else staff.pickers
     number = len(people)
@@ -85,7 +85,7 @@ def _within(
     end_s: pd.Series[float],
     number: int,
 ) -> NDArray[np.float64]:
-    """Add up, per picker, what of some times lies in the measured time."""
+    """Sum, per picker, the parts of some periods that lie in the measured time."""
     edges = np.array([logs.start_s, logs.end_s])
     who, begin, end = picker.to_numpy(), begin_s.to_numpy(), end_s.to_numpy()
     return np.array(

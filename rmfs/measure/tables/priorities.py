@@ -25,25 +25,25 @@ PRIORITIES = (
         "priority",
         TEXT,
         "",
-        "Class of orders: as the scenario names it, urgent or ordinary where it has these two, "
-        "else all",
+        "Class of orders: its name in the scenario; urgent or ordinary in scenarios with these "
+        "two; else all",
     ),
-    Column("weight", REAL, "", "What lateness of the class counts"),
+    Column("weight", REAL, "", "Weight of the class's lateness"),
     Column("orders", INTEGER, "orders", "Done or cancelled, or overdue at the end"),
-    Column("orders_done", INTEGER, "orders", "Done: packed, where there is packing, else picked"),
+    Column("orders_done", INTEGER, "orders", "Done: packed or, without packing, picked"),
     Column("orders_overdue_end", INTEGER, "orders", "Past their due time and not done at the end"),
     Column("on_time_share", REAL, "share", "Orders done by their due time, of `orders`"),
     Column("lateness_mean_s", REAL, "s", "Done less due time, negative if early, of those done"),
     Column("lateness_p95_s", REAL, "s", "95th percentile of the same"),
     Column("lateness_max_s", REAL, "s", "Greatest of the same"),
-    Column("late_by_mean_s", REAL, "s", "Mean of the same with 0 for those done by their due time"),
+    Column("late_by_mean_s", REAL, "s", "Mean of lateness, with 0 for orders done on time"),
     Column("cycle_mean_s", REAL, "s", "From arrival until done, mean of the orders done"),
     Column("cycle_p95_s", REAL, "s", "95th percentile of the same"),
 )
 
 
 def priorities(logs: Logs) -> pd.DataFrame:
-    """One row per class of orders, for the measured time."""
+    """Make a row per class of orders, for the measured time."""
     orders, names, weights = served(logs), class_names(logs), class_weights(logs)
     rows = [
         {"priority": name, "weight": weight, **_of(orders[orders["class"] == number])}
@@ -62,7 +62,7 @@ def class_names(logs: Logs) -> tuple[str, ...]:
 
 
 def class_weights(logs: Logs) -> tuple[float, ...]:
-    """Return what lateness of each class counts."""
+    """Return the weight of each class's lateness."""
     due = logs.recorder.due
     if isinstance(due, ClassesDue):
         return tuple(one.weight for one in due.classes)
@@ -75,15 +75,14 @@ def served(logs: Logs) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        `order`, `created_s`, `due_s`, `done_s` (packed, where there is packing, else picked; empty
-        if not), `class`, and whether it is `done`, `cancelled`, `overdue` or `on_time`. Orders
-        before the measured time are left out; those that wait and are not overdue are none of
-        these.
+        `order`, `created_s`, `due_s`, `done_s` (packed or, without packing, picked; empty if not),
+        `class`, and the flags `done`, `cancelled`, `overdue` and `on_time`. Orders before the
+        measured time are excluded; orders that wait and are not overdue have no flag.
     """
     frame = seen(logs)[["order", "created_s", "due_s", "completed_s", "cancelled_s"]]
     frame = frame.rename(columns={"completed_s": "done_s"})
     if logs.recorder.packing.given is not None:
-        # an order may have been picked in the warm-up and be packed in the measured time
+        # an order may be picked in the warm-up and packed in the measured time
         packed = parcels(logs)[["order", "created_s", "due_s", "packed_s"]]
         frame = frame.drop(columns="done_s").merge(packed, "outer", on="order")
         for name in ("created_s", "due_s"):
@@ -110,7 +109,7 @@ def _classes(logs: Logs, frame: pd.DataFrame) -> NDArray[np.int64]:
 
 
 def _of(orders: pd.DataFrame) -> dict[str, Any]:
-    """Return the measures of the orders of a class."""
+    """Return the columns for the orders of a class."""
     done = orders[orders["done"]]
     lateness, cycle = done["done_s"] - done["due_s"], done["done_s"] - done["created_s"]
     counted = int((orders["done"] | orders["cancelled"] | orders["overdue"]).sum())

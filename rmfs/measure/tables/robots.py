@@ -31,11 +31,11 @@ ROBOTS = (
         for state, what in {
             "moving": "driving",
             "turning": "turning on the spot",
-            "waiting": "standing with a way to go",
+            "waiting": "standing on the way",
             "served": "standing at a station",
             "transfer": "lifting or setting down",
             "riding": "in an elevator",
-            "idle": "standing without anything to do",
+            "idle": "standing idle",
             "queueing": "from a queue zone's border to its station (overlaps with the others)",
         }.items()
     ),
@@ -51,10 +51,10 @@ ROBOTS = (
     Column("units_picked", INTEGER, "units", "Units picked from pods it brought"),
     Column("bundles_stored", INTEGER, "bundles", "Bundles stored in pods it brought"),
     *(
-        Column(name, REAL, unit, f"{meaning}; empty where energy is not counted")
+        Column(name, REAL, unit, f"{meaning}; empty if energy is not modelled")
         for name, unit, meaning in (
-            ("energy_wh", "Wh", "Drawn, less what braking gave back"),
-            ("charged_wh", "Wh", "Taken up at chargers"),
+            ("energy_wh", "Wh", "Drawn, less recovered braking energy"),
+            ("charged_wh", "Wh", "Charged at chargers"),
             ("charging_s", "s", "Time at chargers"),
             ("level_wh", "Wh", "In its battery at the end"),
         )
@@ -71,7 +71,7 @@ _ENERGY = (
 
 
 def robots(logs: Logs) -> pd.DataFrame:
-    """One row per robot."""
+    """Make a row per robot."""
     number, motion = logs.layout.robots, logs.recorder.motion
     columns: dict[str, Any] = {
         "robot": np.arange(number),
@@ -100,6 +100,6 @@ def robots(logs: Logs) -> pd.DataFrame:
 def with_task(logs: Logs, task: str) -> Steps:
     """Return the number of robots with a task over time."""
     own = logs.tasks[logs.tasks["kind"].to_numpy() == TASKS.index(task)]
-    # a task that reaches the end of the run is still held there
+    # a task still under way at the end of the run counts up to the end
     ends = own["end_s"].mask(own["end_s"] >= logs.end_s)
     return Steps.between(own["begin_s"], ends)

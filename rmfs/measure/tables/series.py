@@ -1,4 +1,4 @@
-"""The table of the run's course: one row per minute."""
+"""The time series of a run: one row per minute."""
 
 from __future__ import annotations
 
@@ -25,9 +25,7 @@ if TYPE_CHECKING:
 
 SERIES = (
     Column("time_s", REAL, "s", "End of the interval, since the start of the run"),
-    Column(
-        "interval_s", REAL, "s", "Length of the interval: a minute, the last one may be shorter"
-    ),
+    Column("interval_s", REAL, "s", "Length of the interval: a minute; the last may be shorter"),
     Column("units_picked", INTEGER, "units", "Units picked in the interval"),
     Column("lines_picked", INTEGER, "lines", "Lines finished in the interval"),
     Column("orders_created", INTEGER, "orders", "Orders that arrived in the interval"),
@@ -35,11 +33,9 @@ SERIES = (
     Column("bundles_created", INTEGER, "bundles", "Bundles that arrived in the interval"),
     Column("bundles_stored", INTEGER, "bundles", "Bundles stored in the interval"),
     Column("distance_m", REAL, "m", "Distance driven in the interval"),
-    Column("backlog_orders", INTEGER, "orders", "Orders that wait for a station, at the end"),
-    Column("open_orders", INTEGER, "orders", "Orders open at stations, at the end"),
-    Column(
-        "backlog_bundles", INTEGER, "bundles", "Bundles not yet given pod and station, at the end"
-    ),
+    Column("backlog_orders", INTEGER, "orders", "Orders waiting for a station, at the end"),
+    Column("open_orders", INTEGER, "orders", "Open orders at stations, at the end"),
+    Column("backlog_bundles", INTEGER, "bundles", "Bundles without a pod or station, at the end"),
     Column("inventory_share", REAL, "share", "Space used / capacity of all pods, at the end"),
     Column("pick_station_busy_share", REAL, "share", "Pick stations' time spent handling units"),
     Column(
@@ -57,33 +53,33 @@ SERIES = (
         for state, what in {
             "moving": "driving",
             "turning": "turning",
-            "waiting": "standing with a way to go",
+            "waiting": "standing on the way",
             "served": "standing at a station",
             "transfer": "lifting or setting down",
             "riding": "in an elevator",
-            "idle": "with nothing to do",
+            "idle": "standing idle",
             "queueing": "in queue zones (overlaps with the others)",
         }.items()
     ),
-    Column("energy_wh", REAL, "Wh", "Drawn in the interval; empty where energy is not counted"),
-    Column("charged_wh", REAL, "Wh", "Charged in the interval; empty where energy is not counted"),
+    Column("energy_wh", REAL, "Wh", "Drawn in the interval; empty if energy is not modelled"),
+    Column("charged_wh", REAL, "Wh", "Charged in the interval; empty if energy is not modelled"),
     Column(
         "level_mean_wh",
         REAL,
         "Wh",
-        "Mean of what is in the batteries, at the end; empty without batteries",
+        "Mean level of the batteries at the end; empty without batteries",
     ),
     Column(
         "level_least_wh",
         REAL,
         "Wh",
-        "The least of what is in the batteries, at the end; empty without batteries",
+        "Least level of the batteries at the end; empty without batteries",
     ),
 )
 
 
 def series(logs: Logs) -> pd.DataFrame:
-    """Return counts per interval, and levels at its end."""
+    """Return counts per interval, and levels at the end of each."""
     ends = np.array([time for time, _ in logs.recorder.samples])
     edges = np.concatenate([[logs.start_s], ends])
     length = np.diff(edges)
@@ -123,7 +119,7 @@ def series(logs: Logs) -> pd.DataFrame:
 
 
 def motion_per_interval(logs: Logs) -> dict[str, Floats]:
-    """Return the growth of the fleet's totals in each interval."""
+    """Return the increase of the fleet's totals in each interval."""
     samples = logs.recorder.samples
     names = samples[0][1].keys()
     return {name: np.diff([0.0, *(totals[name] for _, totals in samples)]) for name in names}

@@ -30,14 +30,12 @@ STATIONS = (
     Column("tier", INTEGER, "", "Floor"),
     Column("x_m", REAL, "m", "Position"),
     Column("y_m", REAL, "m", "Position"),
-    Column(
-        "queue_places", INTEGER, "places", "Places in the queue, the one at the station included"
-    ),
+    Column("queue_places", INTEGER, "places", "Places in the queue, including the station's own"),
     Column(
         "visits",
         INTEGER,
         "visits",
-        "Stays of a pod in which something was handled; all, of other kinds",
+        "Visits of pods in which something was handled; for other kinds, all visits",
     ),
     Column("visit_time_mean_s", REAL, "s", "Mean length of the visits that ended"),
     Column("units_picked", INTEGER, "units", "Units picked"),
@@ -48,25 +46,25 @@ STATIONS = (
     Column("busy_s", REAL, "s", "Time spent handling units or bundles"),
     Column("idle_share", REAL, "share", "1 - busy_s / duration"),
     Column("active_share", REAL, "share", "Time switched on / duration"),
-    Column("units_per_h_at_pile_on", REAL, "1/h", "See footprint; of pick stations only"),
+    Column("units_per_h_at_pile_on", REAL, "1/h", "See footprint; pick stations only"),
     Column("units_per_visit", REAL, "units", "Pile-on: units_picked / visits"),
     Column("orders_per_visit", REAL, "orders", "orders_completed / visits"),
     Column("bundles_per_visit", REAL, "bundles", "bundles_stored / visits"),
-    Column("order_slots", INTEGER, "orders", "Orders open at once; 0 for other kinds"),
+    Column("order_slots", INTEGER, "orders", "Maximum number of open orders; 0 for other kinds"),
     Column(
-        "capacity", REAL, "space units", "Bundles assigned at once; of replenishment stations only"
+        "capacity", REAL, "space units", "Maximum space of bundles; replenishment stations only"
     ),
     Column(
         "without_work_share",
         REAL,
         "share",
-        "Share of the time in which no order (bundle) was assigned to it; empty for other kinds",
+        "Share of the time without an assigned order (bundle); empty for other kinds",
     ),
 )
 
 
 def stations(logs: Logs) -> pd.DataFrame:
-    """One row per station in the common numbering."""
+    """Make a row per station, in the common numbering."""
     layout = logs.layout
     number = len(layout.stations)
     place = np.array([station.waypoint for station in layout.stations], np.int64)
@@ -123,14 +121,14 @@ def busy_until(logs: Logs, station: int, at_s: NDArray[np.float64]) -> NDArray[n
 def _at_pile_on(
     layout: Layout, station: Station, units_per_visit: float, *, with_pickers: bool
 ) -> float:
-    """Return the rate of a pick station; without any visit as if pods never changed."""
+    """Return the rate of a pick station; without any visit, as if pods never changed."""
     if not isinstance(station, PickStation) or with_pickers:
         return float("nan")
     return units_per_h(layout, station, units_per_visit if units_per_visit > 0 else float("inf"))
 
 
 def _per(amount: NDArray[np.int64], visits: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Divide; empty where there was no visit."""
+    """Divide; empty if there was no visit."""
     result = np.full(len(visits), np.nan)
     np.divide(amount, visits, out=result, where=visits > 0)
     return result
@@ -162,7 +160,7 @@ def _mean_visit(visits: pd.DataFrame, stations: int) -> NDArray[np.float64]:
 
 
 def _active_share(logs: Logs, station: int) -> float:
-    """Return the share of the measured time a station was on; all are at the start."""
+    """Return the share of the measured time a station was active; all are at the start."""
     own = logs.switches[logs.switches["station"].to_numpy() == station]
     change = np.diff(np.concatenate([[1.0], own["active"].to_numpy(np.float64)]))
     return Steps(own["time_s"].to_numpy(), change, 1.0).mean(logs.start_s, logs.end_s)

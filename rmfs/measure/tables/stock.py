@@ -22,7 +22,7 @@ PODS = (
     Column("capacity", REAL, "space units", "Capacity"),
     Column("used_end", REAL, "space units", "Space used by stored units at the end"),
     Column("waypoint_end", INTEGER, "", "Where it stands at the end; -1 if carried"),
-    Column("lifts", INTEGER, "lifts", "How often it was lifted"),
+    Column("lifts", INTEGER, "lifts", "Number of times it was lifted"),
     Column("pick_visits", INTEGER, "visits", "Visits to pick stations with units picked"),
     Column("replenishment_visits", INTEGER, "visits", "Visits with bundles stored"),
     Column("units_picked", INTEGER, "units", "Units picked from it"),
@@ -43,7 +43,7 @@ SKUS = (
 
 
 def pods(logs: Logs) -> pd.DataFrame:
-    """One row per pod."""
+    """Make a row per pod."""
     number, visits = logs.layout.pods, logs.visits
     return tidy(
         "pods",
@@ -63,7 +63,7 @@ def pods(logs: Logs) -> pd.DataFrame:
 
 
 def skus(logs: Logs) -> pd.DataFrame:
-    """One row per SKU."""
+    """Make a row per SKU."""
     known = logs.world.skus
     number, contained = len(known), logs.world.inventory.contained
     return tidy(
@@ -84,5 +84,5 @@ def skus(logs: Logs) -> pd.DataFrame:
 
 
 def names_of_skus(skus: SkuSet) -> list[str]:
-    """Return what each SKU is called."""
+    """Return the name of each SKU."""
     return list(skus.names) or [str(number) for number in skus.ids.tolist()]

@@ -1,4 +1,4 @@
-"""Bringing a table into the order and the types that its declaration promises."""
+"""Brings a table into the declared order and types."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @cache
 def _dtype(name: str) -> Any:
-    """Return the type of that name; to look it up takes pandas longer than to convert to it."""
+    """Return the type of that name; pandas takes longer to look it up than to convert to it."""
     import pandas as pd
 
     return pd.api.types.pandas_dtype(name)
@@ -24,22 +24,22 @@ def _dtype(name: str) -> Any:
 def tidy(
     table: str, declared: Sequence[Column], columns: Mapping[str, Any] | pd.DataFrame
 ) -> pd.DataFrame:
-    """Return a frame with exactly the columns declared.
+    """Return a frame with exactly the declared columns.
 
-    Each column is brought into its type by itself, so that a long table takes little more memory
-    while it is made than afterwards.
+    Columns are converted one at a time, so that making a long table takes little more memory than
+    the table itself.
 
     Parameters
     ----------
     table
-        Its name, for errors.
+        Name of the table, for errors.
     columns
         Arrays, lists or series of one length; a single value stands for a column of it.
 
     Raises
     ------
     ValueError
-        If a column is missing or not declared: nothing is written that is not described.
+        If a column is missing or not declared.
     """
     import pandas as pd
 

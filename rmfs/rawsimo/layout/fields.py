@@ -56,7 +56,7 @@ class Fields:
         return f"{self._element.tag} {self._element.get('ID', '(without ID)')}"
 
     def number(self, name: str, default: float | None = None) -> float:
-        """Return a finite number; without a default it must be there."""
+        """Return a finite number; without a default, the attribute is required."""
         text = self._element.get(name)
         if text is None and default is not None:
             return default
@@ -70,7 +70,7 @@ class Fields:
         return value
 
     def whole(self, name: str, default: int | None = None) -> int:
-        """Return a whole number; without a default it must be there."""
+        """Return a whole number; without a default, the attribute is required."""
         text = self._element.get(name)
         if text is None and default is not None:
             return default

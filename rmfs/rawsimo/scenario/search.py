@@ -1,4 +1,4 @@
-"""Where RAWSim-O looks for the files that its settings name."""
+"""Locates the files that settings of RAWSim-O refer to."""
 
 from __future__ import annotations
 

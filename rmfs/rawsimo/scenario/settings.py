@@ -141,7 +141,7 @@ class Settings:
             self.note(f"{', '.join(present)} not used: {reason}")
 
     def leave_rest(self) -> None:
-        """Note the elements that nobody asked for."""
+        """Note the elements that were not read."""
         unknown = [tag for tag in self._elements if tag not in self._read]
         if unknown:
             self.note(

@@ -133,7 +133,7 @@ def _skus(path: Path, root: Element, ordered: Counter[str]) -> SkuFileContent:
         if not number.isdecimal() or len(number) > 15:
             problems.add(f"ItemDescription: ID must be a whole number (given: {number!r:.40})")
         elif int(number) in ids:
-            problems.add(f"ItemDescription {number} comes twice")
+            problems.add(f"ItemDescription {number} occurs twice")
         elif space is None:
             problems.add(f"ItemDescription {number}: Weight must be a positive number")
         else:

@@ -1,6 +1,6 @@
-"""Public sets of orders, in their own columns, turned into files of ours.
+"""Public data sets of orders, converted to files of orders.
 
-Who uses one downloads it and keeps to its licence; nothing of them comes with this package.
+Users download the data themselves, under its licence; none of it is shipped with this package.
 """
 
 from rmfs.scenario.datasets.converting import Converted as Converted

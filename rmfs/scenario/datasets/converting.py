@@ -1,4 +1,4 @@
-"""From the files of a public set to a file of orders of ours."""
+"""Converts files of a public data set to a file of orders."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MOST_LINES = 4_999_999
-"""Lines of a file of orders that is read again."""
+"""Maximum number of lines of a file of orders that can be read back."""
 
 
 class Converted(NamedTuple):
-    """What was converted.
+    """Result of a conversion.
 
     Attributes
     ----------
     orders, lines, units, skus
-        How many.
+        Numbers of what was converted.
     first, last
-        When the first and the last order come.
+        Times of the first and the last order.
     left_out
-        What was left out, and how often.
+        Number of omissions by reason.
     """
 
     orders: int
@@ -54,28 +54,28 @@ def convert(
     share: float = 1.0,
     seed: int = 0,
 ) -> Converted:
-    """Read the files of a public set and write the orders as a file of ours.
+    """Convert the files of a public data set to a file of orders.
 
     Parameters
     ----------
     layout
         A name of `LAYOUTS`.
     paths
-        Its files, in the order that the layout says; further ones are like the last.
+        Its files, in the order given by the layout; further files are like the last one.
     out
         The .csv file to write.
     begin, end
-        Orders from the first and before the second are taken; default: all.
+        Range of order times, without its end. Default: all.
     share
-        Of these so many are taken, drawn order by order.
+        Share of these orders to use, drawn order by order.
     seed
-        Of these draws.
+        Seed of the draws.
 
     Raises
     ------
     InputError
-        If a file cannot be read, lacks a column or has a field that is wrong; no order is left; or
-        they are too many.
+        If a file cannot be read, lacks a column or has an invalid field; if no order is left; or if
+        there are too many.
     """
     if layout not in LAYOUTS:
         raise InputError(f"layout {layout!r:.40} is unknown; valid: {', '.join(LAYOUTS)}")

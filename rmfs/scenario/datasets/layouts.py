@@ -1,4 +1,4 @@
-"""Layouts of columns of public sets: how their rows become orders."""
+"""File layouts of public data sets: how their rows become orders."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ AMERICAN = "%m/%d/%Y %H:%M"
 
 
 class Layout(NamedTuple):
-    """A layout of columns.
+    """The file layout of a data set.
 
     Attributes
     ----------
     files
-        What its files are called; each has to be given, in this order.
+        Names of its files; each must be given, in this order.
     source
-        Where it is from.
+        Source of the data set.
     read
-        Reads the files.
+        Function that reads the files.
     """
 
     files: tuple[str, ...]
@@ -38,9 +38,9 @@ class Layout(NamedTuple):
 
 
 def instacart(paths: Sequence[Path], orders: Orders) -> None:
-    """Read orders, of which weekday and hour are known: all come within one week.
+    """Read orders with weekday and hour, which all fall within one week.
 
-    Orders of one hour are spread evenly over it. Every line is one unit.
+    Orders of the same hour are spread evenly over it. Every line is one unit.
     """
     whole = ("order_id", "order_dow", "order_hour_of_day")
     hours: dict[tuple[int, int], list[str]] = defaultdict(list)
@@ -48,7 +48,7 @@ def instacart(paths: Sequence[Path], orders: Orders) -> None:
     for row in rows(paths[0], whole):
         name = row.name("order_id")
         if name in seen:
-            raise row.wrong("order_id", "comes twice")
+            raise row.wrong("order_id", "occurs twice")
         seen.add(name)
         hours[row.whole("order_dow", 0, 6), row.whole("order_hour_of_day", 0, 23)].append(name)
     for (day, hour), names in sorted(hours.items()):
@@ -62,13 +62,13 @@ def instacart(paths: Sequence[Path], orders: Orders) -> None:
             if order is None:
                 orders.left_out[NOT_TAKEN] += 1
             elif sku in order.units:
-                raise row.wrong("product_id", "comes twice in its order")
+                raise row.wrong("product_id", "occurs twice in its order")
             else:
                 order.add(sku, 1)
 
 
 def online_retail(paths: Sequence[Path], orders: Orders) -> None:
-    """Read invoices: cancelled ones, returns, and lines that are no products are left out."""
+    """Read invoices; cancelled ones, returns, and lines that are not products are omitted."""
     columns = ("InvoiceNo|Invoice", "StockCode", "Quantity", "InvoiceDate")
     for path in paths:
         # descriptions are in an encoding of their own; what is read is plain
@@ -91,7 +91,7 @@ def online_retail(paths: Sequence[Path], orders: Orders) -> None:
 
 
 def jd(paths: Sequence[Path], orders: Orders) -> None:
-    """Read order lines, gifts among them, which are picked, too."""
+    """Read order lines, including gifts, which are picked as well."""
     columns = ("order_ID", "sku_ID", "order_time", "quantity")
     for path in paths:
         for row in rows(path, columns):
@@ -105,12 +105,12 @@ def jd(paths: Sequence[Path], orders: Orders) -> None:
 
 
 def olist(paths: Sequence[Path], orders: Orders) -> None:
-    """Read orders and their items, each a unit; due when the first has to be handed over."""
+    """Read orders and their items of one unit each; due when the first item must be shipped."""
     columns = ("order_id", "order_status", "order_purchase_timestamp")
     for row in rows(paths[0], columns):
         name, moment = row.name("order_id"), row.moment("order_purchase_timestamp")
         if name in orders.by_name:
-            raise row.wrong("order_id", "comes twice")
+            raise row.wrong("order_id", "occurs twice")
         if row.text("order_status") in ("canceled", "unavailable"):
             orders.by_name[name] = None
             orders.left_out["orders cancelled or not available"] += 1
@@ -153,4 +153,4 @@ LAYOUTS = {
         olist,
     ),
 }  # fmt: skip
-"""By the name under which they are asked for."""
+"""The layouts by name."""

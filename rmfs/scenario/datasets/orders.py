@@ -1,4 +1,4 @@
-"""Orders being put together from rows, whatever the layout of the columns."""
+"""Collects orders from rows, for any file layout."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class Order:
     Attributes
     ----------
     time
-        When it comes; a moment, or s from time zero.
+        Arrival, as a date and time, or in s from time zero.
     due
-        When it is due, if the set tells.
+        Due time, if the data set has one.
     units
-        By SKU, in the order of its lines.
+        Units by SKU, in the order of its lines.
     """
 
     time: datetime | float
@@ -33,22 +33,22 @@ class Order:
     units: dict[str, int] = field(default_factory=dict)
 
     def add(self, sku: str, units: int) -> None:
-        """Add units; rows of one SKU are one line."""
+        """Add units; rows with the same SKU form one line."""
         self.units[sku] = self.units.get(sku, 0) + units
 
 
 @dataclass(slots=True)
 class Orders:
-    """Orders of a set.
+    """The orders of a data set.
 
     Attributes
     ----------
     takes
-        Told the time of an order, says whether it is taken; asked once for each order.
+        Returns whether to use an order with a given time; called once per order.
     by_name
-        Those taken; None for those that are not.
+        Orders by name; None for those not used.
     left_out
-        What was left out, and how often.
+        Number of omissions by reason.
     """
 
     takes: Callable[[datetime | float], bool]
@@ -56,7 +56,7 @@ class Orders:
     left_out: Counter[str] = field(default_factory=Counter)
 
     def begin(self, name: str, time: datetime | float) -> Order | None:
-        """Return the order of a name; a new one if it is taken."""
+        """Return the order with a name, created if necessary; None if it is not used."""
         if name not in self.by_name:
             taken = self.takes(time)
             self.by_name[name] = Order(time) if taken else None
@@ -64,7 +64,7 @@ class Orders:
         return self.by_name[name]
 
     def taken(self) -> list[tuple[str, Order]]:
-        """Return what has lines, by time; those of one time by the order of the file."""
+        """Return the orders with lines, by time; those of equal time in the order of the file."""
         found = [(name, one) for name, one in self.by_name.items() if one is not None]
         self.left_out[NO_LINE] += sum(not one.units for _, one in found)
         return sorted((pair for pair in found if pair[1].units), key=lambda pair: pair[1].time)

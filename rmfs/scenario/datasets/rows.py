@@ -1,4 +1,4 @@
-"""Rows of a CSV file of somebody else, by the names of its columns."""
+"""Rows of foreign CSV files, by column name."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ LONGEST_NAME = 200
 
 
 class Row:
-    """A row, which knows where it stands.
+    """A row with its position in the file.
 
     Parameters
     ----------
     path, line
-        Where it stands, for messages.
+        Position of the row, for messages.
     fields
-        By column.
+        Fields by column.
     """
 
     __slots__ = ("_fields", "line", "path")
@@ -35,11 +35,11 @@ class Row:
         self.path, self.line, self._fields = path, line, fields
 
     def text(self, column: str) -> str:
-        """Return a field as it stands."""
+        """Return a field as text."""
         return self._fields[column]
 
     def name(self, column: str) -> str:
-        """Return a field that names something.
+        """Return a field that is a name.
 
         Raises
         ------
@@ -57,7 +57,7 @@ class Row:
         Raises
         ------
         InputError
-            If it is none, or out of bounds.
+            If it is not a whole number, or out of bounds.
         """
         text = self._fields[column]
         digits = text.removeprefix("-")
@@ -67,12 +67,12 @@ class Row:
         return number
 
     def moment(self, column: str, *further: str) -> datetime:
-        """Return a time in ISO 8601, or in one of the further forms of `strptime`.
+        """Return a time in ISO 8601, or in one of the given formats of `strptime`.
 
         Raises
         ------
         InputError
-            If it is none.
+            If it is not a time.
         """
         text = self._fields[column]
         moment = parsed(text)
@@ -87,18 +87,18 @@ class Row:
         return moment
 
     def wrong(self, column: str, why: str) -> InputError:
-        """Return the error that tells of a field."""
+        """Return an error about a field."""
         given = self._fields[column]
         return InputError(f"{self.path}: line {self.line}: {column} {why} (given: {given!r:.40})")
 
 
 def rows(path: Path, columns: Sequence[str], encoding: str = "utf-8-sig") -> Iterator[Row]:
-    """Read a CSV file row by row; other columns are left alone.
+    """Read a CSV file row by row; other columns are ignored.
 
     Parameters
     ----------
     columns
-        What it must have; `a|b` is either.
+        Required columns; `a|b` stands for either.
 
     Raises
     ------
@@ -132,13 +132,13 @@ def rows(path: Path, columns: Sequence[str], encoding: str = "utf-8-sig") -> Ite
 
 
 def _places(path: Path, names: list[str], columns: Sequence[str]) -> dict[str, int]:
-    """Return where each column is, by its first name."""
+    """Return the position of each column, by its first name."""
     places: dict[str, int] = {}
     for column in columns:
         either = column.split("|")
         found = [name for name in either if name in names]
         if not found or names.count(found[0]) > 1:
-            what = "comes twice" if found else "is missing"
+            what = "occurs twice" if found else "is missing"
             needed = ", ".join(chain.from_iterable(one.split("|")[:1] for one in columns))
             raise InputError(
                 f"{path}: line 1: column {either[0]} {what}; needed: {needed} (given: "

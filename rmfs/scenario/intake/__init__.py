@@ -1,7 +1,7 @@
-"""What comes, and when: the face of demand and replenishment towards a simulation.
+"""Arrivals of orders and bundles: the interface between a scenario and a simulation.
 
-A simulation asks an intake what is due at the present time, and again at `next_us` and after every
-change of backlog or stock. How the scenario generates orders and bundles stays in here.
+A simulation asks an intake for arrivals at the current time, and again at `next_us` and after every
+change of backlog or stock. How the scenario generates orders and bundles is internal.
 """
 
 from rmfs.scenario.intake.bundles import bundle_intake as bundle_intake

@@ -1,4 +1,4 @@
-"""What the intakes of orders and of bundles have in common: how they are put together."""
+"""Common base for creating the intakes of orders and bundles."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ T = TypeVar("T")
 
 
 class Assembly(ABC, Generic[T]):
-    """Puts an intake together: a regular process and batches, with the doors closed at times.
+    """Creates an intake from a regular process and batches, with down periods.
 
     Parameters
     ----------
     scenario, skus, site, seed
         As for `order_intake`.
     down
-        When the doors are closed.
+        Down periods.
     """
 
     def __init__(
@@ -48,21 +48,21 @@ class Assembly(ABC, Generic[T]):
         self._stream: OrderStream | BundleStream | None = None
 
     def intake(self, record: Callable[[T], None] | None) -> Intake[T]:
-        """Return the intake, which tells `record` of all that comes."""
+        """Return the intake, which passes all arrivals to `record`."""
         processes = [*self._regular(), *self._batches()]
         return Intake(processes, record, self._stream, self._finish())
 
     def _finish(self) -> Callable[[T], T] | None:
-        """Return what makes of each thing that comes another one; None: nothing does."""
+        """Return a function that transforms each arrival; None: no transformation."""
         return None
 
     @abstractmethod
     def _regular(self) -> Iterator[Process[T]]:
-        """Yield what comes over time."""
+        """Yield the processes of regular arrivals."""
 
     @abstractmethod
     def _batches(self) -> Iterator[Process[T]]:
-        """Yield what comes all at once, if anything does."""
+        """Yield the processes of batches, if there are any."""
 
     def _arrivals(
         self, profile: AnyRate, per_h: float, scale: float, stream: Stream
@@ -73,7 +73,7 @@ class Assembly(ABC, Generic[T]):
         return Poisson(rate, Substreams(self._seed, stream), self._openings, until_us)
 
     def _at_times(self, times_us: Iterable[int]) -> Iterator[Candidate]:
-        """Return candidates at the times of a file, or when the doors open next."""
+        """Return candidates at the times of a file, postponed to the end of down periods."""
         return map(_candidate, enumerate(map(self._openings.open_from_us, times_us)))
 
 

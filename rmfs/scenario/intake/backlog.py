@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 class Rest:
-    """Keeps the time from which on a process may go on: after a failure, or a down period.
+    """Stores the time at which a process may continue after a failure or a down period.
 
     Attributes
     ----------
     until_us
-        When to ask again, `NEVER_US` if nothing keeps the process from going on.
+        When to ask again; `NEVER_US` if nothing holds the process back.
     """
 
     def __init__(self, openings: Openings) -> None:
@@ -31,7 +31,7 @@ class Rest:
         self.until_us = NEVER_US
 
     def ends(self, now_us: int) -> bool:
-        """Say whether the process may go on at a time."""
+        """Return whether the process may continue at a time."""
         blocked_us = self._blocked_us
         until_us = self._openings.open_from_us(now_us if now_us >= blocked_us else blocked_us)
         if until_us > now_us:
@@ -41,7 +41,7 @@ class Rest:
         return True
 
     def block(self, now_us: int, until_s: float) -> None:
-        """Let nothing go on before a time."""
+        """Block the process until a time."""
         self._blocked_us = first_us(until_s)
         self.ends(now_us)
 
@@ -54,11 +54,11 @@ class BacklogOrders:
     config
         The table `demand` of a scenario.
     contents
-        Draws what orders contain.
+        Draws the contents of orders.
     capacity
         Space units of all pods together.
     openings
-        When generation is down.
+        Periods during which nothing is generated.
     """
 
     def __init__(
@@ -75,8 +75,8 @@ class BacklogOrders:
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> OrderArrival | None:
-        """Return an order if the backlog lacks one that stock can serve."""
-        # asked in any case, since it has to know every change of stock
+        """Return an order if the backlog needs one that stock can serve."""
+        # called in any case, since it has to observe every change of stock
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_orders, state.stored_space)
         if not self._rest.ends(now_us) or not wanted:
             return None
@@ -101,7 +101,7 @@ class BacklogBundles:
     capacity
         Space units of all pods together.
     openings
-        When generation is down.
+        Periods during which nothing is generated.
     """
 
     def __init__(
@@ -122,7 +122,7 @@ class BacklogBundles:
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
-        """Return a bundle if the backlog lacks one and the next one is not too large."""
+        """Return a bundle if the backlog needs one and it is not too large."""
         load = state.load
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_bundles, load)
         if not self._rest.ends(now_us) or not wanted:

@@ -1,4 +1,4 @@
-"""Batches: things that come all at once, at given times of a cycle."""
+"""Batches: simultaneous arrivals at given times of a cycle."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ class Batch(NamedTuple):
     Attributes
     ----------
     time_s
-        When it comes, time of the cycle.
+        Time of the cycle.
     lacks
-        Given the state and how many things of the batch have come, says whether more are to come.
+        Given the state and the number of arrivals in the batch so far, returns whether more are
+        needed.
     """
 
     time_s: float
@@ -31,7 +32,7 @@ class Batch(NamedTuple):
 
 
 def add(time_s: float, number: int) -> Batch:
-    """Return a batch of a given number of things, whatever the state."""
+    """Return a batch of a given size, regardless of the state."""
     return Batch(time_s, partial(_fewer_than, number))
 
 
@@ -40,17 +41,17 @@ def _fewer_than(number: int, _state: State, come: int) -> bool:
 
 
 class Batches(Generic[T]):
-    """Lets batches come (a process of an intake).
+    """Generates batches (a process of an intake).
 
     Parameters
     ----------
     batches
-        One at least.
+        At least one batch.
     cycle_s, gone_s
-        Length of the cycle, and its time at time zero.
+        Length of the cycle, and its advance at time zero.
     make
-        Makes the k-th thing of all batches at a time; None if there is nothing to make it of, which
-        ends the batch.
+        Creates the k-th thing of all batches at a time; None ends the batch because nothing can be
+        created.
     """
 
     def __init__(
@@ -68,13 +69,13 @@ class Batches(Generic[T]):
         self._go_on()
 
     def _go_on(self) -> None:
-        """Turn to the next batch."""
+        """Proceed to the next batch."""
         self.next_us, which = next(self._times)
         self._lacks = self._batches[which].lacks
         self._come = 0
 
     def draw(self, now_us: int, state: State) -> T | None:
-        """Return the next thing of the batches whose time has come."""
+        """Return the next thing of the batches that are due."""
         while self.next_us <= now_us:
             if self._lacks(state, self._come):
                 thing = self._make(self._ordinal, now_us, state)

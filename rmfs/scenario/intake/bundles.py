@@ -39,23 +39,23 @@ def bundle_intake(
     seed: int,
     recorder: StreamRecorder | None = None,
 ) -> Intake[BundleArrival]:
-    """Return the intake of the bundles of a run.
+    """Return the intake of bundles for a run.
 
     Parameters
     ----------
     skus
         Those of the scenario (`sku_set(scenario.skus)`).
     site
-        What it needs to know of the warehouse.
+        Required properties of the warehouse.
     seed
         The run's seed.
     recorder
-        Keeps all bundles.
+        Records all bundles.
 
     Raises
     ------
     InputError
-        If a file is broken, or a bundle fits into no pod.
+        If a file is invalid, or a bundle fits into no pod.
     """
     bundles = _Bundles(scenario, skus, site, seed, scenario.replenishment.down)
     if recorder is None:
@@ -64,7 +64,7 @@ def bundle_intake(
 
 
 class _Bundles(Assembly[BundleArrival]):
-    """Puts the intake of bundles together."""
+    """Creates the intake of bundles."""
 
     def _regular(self) -> Iterator[Process[BundleArrival]]:
         config, capacity = self._scenario.replenishment, self._site.capacity
@@ -117,7 +117,7 @@ class _Bundles(Assembly[BundleArrival]):
 
 
 def _up_to(time_s: float, load: float) -> Batch:
-    """Return a batch after which the load is so many space units at least."""
+    """Return a batch that raises the load to at least a number of space units."""
     return Batch(time_s, partial(_less_load, load))
 
 

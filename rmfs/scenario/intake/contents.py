@@ -1,4 +1,4 @@
-"""What the orders of a scenario contain, whichever way they come."""
+"""Contents of the orders of a scenario, for all modes of arrival."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ _UNLIMITED = 2**62
 def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...]) -> Contents:
     """Return the function that draws the contents of the k-th order.
 
-    Only those of a constant backlog look at stock; all others are the same whatever happens in a
-    run. Words never look at stock.
+    Only orders of a constant backlog depend on stock; all others are the same whatever happens in a
+    run. Orders that are words never depend on stock.
 
     Parameters
     ----------
     path
-        Which orders.
+        Numbers below the stream, which identify the orders.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Writing a stream that is fixed in advance."""
+"""Export of streams that do not depend on a run."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class ExportedStream(NamedTuple):
-    """A stream that was written.
+    """A stream that was exported.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class ExportedStream(NamedTuple):
     digest
         SHA-256 of its content (`rmfs.scenario.streams.digest`).
     number
-        Orders, or bundles, in it.
+        Number of orders, or bundles.
     """
 
     path: Path
@@ -42,11 +42,11 @@ class ExportedStream(NamedTuple):
 
 
 class _DependsOnRunError(Exception):
-    """The state of a run was asked for."""
+    """The stream depends on the state of a run."""
 
 
 class _NoState:
-    """Stands for the state of a run where there is none."""
+    """Placeholder for the state of a run."""
 
     def __getattr__(self, name: str) -> NoReturn:
         raise _DependsOnRunError
@@ -59,12 +59,12 @@ def export_stream(
     site: Site,
     seed: int = 0,
 ) -> ExportedStream:
-    """Write all that a scenario lets come, from time zero to its end.
+    """Write all arrivals of a scenario, from time zero to its end.
 
     Parameters
     ----------
     path
-        Ends in .csv or .parquet.
+        File that ends in .csv or .parquet.
     site
         The warehouse, for rates per station.
     seed
@@ -72,9 +72,8 @@ def export_stream(
 
     Raises
     ------
-    InputError
-        If the stream depends on what happens in a run (a constant backlog, rates tied to active
-        stations, batches that fill up): such a stream can only be recorded.
+    If the stream depends on events of a run (a constant backlog, rates tied to active stations,
+    batches that fill up): such a stream can only be recorded.
     """
     skus = sku_set(scenario.skus)
     recorder = StreamRecorder()
@@ -96,9 +95,9 @@ def export_stream(
 
 
 def order_stream_of(scenario: Scenario, skus: SkuSet, seed: int) -> OrderStream:
-    """Return all orders that a scenario lets come; they must not depend on a run.
+    """Return all orders of a scenario, which must not depend on a run.
 
-    Rates are those of one pick station.
+    Rates are for one pick station.
     """
     recorder = StreamRecorder()
     end_us = first_us(scenario.warmup_s + scenario.duration_s)

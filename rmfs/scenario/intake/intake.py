@@ -1,4 +1,4 @@
-"""An intake: several processes by which orders, or bundles, come into being."""
+"""An intake: several processes that generate orders or bundles."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ if TYPE_CHECKING:
 
 
 class OrderArrival(NamedTuple):
-    """An order that comes now.
+    """An order that arrives.
 
     Attributes
     ----------
     time_us
-        Now.
+        Current time.
     skus, units
         The SKU of each line, all different, and how many units of it.
     due_us
-        When it is due.
+        Due time.
     redraws
-        How often a SKU was drawn of which too little was uncommitted.
+        Number of draws of a SKU with too few uncommitted units.
     in_file
-        Its place among the orders of a file, or -1.
+        Its position among the orders of a file, or -1.
     priority
-        Its class, or -1 where there are none.
+        Its class, or -1 without classes.
     """
 
     time_us: int
@@ -44,21 +44,21 @@ class OrderArrival(NamedTuple):
 
     @classmethod
     def of(cls, content: OrderContent, time_us: int) -> OrderArrival:
-        """Let a drawn order come at a time."""
+        """Return the arrival of a drawn order at a time."""
         due_us = time_us + nearest_us(content.due_offset_s)
         skus, units, priority = content.skus, content.units, content.priority
         return cls(time_us, skus, units, due_us, content.redraws, priority=priority)
 
     @property
     def due_s(self) -> float:
-        """When it is due, in s."""
+        """Due time in s."""
         return self.due_us / US_PER_S
 
 
 class BundleArrival(NamedTuple):
-    """A bundle that comes now: so many units of one SKU, and the space units they take.
+    """A bundle that arrives: units of one SKU, and the space units they take.
 
-    `in_file` is its place among the bundles of a file, or -1.
+    `in_file` is its position among the bundles of a file, or -1.
     """
 
     time_us: int
@@ -70,10 +70,10 @@ class BundleArrival(NamedTuple):
 
 @runtime_checkable
 class Redrawn(Protocol):
-    """A process that knows what comes next before it comes."""
+    """A process that has already drawn its next arrival."""
 
     def redraw(self, now_us: int) -> None:
-        """Draw that again."""
+        """Redraw the next arrival."""
 
 
 T = TypeVar("T")
@@ -81,14 +81,14 @@ T_co = TypeVar("T_co", covariant=True)
 
 
 class Process(Protocol[T_co]):
-    """One way in which things come into being."""
+    """A process that generates orders or bundles."""
 
     @property
     def next_us(self) -> int:
-        """When to be asked again at the latest; `NEVER_US`: after a change of state only."""
+        """When to ask again at the latest; `NEVER_US`: only after a change of state."""
 
     def draw(self, now_us: int, state: State) -> T_co | None:
-        """Return the next thing that comes now, or None if nothing more does."""
+        """Return the next arrival due now, or None if there is no more."""
 
 
 class Intake(Generic[T]):
@@ -97,13 +97,13 @@ class Intake(Generic[T]):
     Parameters
     ----------
     processes
-        How they come into being; at one time, those of the first process come first.
+        The processes; simultaneous arrivals are ordered by process.
     record
-        Told of each.
+        Called with each arrival.
     stream
         The orders or bundles of a file, if they come from one.
     finish
-        Makes of each what comes.
+        Transforms each arrival.
     """
 
     def __init__(
@@ -120,32 +120,32 @@ class Intake(Generic[T]):
 
     @property
     def next_us(self) -> int:
-        """When to be asked again at the latest, after all that is due has been taken."""
+        """When to ask again at the latest, after everything due has been taken."""
         return min(process.next_us for process in self._processes)
 
     def redraw(self, now_us: int) -> None:
-        """Draw again when things come next, after the streams have been renewed.
+        """Redraw the next arrivals, after the random streams have been replaced.
 
         Raises
         ------
         InputError
-            If they come at times that stand in a file.
+            If arrivals come from a file.
         """
         for process in self._processes:
             if isinstance(process, Redrawn):
                 process.redraw(now_us)
 
     def due(self, now_us: int, state: State) -> Iterator[T]:
-        """Yield what comes now; the caller adds each to the state before it asks for the next.
+        """Yield the arrivals due now; the caller adds each to the state before requesting the next.
 
-        To be asked at time zero, at `next_us`, and after every change of backlog or stock.
+        To be called at time zero, at `next_us`, and after every change of backlog or stock.
 
         Parameters
         ----------
         now_us
-            Present time, not before that of the call before.
+            Current time, which must not decrease between calls.
         state
-            Is read anew for each thing.
+            Current state, which is evaluated again for each arrival.
         """
         for process in self._processes:
             while (thing := process.draw(now_us, state)) is not None:

@@ -1,4 +1,4 @@
-"""Bundles of what waiting orders lack."""
+"""Bundles of SKUs that waiting orders lack."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 
 class NeededBundles:
-    """Orders from the supplier what is short (a process of an intake).
+    """Orders bundles of SKUs that run short (a process of an intake).
 
-    What is left of a SKU for further orders are the units stored and in bundles on their way, less
-    those that orders want; below the reorder point it is short. (With a reorder point of 0 only
-    what waiting orders lack comes.) The SKU of which least is left comes first; of several, the one
-    with the lowest index.
+    The units left of a SKU for further orders are those stored and in bundles on their way, minus
+    those ordered; below the reorder point the SKU is short. With a reorder point of 0, only what
+    waiting orders lack is replenished. The SKU with the fewest units left comes first; ties go to
+    the lowest index.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class NeededBundles:
     capacity
         Space units of all pods together.
     openings
-        When generation is down.
+        Periods during which nothing is generated.
     """
 
     def __init__(

@@ -39,23 +39,23 @@ def order_intake(
     seed: int,
     recorder: StreamRecorder | None = None,
 ) -> Intake[OrderArrival]:
-    """Return the intake of the orders of a run.
+    """Return the intake of orders for a run.
 
     Parameters
     ----------
     skus
         Those of the scenario (`sku_set(scenario.skus)`).
     site
-        What it needs to know of the warehouse.
+        Required properties of the warehouse.
     seed
         The run's seed.
     recorder
-        Keeps all orders.
+        Records all orders.
 
     Raises
     ------
     InputError
-        If a file is broken, or an order may need more lines than there are SKUs.
+        If a file is invalid, or an order may need more lines than there are SKUs.
     """
     orders = _Orders(scenario, skus, site, seed, scenario.demand.down)
     if recorder is None:
@@ -66,7 +66,7 @@ def order_intake(
 
 
 class _Orders(Assembly[OrderArrival]):
-    """Puts the intake of orders together."""
+    """Creates the intake of orders."""
 
     def _regular(self) -> Iterator[Process[OrderArrival]]:
         demand = self._scenario.demand
@@ -155,7 +155,7 @@ def _from_stream(
 def _for_departure(
     departures: Departures, stream: OrderStream | None, order: OrderArrival
 ) -> OrderArrival:
-    """Let an order be due at a departure, unless its file says when it is."""
+    """Set the due time of an order to a departure, unless its file specifies one."""
     if stream is not None and order.in_file >= 0 and stream.due_us[order.in_file] != NO_DUE_US:
         return order
     return order._replace(due_us=departures.next_us(order.due_us))
@@ -171,7 +171,7 @@ def _record(recorder: StreamRecorder, order: OrderArrival) -> None:
 
 
 def _up_to(time_s: float, number: int) -> Batch:
-    """Return a batch after which so many orders wait."""
+    """Return a batch that raises the number of waiting orders to a given number."""
     return Batch(time_s, partial(_fewer_waiting, number))
 
 

@@ -1,4 +1,4 @@
-"""Rates of arrival that change over time."""
+"""Arrival rates that change over time."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 
 MOST_PER_H = 1e8
-"""Greatest rate: arrivals have to be some microseconds apart."""
+"""Maximum rate, so that arrivals are several microseconds apart."""
 
 
 class Rate(Protocol):
-    """A rate of arrival per h.
+    """An arrival rate per h.
 
     Attributes
     ----------
     peak_per_h
-        No rate is greater.
+        Maximum rate.
     """
 
     peak_per_h: float
@@ -36,29 +36,29 @@ class Rate(Protocol):
         """Return the rate at a time."""
 
     def redraw(self, now_us: int) -> None:
-        """Forget what has been drawn of later times."""
+        """Discard what has been drawn of later times."""
 
 
 def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: int) -> Rate:
-    """Return the rate that a scenario asks for.
+    """Return the rate specified in a scenario.
 
     Parameters
     ----------
     config
         The table `profile`.
     per_h
-        Its mean; with high-low its low value.
+        Mean rate; with a high-low profile, the low rate.
     scale
-        Multiplies all rates of the scenario: how many stations they are for.
+        Factor on all rates of the scenario: the number of stations.
     gone_s
-        Time of all cycles at time zero.
+        Time by which all cycles have advanced at time zero.
     seed
         The run's seed.
 
     Raises
     ------
     InputError
-        If the rate is very large at some time.
+        If the rate exceeds the maximum at some time.
     """
     rate: Rate
     if isinstance(config, HighLowRate):
@@ -73,7 +73,7 @@ def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: in
 
 
 class _Fixed:
-    """A rate of which nothing is drawn."""
+    """A rate without random elements."""
 
     def redraw(self, now_us: int) -> None:
         """There is nothing to forget."""
@@ -88,9 +88,9 @@ class _Constant(_Fixed):
 
 
 class _InSteps(_Fixed):
-    """Steps with the given mean over a cycle.
+    """A step function with a given mean over a cycle.
 
-    Each weight counts with the length of its own step.
+    Weights count in proportion to the lengths of their steps.
     """
 
     def __init__(self, config: Steps, mean_per_h: float, gone_s: float) -> None:
@@ -112,7 +112,7 @@ class _InSteps(_Fixed):
 
 
 class _HighLow:
-    """Low and high periods of exponential length, the same for orders and bundles of a run."""
+    """Low and high periods of exponential length, shared by orders and bundles of a run."""
 
     def __init__(self, config: HighLowRate, low_per_h: float, high_per_h: float, seed: int) -> None:
         self._rates = low_per_h, high_per_h
@@ -128,21 +128,21 @@ class _HighLow:
         return self._rates[bisect_right(switches, time_us) % 2]
 
     def redraw(self, now_us: int) -> None:
-        """Let the present period last as long as if it began now: its length has no memory."""
+        """Redraw the rest of the current period, whose length is memoryless."""
         switches = self._switches_us
         del switches[bisect_right(switches, now_us) :]
         switches.append(now_us + self._length_us(len(switches)))
 
     def _length_us(self, period: int) -> int:
-        """Length of a period; those with even numbers are low."""
+        """Return the length of a period; even-numbered periods are low."""
         uniform = self._substreams.at(period)()
         return exponential_us(uniform, self._switches_per_h[period % 2])
 
 
 def exponential_us(uniform: float, per_h: float) -> int:
-    """Turn a number in [0, 1) into the time to the next event of a Poisson process.
+    """Convert a number in [0, 1) to the time until the next event of a Poisson process.
 
-    In whole microseconds it is the same on every processor, whose logarithms may differ in the last
+    In whole microseconds it is equal on all processors, whose logarithms may differ in the last
     bits.
     """
     return round(-math.log1p(-uniform) / per_h * US_PER_H)

@@ -1,4 +1,4 @@
-"""What demand and replenishment may look at."""
+"""The part of a run's state on which demand and replenishment may depend."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Site:
-    """What a scenario needs to know of the warehouse.
+    """Properties of the warehouse that a scenario needs.
 
     Attributes
     ----------
@@ -31,7 +31,7 @@ class Site:
 
 
 class State(Protocol):
-    """The present state of a run, as far as what comes may depend on it."""
+    """The current state of a run, as far as arrivals may depend on it."""
 
     @property
     def waiting_orders(self) -> int:
@@ -51,16 +51,16 @@ class State(Protocol):
 
     @property
     def uncommitted(self) -> NDArray[np.int64]:
-        """Units of each SKU stored less those that orders want, shape (K,); may be negative."""
+        """Stored units of each SKU minus ordered units, shape (K,); may be negative."""
 
     @property
     def incoming(self) -> NDArray[np.int64]:
-        """Units of each SKU in bundles that have come and are not stored yet, shape (K,)."""
+        """Units of each SKU in bundles that have arrived and are not stored yet, shape (K,)."""
 
     @property
     def active_pick_share(self) -> float:
-        """Active pick stations / all of them; one is counted at least."""
+        """Share of active pick stations; at least one counts as active."""
 
     @property
     def active_replenishment_share(self) -> float:
-        """Active replenishment stations / all of them; one is counted at least."""
+        """Share of active replenishment stations; at least one counts as active."""

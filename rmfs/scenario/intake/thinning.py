@@ -1,9 +1,9 @@
 """Poisson processes whose rate changes, by thinning.
 
-Candidates come with the greatest rate there ever is, and each is accepted with probability
-(present rate) / (greatest rate): the result is a Poisson process with the changing rate, exact at
-the borders of its steps (Lewis and Shedler 1979, "Simulation of nonhomogeneous Poisson processes by
-thinning"). What a candidate is, depends on the seed and its ordinal only.
+Candidates arrive with the maximum rate, and each is accepted with probability (current rate) /
+(maximum rate). The result is a Poisson process with the changing rate, exact at the boundaries of
+steps (Lewis and Shedler 1979, "Simulation of nonhomogeneous Poisson processes by thinning"). The
+content of a candidate depends only on the seed and its ordinal.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ class Candidate(NamedTuple):
     Attributes
     ----------
     ordinal
-        By which its contents are drawn.
+        Determines its contents.
     time_us
-        When it comes.
+        Arrival time.
     needed_share
-        It comes if a greater share of the stations is active, where rates are tied to them; below
-        1, so that it always comes if all are.
+        Accepted if a greater share of the stations is active, where rates are tied to them; below
+        1, so that it is always accepted if all are.
     """
 
     ordinal: int
@@ -40,19 +40,19 @@ class Candidate(NamedTuple):
 
 
 class Poisson:
-    """The arrivals of a Poisson process with a changing rate: an iterator that can be copied.
+    """The arrivals of a Poisson process with a changing rate, as an iterator that can be copied.
 
-    The ordinal is that of the candidate, so that two runs in which different candidates are
-    accepted still agree in the contents of those that both accept.
+    The ordinal is that of the candidate, so that two runs that accept different candidates still
+    agree in the contents of those that both accept.
 
     Parameters
     ----------
     substreams
         Candidate k takes its gap and its acceptance from substream k.
     openings
-        While generation is down the rate is zero.
+        Down periods, in which the rate is zero.
     until_us
-        The last time of interest.
+        End of the times of interest.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class Poisson:
         self._ordinal = 0
 
     def redraw(self, now_us: int) -> None:
-        """Go on from a time as if nothing later had been drawn: the process has no memory."""
+        """Redraw everything after a time: the process is memoryless."""
         self._rate.redraw(now_us)
         if self._rate.peak_per_h:
             self._time_us = now_us

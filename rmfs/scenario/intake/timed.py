@@ -1,4 +1,4 @@
-"""Things that come at times fixed in advance."""
+"""Arrivals at times fixed in advance."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ T = TypeVar("T")
 
 
 class Timed(Generic[T]):
-    """Lets things come at the times of candidates (a process of an intake).
+    """Generates arrivals at the times of candidates (a process of an intake).
 
     Parameters
     ----------
     candidates
         In order of time.
     make
-        Makes the thing of a candidate.
+        Creates the arrival of a candidate.
     share
         Share of active stations to which the rate is tied, if it is.
     """
@@ -43,12 +43,12 @@ class Timed(Generic[T]):
         self._next = next(candidates, None)
 
     def redraw(self, now_us: int) -> None:
-        """Draw again when the next thing comes.
+        """Redraw the time of the next arrival.
 
         Raises
         ------
         InputError
-            If that stands in a file.
+            If it comes from a file.
         """
         if self._next is None:
             return
@@ -66,7 +66,7 @@ class Timed(Generic[T]):
         return NEVER_US if self._next is None else self._next.time_us
 
     def draw(self, now_us: int, state: State) -> T | None:
-        """Return the next thing whose time has come."""
+        """Return the next arrival that is due."""
         while (candidate := self._next) is not None and candidate.time_us <= now_us:
             self._next = next(self._candidates, None)
             if self._share is None or candidate.needed_share < self._share(state):
@@ -75,7 +75,7 @@ class Timed(Generic[T]):
 
 
 def at_zero(number: int) -> Iterator[Candidate]:
-    """Return a number of arrivals at time zero."""
+    """Yield a number of arrivals at time zero."""
     return map(_at_zero, iter(range(number)))
 
 

@@ -1,8 +1,8 @@
-"""What a scenario file says.
+"""The contents of a scenario file.
 
 Names and default values follow the settings of RAWSim-O (its file format .xsett), in plain words
-and with the unit as suffix. A `Field` description is the one place where a parameter is explained:
-`rmfs scenario show` writes it into the file as a comment.
+and with the unit as suffix. Parameters are explained only by their `Field` descriptions, which
+`rmfs scenario show` writes as comments.
 """
 
 from rmfs.scenario.parameters.calendar import BundleBatches as BundleBatches

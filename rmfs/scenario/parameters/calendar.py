@@ -13,7 +13,9 @@ from rmfs.scenario.quantities import Block, Count, NotNegative, Positive
 DAY_S = 86400.0
 LEAST_OPEN_S = 1.0
 
-Cycle = Annotated[float, Field(ge=1, description="s after which everything comes again")]
+Cycle = Annotated[
+    float, Field(ge=1, description="length of the cycle in s, after which everything repeats")
+]
 
 Period = Annotated[tuple[NotNegative, Positive], pydantic.Strict(strict=False)]
 Periods = Annotated[tuple[Period, ...], pydantic.Strict(strict=False)]
@@ -28,13 +30,13 @@ Levels = Annotated[tuple[Level, ...], pydantic.Strict(strict=False)]
 class DownPeriods(Block):
     """Times at which nothing is generated.
 
-    A backlog is not topped up, a Poisson rate is zero, and what a file gives for such a time comes
-    when the period ends. Batches come in any case.
+    A backlog is not topped up, a Poisson rate is zero, and a stream from a file holds back its
+    arrivals until the period ends. Batches are not affected.
     """
 
     cycle_s: Cycle = DAY_S
     periods_s: Periods = Field(
-        min_length=1, description="pairs of first and last s of the cycle, in order"
+        min_length=1, description="periods as pairs of start and end, in s of the cycle, in order"
     )
 
     @pydantic.field_validator("periods_s")
@@ -54,14 +56,18 @@ class DownPeriods(Block):
                 )
             last_s = end_s
         if sum(end_s - begin_s for begin_s, end_s in value) > cycle_s - LEAST_OPEN_S:
-            raise ValueError(f"must leave {LEAST_OPEN_S:g} s of the cycle at least")
+            raise ValueError(f"must leave at least {LEAST_OPEN_S:g} s of the cycle")
         return value
 
 
 class _Batches(Block):
     cycle_s: Cycle = DAY_S
     fill_to: tuple[tuple[float, float], ...]
-    add: Numbers = Field((), description="pairs of s of the cycle and how many more come then")
+    add: Numbers = Field(
+        (),
+        description="pairs of a time of the cycle in s and the number that arrive then, in "
+        "addition",
+    )
 
     @pydantic.field_validator("fill_to", "add")
     @classmethod
@@ -73,31 +79,32 @@ class _Batches(Block):
         if cycle_s is not None and times_s and times_s[-1] >= cycle_s:
             raise ValueError(f"times must be less than cycle_s = {cycle_s:g}")
         if any(later <= sooner for sooner, later in itertools.pairwise(times_s)):
-            raise ValueError("times must be in order")
+            raise ValueError("times must be in ascending order")
         return value
 
     @pydantic.model_validator(mode="after")
     def _not_empty(self) -> _Batches:
         if not self.fill_to and not self.add:
-            raise ValueError("fill_to or add must list a batch")
+            raise ValueError("fill_to or add must list at least one batch")
         return self
 
 
 class OrderBatches(_Batches):
-    """Orders that come all at once, besides all others."""
+    """Orders that arrive all at once, in addition to all others."""
 
     fill_to: Numbers = Field(
         (),
-        description="pairs of s of the cycle and orders to wait then: what is missing comes",
+        description="pairs of a time of the cycle in s and a backlog: orders arrive until that "
+        "many wait",
     )
-    per_station: bool = Field(True, description="whether orders are counted per pick station")
+    per_station: bool = Field(True, description="whether numbers of orders are per pick station")
 
 
 class BundleBatches(_Batches):
-    """Bundles that come all at once, besides all others."""
+    """Bundles that arrive all at once, in addition to all others."""
 
     fill_to: Levels = Field(
         (),
-        description="pairs of s of the cycle and share of the pods' capacity: bundles come until "
-        "the load (stored, under way, waiting) reaches it",
+        description="pairs of a time of the cycle in s and a share of the pods' capacity: "
+        "bundles arrive until the load (stored, under way and waiting) reaches it",
     )

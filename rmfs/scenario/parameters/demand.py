@@ -14,24 +14,32 @@ from rmfs.scenario.quantities import Block, Natural, Positive, Share, not_below
 
 
 class _Demand(Block):
-    down: DownPeriods | None = Field(None, description="when no orders are made; default: never")
-    batches: OrderBatches | None = Field(None, description="orders that come all at once")
+    down: DownPeriods | None = Field(
+        None, description="when no orders are generated; default: never"
+    )
+    batches: OrderBatches | None = Field(
+        None, description="orders that arrive all at once; default: none"
+    )
 
 
 class BacklogDemand(_Demand):
-    """Orders are made so that a constant number waits: only SKUs in stock are ordered.
+    """Keeps a constant number of orders waiting; only SKUs in stock are ordered.
 
-    Orders that are words do not look at stock.
+    Stock does not limit orders that are words.
     """
 
     mode: Literal["backlog"] = Field("backlog", description="a constant number of orders waits")
     orders: Natural = Field(200, description="orders waiting for a pick station")
-    pause_by_stock: bool = Field(True, description="whether the two levels below count")
+    pause_by_stock: bool = Field(True, description="whether the two stock levels below apply")
     pause_below_share: Share = Field(
-        0.1, description="no orders once less of the pods' capacity is stored"
+        0.1, description="pause orders when the stored share of the pods' capacity falls below this"
     )
-    resume_above_share: Share = Field(0.6, description="orders again once more is stored")
-    retry_s: Positive = Field(60.0, description="s without orders after one no stock could serve")
+    resume_above_share: Share = Field(
+        0.6, description="resume orders when the stored share rises above this"
+    )
+    retry_s: Positive = Field(
+        60.0, description="pause in s after an order that stock could not serve"
+    )
 
     @pydantic.field_validator("resume_above_share")
     @classmethod
@@ -40,29 +48,30 @@ class BacklogDemand(_Demand):
 
 
 class PoissonDemand(_Demand):
-    """Orders arrive at random times, whatever is in stock; what stock cannot serve waits."""
+    """Orders arrive at random times, whatever is in stock; orders that stock cannot serve wait."""
 
     mode: Literal["poisson"] = Field("poisson", description="orders arrive at random times")
     orders_per_h: Positive = Field(
-        160.0, description="mean rate (with high-low: that of the low periods)"
+        160.0, description="mean rate; with a high-low profile, the rate of low periods"
     )
-    per_station: bool = Field(True, description="whether all rates are those of one pick station")
+    per_station: bool = Field(True, description="whether rates are per pick station")
     tied_to: TiedTo = Field("nothing", description=TIED_TO)
     initial_orders: Natural = Field(30, description="orders waiting at time zero")
     profile: OrderRates = Field(ConstantRate(), description="how the rate changes over time")
 
 
 class StreamDemand(_Demand):
-    """Orders from a file; what stock cannot serve waits."""
+    """Orders come from a file; those that stock cannot serve wait."""
 
     mode: Literal["stream"] = Field("stream", description="orders come from a file")
     file: StreamFile = Field(
-        description=".csv or .parquet with the columns time (s or ISO 8601), order, sku, quantity, "
-        "due (as time; empty: drawn) and others that are kept, or .xitem; relative to the scenario "
-        "file"
+        description=".csv or .parquet file, relative to the scenario file, with the columns time "
+        "(s or ISO 8601), order, sku, quantity and due (a time; drawn where empty); other "
+        "columns are kept. Or an .xitem file"
     )
     digest: str | None = Field(
-        None, description="SHA-256 of the orders as `rmfs scenario` prints it; default: any orders"
+        None,
+        description="SHA-256 of the orders, as printed by `rmfs scenario`; default: not checked",
     )
 
 

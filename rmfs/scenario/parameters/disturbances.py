@@ -1,4 +1,4 @@
-"""What goes wrong while a warehouse runs: nothing, unless a file says so."""
+"""What goes wrong while a warehouse runs; nothing by default."""
 
 from __future__ import annotations
 
@@ -11,40 +11,49 @@ from rmfs.scenario.quantities import Block, Natural, NotNegative, Positive, not_
 
 
 class _Repeated(Block):
-    every_s: float = Field(ge=1, description="mean s from one to the next, exponential; 1 at least")
+    every_s: float = Field(
+        ge=1, description="mean time between two occurrences in s, exponential; at least 1"
+    )
     lasting_s: Positive = Field(
-        description="mean s it lasts, drawn evenly from half of it to one and a half"
+        description="mean duration in s, uniform between half of it and one and a half times it"
     )
 
 
 class Breakdowns(_Repeated):
-    """A robot stands still for a while where its present straight run ends."""
+    """A robot stops for a while at the end of its current straight run."""
 
 
 class SlowRobots(_Repeated):
-    """A robot drives slower for a while, from and until a moment at which it stands still."""
+    """A robot drives more slowly for a while; its speed changes only while it stands still."""
 
-    speed_share: float = Field(0.5, gt=0, lt=1, description="of its top speed")
+    speed_share: float = Field(0.5, gt=0, lt=1, description="share of its top speed")
 
 
 class Closures(_Repeated):
-    """A waypoint of the aisles that everything can do without is closed for a while."""
+    """An aisle waypoint that no place depends on is closed for a while."""
 
 
 class ChargerFailures(_Repeated):
-    """A plug-in place gives nothing for a while; the robot there waits, or is called away."""
+    """A plug-in place fails for a while; the robot there waits or is called away."""
 
 
 class LateMotions(Block):
-    """A motion begins later than planned; it is drawn just before, and no plan knows of it."""
+    """A motion starts later than planned, by a delay that no plan can anticipate."""
 
-    probability: float = Field(gt=0, le=1, description="of each straight run of a robot")
-    least_s: float = Field(1.0, ge=0, le=3600, description="shortest delay; at most an hour")
+    probability: float = Field(
+        gt=0, le=1, description="probability of a delay for each straight run of a robot"
+    )
+    least_s: float = Field(1.0, ge=0, le=3600, description="shortest delay in s; at most an hour")
     most_s: float = Field(
-        10.0, gt=0, le=3600, description="longest delay; all between are equally likely"
+        10.0,
+        gt=0,
+        le=3600,
+        description="longest delay in s, at most an hour; delays are uniform between the two",
     )
     repair: bool = Field(
-        True, description="plan those who wait behind again, alone or in front, if that is better"
+        True,
+        description="whether to replan the robots that wait behind, alone or with higher "
+        "priority, where that is better",
     )
 
     @pydantic.field_validator("most_s")
@@ -58,7 +67,7 @@ Outages = Annotated[tuple[Outage, ...], pydantic.Strict(strict=False)]
 
 
 class Disturbances(Block):
-    """Each kind has random times of its own, of the run's seed."""
+    """Disturbances of a run; each kind draws its own random times from the run's seed."""
 
     breakdowns: Breakdowns | None = Field(None, description="robots that stop; default: none")
     slow: SlowRobots | None = Field(None, description="robots that are slow; default: none")
@@ -70,7 +79,9 @@ class Disturbances(Block):
         None, description="motions that begin late; default: none"
     )
     elevators_out: Outages = Field(
-        (), description="triples of an elevator's index and the first and last s it is out of use"
+        (),
+        description="triples of an elevator's index and the start and end, in s, of a period out "
+        "of service",
     )
 
     @pydantic.field_validator("elevators_out")
@@ -79,6 +90,6 @@ class Disturbances(Block):
         for elevator, begin_s, end_s in value:
             if not begin_s < end_s:
                 raise ValueError(
-                    f"must end after they begin: [{elevator}, {begin_s:g}, {end_s:g}] does not"
+                    f"each must end after it begins: [{elevator}, {begin_s:g}, {end_s:g}] does not"
                 )
         return value

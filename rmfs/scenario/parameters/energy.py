@@ -1,4 +1,4 @@
-"""What robots draw from their batteries: nothing is counted unless a file says so."""
+"""Energy use of robots; not modelled unless a scenario asks for it."""
 
 from __future__ import annotations
 
@@ -16,31 +16,35 @@ PRESETS: dict[str, dict[str, Any]] = {
     "kiva-like": {"robot_kg": 145.0, "pod_kg": 120.0},
     "light": {"robot_kg": 60.0, "pod_kg": 40.0, "standby_w": 5.0, "standby_loaded_w": 8.0},
 }
-"""What the presets change of the default values; docs/energy.md names the sources."""
+"""What each preset changes in the default values; docs/energy.md names the sources."""
 
 
 class Battery(Block):
-    """What robots carry, and what may be taken of it."""
+    """The battery of each robot, and how much of it may be used."""
 
     capacity_wh: Positive = Field(1000.0, description="Wh")
     taper_from_share: Efficiency = Field(
-        0.8, description="level from which a charger gives less, evenly to 0 when full; 1: never"
+        0.8,
+        description="charge level above which the charging power falls, linearly to 0 at full; "
+        "1: it never falls",
     )
-    full_share: Efficiency = Field(0.98, description="level that counts as full")
+    full_share: Efficiency = Field(0.98, description="charge level that counts as full")
     least_share: Share = Field(
-        0.1, description="level below which a robot strands; must be less than full_share"
+        0.1, description="charge level below which a robot strands; must be less than full_share"
     )
     reserve_share: Share = Field(
-        0.05, description="kept besides for waiting: no task that could end below both"
+        0.05,
+        description="reserve for waiting: no task is taken that could end below least_share + "
+        "reserve_share",
     )
     initial_least_share: Share = Field(
-        0.5, description="at time zero levels are drawn evenly between this ..."
+        0.5, description="charge levels at time zero are uniform between this ..."
     )
     initial_most_share: Share = Field(1.0, description="... and this")
     rescue_after_s: Positive = Field(
-        900.0, description="s a stranded robot waits until somebody brings energy"
+        900.0, description="time in s until a stranded robot is recharged on the spot"
     )
-    rescue_share: Efficiency = Field(0.5, description="its level then")
+    rescue_share: Efficiency = Field(0.5, description="charge level after such a rescue")
 
     @pydantic.field_validator("initial_most_share")
     @classmethod
@@ -60,14 +64,14 @@ class Battery(Block):
 
 
 class Inductive(Block):
-    """Waypoints that charge robots while they wait or are served."""
+    """Waypoints that charge robots while they queue or are served."""
 
-    power_w: Positive = Field(200.0, description="W given to a robot that stands there")
+    power_w: Positive = Field(200.0, description="power in W for a robot at such a waypoint")
     at: Literal["pick-stations", "replenishment-stations", "all-stations"] = Field(
         "all-stations", description="whose queues"
     )
     places: Annotated[int, Field(ge=1)] = Field(
-        4, description="places of each queue, the station's own place first"
+        4, description="number of charging places in each queue, starting at the station"
     )
 
 
@@ -75,40 +79,46 @@ class Energy(Block):
     """Masses, resistances and powers; see `rmfs/traffic/src/energy.rs` for the equations."""
 
     preset: Literal["standard", "kiva-like", "light"] = Field(
-        "standard", description="where values come from that are not given (docs/energy.md)"
+        "standard", description="source of the values that are not given (docs/energy.md)"
     )
-    robot_kg: Positive = Field(100.0, description="kg of a robot without load")
-    pod_kg: NotNegative = Field(100.0, description="kg of an empty pod")
+    robot_kg: Positive = Field(100.0, description="mass of a robot without load, kg")
+    pod_kg: NotNegative = Field(100.0, description="mass of an empty pod, kg")
     goods_kg_per_space: NotNegative = Field(
-        0.5, description="kg of goods that take one space unit; a pod has some hundred of these"
+        0.5, description="mass of goods per space unit, kg; a pod holds some hundred space units"
     )
     rolling_resistance: NotNegative = Field(
-        0.02, description="rolling resistance per weight (0.01 to 0.03 on concrete)"
+        0.02, description="rolling resistance coefficient (0.01 to 0.03 on concrete)"
     )
     inertia_share: NotNegative = Field(
-        0.15, description="share by which turning parts of the drive add to the mass"
+        0.15, description="inertia of rotating drive parts, as a share of the mass"
     )
     drive_efficiency: Efficiency = Field(
         0.8, description="share of the power drawn that reaches the wheels"
     )
     recuperation_share: Share = Field(
-        0.3, description="share of the work of braking that comes back"
+        0.3, description="share of the braking energy that is recovered"
     )
     turning_resistance_m: NotNegative = Field(
-        0.006, description="torque against a turn on the spot per weight, m"
+        0.006, description="resisting torque of a turn on the spot divided by the weight, m"
     )
     gyration_m: NotNegative = Field(
-        0.35, description="m, radius of gyration of the robot with its load about its axis"
+        0.35, description="radius of gyration of the robot and its load about its vertical axis, m"
     )
-    lift_m: NotNegative = Field(0.05, description="m a pod is lifted")
-    lift_efficiency: Efficiency = Field(0.5, description="share of the power drawn that lifts")
-    standby_w: NotNegative = Field(30.0, description="W of electronics, all the time, without pod")
-    standby_loaded_w: NotNegative = Field(40.0, description="W of electronics with a pod")
+    lift_m: NotNegative = Field(0.05, description="height to which a pod is lifted, m")
+    lift_efficiency: Efficiency = Field(
+        0.5, description="share of the power drawn that does lifting work"
+    )
+    standby_w: NotNegative = Field(
+        30.0, description="power of the electronics without a pod, W, drawn at all times"
+    )
+    standby_loaded_w: NotNegative = Field(
+        40.0, description="power of the electronics with a pod, W"
+    )
     battery: Battery | None = Field(
-        None, description="what robots carry; default: as much as they need"
+        None, description="battery of each robot; default: unlimited energy"
     )
     inductive: Inductive | None = Field(
-        None, description="charging while waiting; default: nowhere"
+        None, description="charging while waiting in queues; default: none"
     )
 
     @pydantic.field_validator("inductive")
@@ -123,7 +133,7 @@ class Energy(Block):
     @pydantic.model_validator(mode="before")
     @classmethod
     def _of_preset(cls, given: Any) -> Any:
-        """Take from the preset what is not given."""
+        """Take values that are not given from the preset."""
         if not isinstance(given, dict):
             return given
         name = given.get("preset", "standard")

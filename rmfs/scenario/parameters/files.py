@@ -9,12 +9,12 @@ import pydantic
 
 
 def existing(*suffixes: str) -> pydantic.AfterValidator:
-    """Check that a file exists and is of a kind that can be read.
+    """Return a validator: the file must exist and have one of the suffixes.
 
     Parameters
     ----------
     suffixes
-        The endings it may have, such as `.csv`; none: any.
+        Allowed suffixes, such as `.csv`. None: any.
     """
 
     def check(path: Path) -> Path:
@@ -28,7 +28,7 @@ def existing(*suffixes: str) -> pydantic.AfterValidator:
 
 
 StreamFile = Annotated[Path, pydantic.Strict(strict=False), existing(".csv", ".parquet", ".xitem")]
-"""Orders or bundles with their times."""
+"""Orders or bundles with their arrival times."""
 
 SkuSetFile = Annotated[
     Path, pydantic.Strict(strict=False), existing(".json", ".csv", ".xgenc", ".xitem")

@@ -1,4 +1,4 @@
-"""What an order contains."""
+"""What orders contain."""
 
 from __future__ import annotations
 
@@ -14,39 +14,41 @@ from rmfs.scenario.quantities import Block
 
 
 class Orders(Block):
-    """Orders with a number of lines, each for a SKU drawn by popularity or affinity."""
+    """Orders with several lines, each for a SKU drawn by popularity or affinity."""
 
     content: Literal["skus"] = Field("skus", description="each line is drawn from all SKUs")
     lines: NormalOrListed = Field(
         NormalCount(mean=1.0, sd=1.0, min=1, max=4),
-        description="lines of an order, each with a SKU of its own",
+        description="number of order lines; no SKU occurs twice in an order",
     )
     units_per_line: NormalOrListed = Field(
-        NormalCount(mean=1.0, sd=0.3, min=1, max=3), description="units of an order line"
+        NormalCount(mean=1.0, sd=0.3, min=1, max=3), description="number of units of an order line"
     )
     due: Due = Field(PriorityDue(), description="when an order is due")
     shortage: Shortage = Field(
-        Shortage(), description="what becomes of orders that stock cannot serve"
+        Shortage(), description="what happens to orders that stock cannot serve"
     )
 
     @pydantic.field_validator("lines", "units_per_line", mode="before")
     @classmethod
     def _default_kind(cls, value: Any) -> Any:
-        """Let a table that does not name its distribution be normal."""
+        """Assume a normal distribution where a table does not name one."""
         return {"distribution": "normal", **value} if isinstance(value, dict) else value
 
 
 class WordOrders(Block):
-    """Orders that are words: a line for each letter in its colour."""
+    """Orders that are words: one line for each letter in its colour."""
 
-    content: Literal["words"] = Field("words", description="each order is a word in colours")
+    content: Literal["words"] = Field(
+        "words", description="each order is a word in coloured letters"
+    )
     units_per_letter: NormalCount = Field(
         NormalCount(mean=1.0, sd=0.3, min=1, max=3),
-        description="units of a letter; equal letters of one colour are added up",
+        description="number of units of a letter; equal letters of one colour are added up",
     )
     due: Due = Field(PriorityDue(), description="when an order is due")
     shortage: Shortage = Field(
-        Shortage(), description="what becomes of orders that stock cannot serve"
+        Shortage(), description="what happens to orders that stock cannot serve"
     )
 
 
@@ -54,7 +56,7 @@ AnyOrders = Annotated[Orders | WordOrders, Field(discriminator="content")]
 
 
 def not_above_skus(lines: int, skus: int) -> None:
-    """Check that an order of so many lines can have a SKU of its own on each.
+    """Check that an order with this many lines can have a different SKU on each.
 
     Raises
     ------

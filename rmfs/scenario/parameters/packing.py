@@ -1,4 +1,4 @@
-"""What becomes of orders after the pick stations: nothing is asked unless a file says so."""
+"""Packing of orders after the pick stations; not modelled unless a scenario asks for it."""
 
 from __future__ import annotations
 
@@ -10,52 +10,55 @@ from rmfs.scenario.quantities import Block, Count, NotNegative, Positive
 
 
 class ToteTravel(Block):
-    """How long totes take from a pick station to the put wall."""
+    """Travel of totes from a pick station to the put wall."""
 
-    constant_s: NotNegative = Field(0.0, description="s of every way")
+    constant_s: NotNegative = Field(0.0, description="constant part of each trip, s")
     speed_m_s: Positive | None = Field(
         None,
-        description="m/s, besides, over the distance along the two axes from the pick station to "
-        "the wall; default: distance does not count",
+        description="speed in m/s over the rectilinear distance from the pick station to the "
+        "wall, in addition; default: distance does not count",
     )
     x_m: float | None = Field(
-        None, description="m, where the wall is; default: in the middle of the pick stations"
+        None, description="x of the wall, m; default: the mean of the pick stations"
     )
-    y_m: float | None = Field(None, description="m, likewise")
+    y_m: float | None = Field(
+        None, description="y of the wall, m; default: the mean of the pick stations"
+    )
     totes: Count | None = Field(
         None,
-        description="totes that may be on their way at once, as on a conveyor; default: any number",
+        description="maximum number of totes on their way at once, as on a conveyor; default: no "
+        "limit",
     )
 
 
 class Packing(Block):
-    """A put wall where the parts of split orders come together, and packers; see docs/packing.md.
+    """A put wall, where the parts of split orders are brought together, and packers.
 
-    With the default values nothing takes time and there is room for everything.
+    See docs/packing.md. With the default values nothing takes time and capacity is unlimited.
     """
 
-    slots: Count | None = Field(
-        None, description="slots of the put wall; default: as many as are needed"
-    )
+    slots: Count | None = Field(None, description="slots of the put wall; default: unlimited")
     slot_for: Literal["part", "order"] = Field(
-        "part", description="whether each part of an order takes a slot, or all of them one"
+        "part", description="whether each part of an order takes a slot, or all its parts share one"
     )
     by_hand_after_s: Positive = Field(
         900.0,
-        description="s after which a tote that its pick station cannot let go is carried to the "
-        "wall by hand, whether there is room or not",
+        description="time in s after which a tote that cannot leave its pick station is carried "
+        "to the wall by hand, even if the wall is full",
     )
     bypass: bool = Field(
         True,
-        description="whether an order that was never split is packed where it was picked, in no "
-        "time, and needs neither wall nor packer",
+        description="whether orders that were never split are packed where they were picked, in "
+        "no time, without using the wall or a packer",
     )
-    packers: Count | None = Field(None, description="packers; default: as many as are needed")
-    order_s: NotNegative = Field(0.0, description="s a packer takes for an order ...")
-    part_s: NotNegative = Field(0.0, description="... and for each of its parts besides")
+    packers: Count | None = Field(None, description="number of packers; default: unlimited")
+    order_s: NotNegative = Field(0.0, description="packing time per order, s")
+    part_s: NotNegative = Field(
+        0.0, description="packing time per part of an order, s, in addition"
+    )
     variation: NotNegative = Field(
         0.0,
-        description="coefficient of variation of a packer's times, which are gamma; 0: always "
-        "alike, 1: exponential",
+        description="coefficient of variation of packing times, which are gamma distributed; 0: "
+        "constant, 1: exponential",
     )
-    travel: ToteTravel = Field(ToteTravel(), description="the way from pick station to wall")
+    travel: ToteTravel = Field(ToteTravel(), description="travel from the pick station to the wall")

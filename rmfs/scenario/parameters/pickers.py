@@ -1,4 +1,4 @@
-"""People at the pick stations: every unit takes the same time unless a file says so."""
+"""Pickers at the pick stations; every unit takes the same time unless a scenario asks for them."""
 
 from __future__ import annotations
 
@@ -23,37 +23,39 @@ TimesFile = Annotated[Path, pydantic.Strict(strict=False), existing(".csv")]
 
 
 class ConstantTime(Block):
-    """Always what the station's layout says."""
+    """The time per unit of the station's layout, without variation."""
 
     distribution: Literal["constant"] = "constant"
 
 
 class GammaTime(Block):
-    """Gamma; its mean is what the station's layout says."""
+    """Gamma distributed; the mean is the time per unit of the station's layout."""
 
     distribution: Literal["gamma"] = "gamma"
     variation: Variation = Field(
-        description="coefficient of variation, to 5: beyond, a mean hangs on single picks; "
-        "1: exponential"
+        description="coefficient of variation, at most 5, since beyond that single picks "
+        "dominate the mean; 1: exponential"
     )
 
 
 class LognormalTime(Block):
-    """Lognormal; its mean is what the station's layout says."""
+    """Lognormal; the mean is the time per unit of the station's layout."""
 
     distribution: Literal["lognormal"] = "lognormal"
     variation: Variation = Field(
-        description="coefficient of variation, to 5: beyond, a mean hangs on single picks"
+        description="coefficient of variation, at most 5, since beyond that single picks "
+        "dominate the mean"
     )
 
 
 class MeasuredTime(Block):
-    """Drawn from measured times, each as likely as the others."""
+    """Drawn from measured times, all equally likely."""
 
     distribution: Literal["empirical"] = "empirical"
     file: TimesFile = Field(
-        description="CSV with a column time_s: s for which a unit kept a picker, relative to the "
-        "scenario file; the robot is kept as much longer or shorter as the picker"
+        description="CSV file, relative to the scenario file, with a column time_s: picking "
+        "times of single units in s. The time a unit occupies the robot changes by the same "
+        "amount"
     )
 
 
@@ -64,88 +66,95 @@ UnitTime = Annotated[
 
 
 class Learning(Block):
-    """Who has picked more units is faster: Wright's curve with De Jong's part that stays."""
+    """Pickers get faster with each unit: Wright's curve with De Jong's incompressible part."""
 
     rate: Annotated[float, Field(ge=0.5, le=1)] = Field(
         0.9,
-        description="share of the time that can be learned away left after each doubling of the "
-        "units picked; no published curve is steeper than 0.5, 1: nobody learns",
+        description="share of the compressible time that remains after each doubling of the "
+        "units picked; no published curve is steeper than 0.5; 1: no learning",
     )
     incompressible: Share = Field(
-        0.3, description="share of the first unit's time that nobody can learn away"
+        0.3, description="share of the first unit's time that learning cannot reduce"
     )
-    units_before: NotNegative = Field(0.0, description="units a picker has picked at time zero")
+    units_before: NotNegative = Field(
+        0.0, description="units that each picker has already picked at time zero"
+    )
     standard_units: Annotated[float, Field(ge=1, le=1e9)] = Field(
-        1.0, description="which unit takes the station's time, from 1, the first"
+        1.0, description="number of the unit that takes the station's time; 1: the first"
     )
 
 
 class Fatigue(Block):
-    """Fatigue grows at work and goes away at rest (Jaber, Givi and Neumann 2013); 0 to 1."""
+    """Fatigue, from 0 to 1, grows at work and falls at rest (Jaber, Givi and Neumann 2013)."""
 
     per_h: PerHour = Field(
         0.2,
-        description="rate at which fatigue grows at work, per hour; to 100: then all is over in "
-        "minutes",
+        description="rate at which fatigue grows at work, per hour; at most 100, which exhausts "
+        "a picker in minutes",
     )
     recovery_per_h: PerHour = Field(
-        1.0, description="rate at which it goes away at rest, per hour, to 100 likewise"
+        1.0, description="rate of recovery at rest, per hour; at most 100"
     )
     waiting_rests: Share = Field(
         1.0,
-        description="share of recovery_per_h that holds for a picker who waits at the station; "
-        "away from it all does",
+        description="share of recovery_per_h that applies while a picker waits at the station; "
+        "the full rate applies away from it",
     )
     slowdown: Annotated[float, Field(ge=0, le=9)] = Field(
         0.3,
-        description="share by which a unit takes longer at fatigue 1, evenly less below; 9: ten "
-        "times as long",
+        description="share by which fatigue 1 lengthens the time of a unit, in proportion below; "
+        "9: ten times as long",
     )
     initial: Annotated[float, Field(ge=0, lt=1)] = Field(
-        0.0, description="fatigue of everybody at time zero, below 1: nobody is at the end"
+        0.0, description="fatigue of every picker at time zero; below 1"
     )
 
 
 class Layers(Block):
-    """Pods have layers, each with an equal part of the pod's capacity; some are harder to reach."""
+    """Pods have layers of equal capacity, some harder to reach than others."""
 
     time_factors: Annotated[Factors, Field(min_length=1, max_length=20)] = Field(
         (1.2, 1.0, 0.9, 1.0, 1.3),
-        description="of each layer, from the floor up, what a unit's time is multiplied by (0.1 to "
-        "10); a pod has 20 layers at most",
+        description="factor on the time of a unit for each layer, from the bottom up (0.1 to "
+        "10); at most 20 layers",
     )
     storing: Literal["emptiest", "golden", "popular"] = Field(
         "emptiest",
-        description="where a bundle goes: the layer with most room, the fastest with room, or "
-        "popular SKUs into fast layers",
+        description="where a bundle is stored: in the emptiest layer, in the fastest layer with "
+        "room, or popular SKUs in fast layers",
     )
 
 
 class Faces(Block):
-    """Pods have faces; the picker sees one, and another is turned to him at a price."""
+    """Pods have faces; the picker sees one at a time, and showing another takes time."""
 
     count: Annotated[int, Field(ge=1, le=8)] = Field(
-        4, description="faces of a pod, each with an equal part of its capacity; 8 at most"
+        4, description="faces of a pod, each with an equal part of its capacity; at most 8"
     )
     turn_face_s: NotNegative = Field(
         5.0,
-        description="s that it keeps picker, station and robot until another face is shown; the "
-        "first face of a visit costs nothing",
+        description="time in s that showing another face occupies the picker, station and robot; "
+        "the first face of a visit is free",
     )
 
 
 class Errors(Block):
-    """Units that are picked wrongly."""
+    """Picking errors."""
 
-    share: Share = Field(0.001, description="share of the units picked wrongly, when not tired")
+    share: Share = Field(0.001, description="share of units picked wrongly without fatigue")
     at_full_fatigue: Share | None = Field(
-        None, description="share at fatigue 1, evenly less below; default: as share"
+        None,
+        description="share of units picked wrongly at fatigue 1, linear in between; default: the "
+        "same as share",
     )
     noticed_share: Share = Field(
-        1.0, description="share of these noticed at once and put right; others are counted"
+        1.0,
+        description="share of errors that are noticed and corrected at once; the others are "
+        "counted",
     )
     rework_s: NotNegative = Field(
-        30.0, description="s that putting right keeps picker, station and robot"
+        30.0,
+        description="time in s that correcting an error occupies the picker, station and robot",
     )
 
     @pydantic.field_validator("at_full_fatigue")
@@ -155,18 +164,20 @@ class Errors(Block):
 
 
 class Roster(Block):
-    """Who is there when: each shift has pickers of its own, who come again in every cycle."""
+    """The shifts: each has its own pickers, who return in every cycle."""
 
     cycle_s: Cycle = DAY_S
     shifts_s: Annotated[Shifts, Field(min_length=1, max_length=100)] = Field(
-        description="pairs of first and last s of the cycle, in order; a day has no more than 100"
+        description="shifts as pairs of start and end, in s of the cycle, in order; at most 100"
     )
     pickers: Counts = Field(
         (),
-        description="pickers of each shift, at the first pick stations; default: one per pick "
-        "station",
+        description="number of pickers in each shift, at the first pick stations; default: one "
+        "per pick station",
     )
-    breaks_s: Shifts = Field((), description="pairs of first and last s, when all pickers are away")
+    breaks_s: Shifts = Field(
+        (), description="breaks of all pickers as pairs of start and end, in s of the cycle"
+    )
 
     @pydantic.field_validator("shifts_s", "breaks_s")
     @classmethod
@@ -178,9 +189,11 @@ class Roster(Block):
             return value
         for begin_s, end_s in value:
             if not begin_s < end_s <= cycle_s:
-                raise ValueError(f"[{begin_s:g}, {end_s:g}] must end later, by {cycle_s:g}")
+                raise ValueError(
+                    f"[{begin_s:g}, {end_s:g}] must end after its start, by {cycle_s:g}"
+                )
         if any(later[0] < sooner[1] for sooner, later in itertools.pairwise(value)):
-            raise ValueError("must be in order and not overlap")
+            raise ValueError("must be in order and must not overlap")
         return value
 
     @pydantic.field_validator("pickers")
@@ -188,41 +201,48 @@ class Roster(Block):
     def _each_shift(cls, value: tuple[int, ...], info: pydantic.ValidationInfo) -> tuple[int, ...]:
         shifts = info.data.get("shifts_s")
         if value and shifts is not None and len(value) != len(shifts):
-            raise ValueError(f"must say it of each of the {len(shifts)} shifts")
+            raise ValueError(f"must have one number for each of the {len(shifts)} shifts")
         return value
 
 
 class Pickers(Block):
-    """People at the pick stations; see docs/pickers.md.
+    """Pickers at the pick stations; see docs/pickers.md.
 
-    With the default values all are alike, always there, and every unit takes the station's time.
+    With the default values all are alike and always present, and every unit takes the station's
+    time.
     """
 
-    unit_time: UnitTime = Field(ConstantTime(), description="how long a unit keeps a picker")
+    unit_time: UnitTime = Field(ConstantTime(), description="how long a unit occupies a picker")
     speeds: Annotated[Factors, Field(max_length=10_000)] = Field(
         (),
-        description="speed of each picker, 0.1 to 10 (nobody differs more); further pickers have "
-        "those of the first again; default: drawn as speed_variation says",
+        description="speed of each picker, 0.1 to 10; if there are more pickers, the values "
+        "repeat; default: drawn with speed_variation",
     )
     speed_variation: Annotated[float, Field(ge=0, le=1)] = Field(
         0.0,
-        description="coefficient of variation of speeds, which are gamma with mean 1; to 1: the "
-        "best of a team is seldom twice as fast as the mean",
+        description="coefficient of variation of the speeds, which are gamma distributed with "
+        "mean 1; at most 1",
     )
-    learning: Learning | None = Field(None, description="default: nobody learns")
-    fatigue: Fatigue | None = Field(None, description="default: nobody tires")
-    layers: Layers | None = Field(None, description="default: every place of a pod is alike")
+    learning: Learning | None = Field(None, description="learning of pickers; default: none")
+    fatigue: Fatigue | None = Field(None, description="fatigue of pickers; default: none")
+    layers: Layers | None = Field(
+        None, description="layers of pods; default: all places of a pod are alike"
+    )
     faces: Faces | None = Field(
-        None, description="not beside layers; default: all of a pod can be reached at once"
+        None,
+        description="faces of pods, not together with layers; default: all of a pod can be "
+        "reached at once",
     )
-    errors: Errors | None = Field(None, description="default: nothing is picked wrongly")
-    roster: Roster | None = Field(None, description="default: one per pick station, always")
+    errors: Errors | None = Field(None, description="picking errors; default: none")
+    roster: Roster | None = Field(
+        None, description="shifts; default: one picker per pick station, always present"
+    )
 
     @pydantic.field_validator("faces")
     @classmethod
     def _layers_or_faces(cls, value: Faces | None, info: pydantic.ValidationInfo) -> Faces | None:
         if value is not None and info.data.get("layers") is not None:
-            raise ValueError("must be left out where pods have layers")
+            raise ValueError("must be left out where pods have layers: use one of the two")
         return value
 
     @pydantic.field_validator("speed_variation")

@@ -30,20 +30,20 @@ class ConstantRate(Block):
 
 
 class Steps(Block):
-    """A rate in steps that come again every cycle; its mean over a cycle is the given rate."""
+    """A rate in steps, repeated every cycle, whose mean over a cycle is the given rate."""
 
     kind: Literal["steps"] = "steps"
     cycle_s: Cycle = DAY_S
     weights: Weights
     starts_s: Weights | None = Field(
-        None, description="s of the cycle at which each step begins; default: equally long steps"
+        None, description="start of each step, in s of the cycle; default: steps of equal length"
     )
 
     @pydantic.field_validator("weights")
     @classmethod
     def _one_positive(cls, value: tuple[float, ...]) -> tuple[float, ...]:
         if not any(value):
-            raise ValueError("one must be positive")
+            raise ValueError("at least one weight must be positive")
         return value
 
     @pydantic.field_validator("starts_s")
@@ -55,36 +55,40 @@ class Steps(Block):
         if value is None or cycle_s is None or weights is None:
             return value
         if len(value) != len(weights):
-            raise ValueError(f"must be as many as weights ({len(weights)})")
+            raise ValueError(f"must have as many entries as weights ({len(weights)})")
         ends_s = (*value[1:], cycle_s)
         if value[0] != 0 or any(end <= start for start, end in zip(value, ends_s, strict=True)):
-            raise ValueError(f"must begin with 0, be in order and less than cycle_s = {cycle_s:g}")
+            raise ValueError(f"must start with 0, ascend and stay below cycle_s = {cycle_s:g}")
         return value
 
 
 class OrderSteps(Steps):
-    """Steps for orders."""
+    """Steps of the order rate."""
 
     weights: Weights = Field(ORDER_WEIGHTS, description="relative rate of each step")
 
 
 class BundleSteps(Steps):
-    """Steps for bundles."""
+    """Steps of the bundle rate."""
 
     weights: Weights = Field(BUNDLE_WEIGHTS, description="relative rate of each step")
 
 
 class HighLowRate(Block):
-    """A low rate and, from time to time, a high one; the low one comes first.
+    """A rate that alternates between low and high periods, starting with a low one.
 
-    The times of both states are exponential. Orders and bundles with the same switching rates
-    share their high periods.
+    The length of periods is exponential. Orders and bundles with the same switching rates share
+    their high periods.
     """
 
     kind: Literal["high-low"] = "high-low"
-    high_per_h: NotNegative = Field(description="rate in high periods, in place of the other one")
-    low_to_high_per_h: Positive = Field(0.5, description="switches per h of a low period")
-    high_to_low_per_h: Positive = Field(2.0, description="switches per h of a high period")
+    high_per_h: NotNegative = Field(description="rate in high periods, which replaces the low one")
+    low_to_high_per_h: Positive = Field(
+        0.5, description="switches to a high period per h of a low one"
+    )
+    high_to_low_per_h: Positive = Field(
+        2.0, description="switches to a low period per h of a high one"
+    )
 
 
 OrderRates = Annotated[ConstantRate | OrderSteps | HighLowRate, Field(discriminator="kind")]
@@ -92,4 +96,4 @@ BundleRates = Annotated[ConstantRate | BundleSteps | HighLowRate, Field(discrimi
 AnyRate = ConstantRate | Steps | HighLowRate
 
 TiedTo = Literal["nothing", "pick-stations", "replenishment-stations"]
-TIED_TO = "stations whose active share multiplies the rate, one active at least"
+TIED_TO = "stations whose active share multiplies the rate; at least one counts as active"

@@ -1,4 +1,4 @@
-"""When bundles arrive."""
+"""When replenishment bundles arrive."""
 
 from __future__ import annotations
 
@@ -14,32 +14,41 @@ from rmfs.scenario.quantities import Block, Natural, NotNegative, Positive, Shar
 
 
 class _Replenishment(Block):
-    down: DownPeriods | None = Field(None, description="when no bundles are made; default: never")
-    batches: BundleBatches | None = Field(None, description="bundles that come all at once")
+    down: DownPeriods | None = Field(
+        None, description="when no bundles are generated; default: never"
+    )
+    batches: BundleBatches | None = Field(
+        None, description="bundles that arrive all at once; default: none"
+    )
 
 
 class _Drawn(_Replenishment):
-    return_share: Share = Field(0.0, description="share of bundles that are returns: one unit each")
+    return_share: Share = Field(
+        0.0, description="share of bundles that are returns of a single unit"
+    )
 
 
 class BacklogReplenishment(_Drawn):
-    """Bundles are made so that a constant number waits.
+    """Keeps a constant number of bundles waiting.
 
-    The load is the space of what is stored, on its way into pods and waiting, as a share of the
-    pods' capacity.
+    The load is the space of stored units, of bundles on their way to pods and of waiting bundles,
+    as a share of the pods' capacity.
     """
 
     mode: Literal["backlog"] = Field("backlog", description="a constant number of bundles waits")
     bundles: Natural = Field(200, description="bundles waiting for a station and a pod")
-    pause_by_stock: bool = Field(True, description="whether the two levels below count")
+    pause_by_stock: bool = Field(True, description="whether the two load levels below apply")
     resume_below_share: NotNegative = Field(
-        0.65, description="bundles again once the load (stored, under way, waiting) is less"
+        0.65,
+        description="resume bundles when the load (stored, under way and waiting) falls below this",
     )
     pause_above_share: NotNegative = Field(
-        0.85, description="no bundles once the load is a greater share of the pods' capacity"
+        0.85, description="pause bundles when the load rises above this share of the pods' capacity"
     )
-    load_limit_share: Positive = Field(1.1, description="no bundle that would lift the load above")
-    retry_s: Positive = Field(60.0, description="s without bundles after one above that limit")
+    load_limit_share: Positive = Field(1.1, description="no bundle may lift the load above this")
+    retry_s: Positive = Field(
+        60.0, description="pause in s after a bundle that would exceed this limit"
+    )
 
     @pydantic.field_validator("pause_above_share")
     @classmethod
@@ -48,44 +57,49 @@ class BacklogReplenishment(_Drawn):
 
 
 class PoissonReplenishment(_Drawn):
-    """Bundles arrive at random times; what finds no room waits."""
+    """Bundles arrive at random times; those that find no room wait."""
 
     mode: Literal["poisson"] = Field("poisson", description="bundles arrive at random times")
     bundles_per_h: Positive = Field(
-        45.0, description="mean rate (with high-low: that of the low periods)"
+        45.0, description="mean rate; with a high-low profile, the rate of low periods"
     )
-    per_station: bool = Field(
-        True, description="whether all rates are those of one replenishment station"
-    )
+    per_station: bool = Field(True, description="whether rates are per replenishment station")
     tied_to: TiedTo = Field("nothing", description=TIED_TO)
     initial_bundles: Natural = Field(30, description="bundles waiting at time zero")
     profile: BundleRates = Field(ConstantRate(), description="how the rate changes over time")
 
 
 class NeededReplenishment(_Replenishment):
-    """Bundles are made of what is short: wanted by orders, and neither stored nor on its way."""
+    """Bundles of SKUs that run short: ordered, but neither in stock nor on their way."""
 
-    mode: Literal["needed"] = Field("needed", description="bundles of what waiting orders lack")
+    mode: Literal["needed"] = Field(
+        "needed", description="bundles of SKUs that waiting orders lack"
+    )
     reorder_below_units: Natural = Field(
-        0, description="a SKU is short once fewer units of it are left for further orders"
+        0, description="a SKU is short when fewer than this many units are left for further orders"
     )
-    bundles: Natural = Field(200, description="bundles waiting for a station and a pod, at most")
+    bundles: Natural = Field(
+        200, description="maximum number of bundles waiting for a station and a pod"
+    )
     load_limit_share: Positive = Field(
-        1.1, description="no bundle that would lift the load (stored, under way, waiting) above"
+        1.1, description="no bundle may lift the load (stored, under way and waiting) above this"
     )
-    retry_s: Positive = Field(60.0, description="s without bundles after one above that limit")
+    retry_s: Positive = Field(
+        60.0, description="pause in s after a bundle that would exceed this limit"
+    )
 
 
 class StreamReplenishment(_Replenishment):
-    """Bundles from a file; what finds no room waits."""
+    """Bundles come from a file; those that find no room wait."""
 
     mode: Literal["stream"] = Field("stream", description="bundles come from a file")
     file: StreamFile = Field(
-        description=".csv or .parquet with the columns time (s or ISO 8601), order, sku, quantity: "
-        "a line is a bundle; or .xitem; relative to the scenario file"
+        description=".csv or .parquet file, relative to the scenario file, with the columns time "
+        "(s or ISO 8601), order, sku and quantity, one bundle per line. Or an .xitem file"
     )
     digest: str | None = Field(
-        None, description="SHA-256 of the bundles as `rmfs scenario` prints it; default: any"
+        None,
+        description="SHA-256 of the bundles, as printed by `rmfs scenario`; default: not checked",
     )
 
 

@@ -1,4 +1,4 @@
-"""The whole scenario."""
+"""The scenario as a whole."""
 
 from __future__ import annotations
 
@@ -21,33 +21,33 @@ from rmfs.scenario.streams.times import midnight
 
 
 class Stock(Block):
-    """What the pods hold at time zero."""
+    """Contents of the pods at time zero."""
 
     initial_share: Share = Field(0.7, description="share of the pods' capacity filled at time zero")
     order_cover: NotNegative = Field(
         0.0,
-        description="of each SKU so many times the units that the file of orders asks for in the "
-        "run are stored first, in whole bundles; needs demand.mode = stream",
+        description="store this multiple of each SKU's units in the file of orders first, in "
+        "whole bundles, counting orders within the run; needs demand.mode = stream",
     )
 
 
 class Scenario(Block):
-    """All that a run is asked to do, apart from the warehouse and its controllers."""
+    """Everything that a run is asked to do, apart from the warehouse and its controllers."""
 
     format: Literal["rmfs-scenario/1"] = Field(description="version of this format")
     name: str = Field(min_length=1, description="name shown in results")
     description: str = Field("", description="what the scenario is for")
-    duration_s: Positive = Field(description="s, measured, after the warm-up")
-    warmup_s: NotNegative = Field(3600.0, description="s simulated first and not measured")
+    duration_s: Positive = Field(description="measured time after the warm-up, s")
+    warmup_s: NotNegative = Field(3600.0, description="simulated time before measuring begins, s")
     start: str | None = Field(
         None,
-        description="date and time of time zero, such as 2026-03-01T08:00:00, for files whose "
-        "times are in ISO 8601; default: time_of_day_s after midnight before their first row",
+        description="date and time of time zero, such as 2026-03-01T08:00:00, for files with ISO "
+        "8601 times; default: time_of_day_s after midnight of the day of their first row",
     )
     time_of_day_s: NotNegative = Field(
         0.0,
-        description="s of all cycles (profiles, batches, down times, shifts) gone at time zero; "
-        "default: what the clock shows at start",
+        description="time in s by which all cycles (profiles, batches, down periods, shifts) "
+        "have advanced at time zero; default: the time of day of start",
     )
     skus: Skus = Field(GeneratedSkus(), description="the SKUs, and how often each is ordered")
     orders: AnyOrders = Field(Orders(), description="what an order contains")
@@ -57,38 +57,38 @@ class Scenario(Block):
 
     disturbances: Disturbances = Field(Disturbances(), description="what goes wrong in the run")
     energy: Energy | None = Field(
-        None, description="what robots draw from their batteries; default: not counted"
+        None, description="energy use and batteries of robots; default: not modelled"
     )
     packing: Packing | None = Field(
         None,
-        description="what becomes of orders after the pick stations; default: they are done then",
+        description="packing after the pick stations; default: orders are complete when picked",
     )
     pickers: Pickers | None = Field(
-        None, description="people at the pick stations; default: every unit takes the same time"
+        None, description="pickers at the pick stations; default: every unit takes the same time"
     )
 
     @pydantic.field_validator("start", mode="before")
     @classmethod
     def _moment(cls, value: Any) -> Any:
-        """Take dates and times of TOML, too, and keep the text of the moment."""
+        """Accept TOML dates and times as well; keep the text of the moment."""
         if isinstance(value, str):
             try:
                 value = datetime.fromisoformat(value)
             except ValueError:
-                raise ValueError("must be such as 2026-03-01T08:00:00") from None
+                raise ValueError("must be a time such as 2026-03-01T08:00:00") from None
         if isinstance(value, date) and not isinstance(value, datetime):
             value = datetime(value.year, value.month, value.day)
         return value.isoformat() if isinstance(value, datetime) else value
 
     @pydantic.model_validator(mode="after")
     def _clock(self) -> Self:
-        """Let the clock show the time of day of the start."""
+        """Set the clock to the time of day of the start."""
         if self.start is None:
             return self
         moment = datetime.fromisoformat(self.start)
         shown_s = (moment - midnight(moment)).total_seconds()
         if "time_of_day_s" in self.model_fields_set and self.time_of_day_s != shown_s:
-            raise ValueError(f"time_of_day_s must be {shown_s:g}, as start says, or be left out")
+            raise ValueError(f"time_of_day_s must be {shown_s:g} to match start, or be left out")
         if self.time_of_day_s != shown_s:
             object.__setattr__(self, "time_of_day_s", shown_s)
         return self
@@ -96,7 +96,7 @@ class Scenario(Block):
     @pydantic.field_validator("orders", "demand", "replenishment", mode="before")
     @classmethod
     def _default_kind(cls, value: Any, info: pydantic.ValidationInfo) -> Any:
-        """Let a table that does not name its kind be of the default kind."""
+        """Assume the default kind where a table does not name its kind."""
         key, kind = ("content", "skus") if info.field_name == "orders" else ("mode", "backlog")
         return {key: kind, **value} if isinstance(value, dict) else value
 
@@ -105,9 +105,7 @@ class Scenario(Block):
     def _covers(cls, value: Demand, info: pydantic.ValidationInfo) -> Demand:
         stock = info.data.get("stock")
         if stock is not None and stock.order_cover and not isinstance(value, StreamDemand):
-            raise ValueError(
-                'must be of mode "stream": stock.order_cover is about a file of orders'
-            )
+            raise ValueError('must have mode "stream": stock.order_cover needs a file of orders')
         return value
 
     @pydantic.field_validator("orders")
@@ -117,5 +115,5 @@ class Scenario(Block):
         if isinstance(value, Orders) and isinstance(skus, GeneratedSkus):
             not_above_skus(value.lines.max, skus.count)
         if skus is not None and isinstance(value, WordOrders) != isinstance(skus, LetterSkus):
-            raise ValueError('content = "words" and skus.words need each other')
+            raise ValueError('content = "words" requires skus.words, and skus.words requires it')
         return value

@@ -1,4 +1,4 @@
-"""What becomes of orders that stock cannot serve: they wait unless a file says otherwise."""
+"""What happens to orders that stock cannot serve; by default they wait."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from rmfs.scenario.quantities import Block, Positive
 
 
 class Shortage(Block):
-    """What becomes of an order that is not at a station yet and that stock cannot serve."""
+    """What happens to an order that is not yet at a station and that stock cannot serve."""
 
     policy: Literal["wait", "partial", "cancel"] = Field(
         "wait",
-        description="wait: until there is stock; partial: what there is is picked, and the rest is "
-        "not delivered; cancel: the order is given up, as is a partial one of which there is "
-        "nothing",
+        description="wait: until stock arrives; partial: deliver what is in stock and drop the "
+        "rest; cancel: give the order up. A partial order with nothing in stock is cancelled",
     )
     after_s: Positive = Field(
         1800.0,
-        description="s from its arrival after which an order is looked at, and again after as many",
+        description="age in s at which an order is checked, and the interval between further "
+        "checks",
     )

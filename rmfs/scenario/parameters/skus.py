@@ -28,14 +28,17 @@ class _Sizes(Block):
 class GeneratedAffinity(Block):
     """Pairs of SKUs that are ordered together.
 
-    Each SKU is a point drawn in the unit square; the weight of a pair is sqrt(2) less the distance
-    of its points.
+    Each SKU is a random point in the unit square; the weight of a pair is sqrt(2) minus the
+    distance between its points.
     """
 
     share: Share = Field(
-        description="probability that a further line follows affinity, not popularity"
+        description="probability that a line after the first is drawn by affinity instead of "
+        "popularity"
     )
-    pairs: Natural = Field(0, description="pairs of SKUs with a weight of their own, drawn")
+    pairs: Natural = Field(
+        0, description="number of pairs of SKUs with a weight of their own, drawn at random"
+    )
     default_weight: NotNegative = Field(0.2, description="weight of all other pairs")
 
 
@@ -52,7 +55,7 @@ class GeneratedSkus(_Sizes):
         description="relative weight with which a SKU is ordered and replenished",
     )
     affinity: GeneratedAffinity | None = Field(
-        None, description="which SKUs are ordered together; default: each line for itself"
+        None, description="which SKUs are ordered together; default: lines are independent"
     )
 
     @pydantic.field_validator("affinity")
@@ -69,13 +72,13 @@ class GeneratedSkus(_Sizes):
 class SkuFile(_Sizes):
     """SKUs from a file.
 
-    Popularity and affinity come from the file; space and bundle sizes too, unless it has none:
-    then they are drawn as said here.
+    Popularity and affinity come from the file. Space and bundle sizes do too, unless the file has
+    none: then they are drawn as specified here.
     """
 
     file: SkuSetFile = Field(
-        description="SKU set: .json (rmfs-skus/1), .csv (columns sku, popularity, space_per_unit, "
-        "bundle_units), .xgenc or .xitem, relative to the scenario file"
+        description="SKU set, relative to the scenario file: .json (rmfs-skus/1), .csv (columns "
+        "sku, popularity, space_per_unit, bundle_units), .xgenc or .xitem"
     )
 
 
@@ -85,7 +88,9 @@ class LetterSkus(_Sizes):
     A SKU is a letter in one colour; how often it is ordered follows from the words.
     """
 
-    words: WordFile = Field(description="text file, a word a line, relative to the scenario file")
+    words: WordFile = Field(
+        description="text file with one word per line, relative to the scenario file"
+    )
     colours: dict[str, Positive] = Field(
         {"blue": 1.0, "green": 1.0, "red": 1.0},
         min_length=1,
@@ -104,7 +109,7 @@ _SOURCES = {"file": SkuFile, "words": LetterSkus}
 
 
 def _source(value: Any) -> str:
-    """Tell which of the tables of SKUs is meant."""
+    """Return which of the tables of SKUs is meant."""
     if isinstance(value, GeneratedSkus | SkuFile | LetterSkus):
         return type(value).__name__
     given = value if isinstance(value, dict) else {}

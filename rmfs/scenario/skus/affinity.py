@@ -19,20 +19,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Affinity:
-    """Weights of pairs of SKUs: a further line may be drawn by affinity to the line before it.
+    """Weights of pairs of SKUs: a line may be drawn by affinity to the previous line.
 
     Attributes
     ----------
     first, second
-        The pairs that have a weight of their own, as SKU indices, shape (n,) each. A pair counts
-        in the given direction (line before, next line); the reader adds the opposite direction
-        where a file gives only one.
+        The pairs with a weight of their own, as SKU indices, shape (n,) each. A pair counts in the
+        given direction (previous line, next line); the reader adds the opposite direction where a
+        file gives only one.
     weight
         Weight of each pair, shape (n,).
     default_weight
         Weight of all other pairs.
     share
-        Probability that a further line is drawn by affinity and not by popularity.
+        Probability that a line after the first is drawn by affinity instead of popularity.
     """
 
     first: NDArray[np.int64]
@@ -46,10 +46,10 @@ class Affinity:
             array.setflags(write=False)
 
     def samplers(self, skus: int) -> Callable[[int], Categorical | None]:
-        """Return the function that gives the sampler of SKUs to follow a given SKU.
+        """Return a function that returns the sampler of SKUs to follow a given SKU.
 
-        A sampler takes memory in proportion to the number of SKUs, so only the latest are kept.
-        None where no SKU has a positive affinity to the given one.
+        A sampler takes memory in proportion to the number of SKUs, so only recent ones are cached.
+        It is None if no SKU has a positive affinity to the given one.
         """
         order = np.argsort(self.first, kind="stable")
         starts = np.searchsorted(self.first[order], np.arange(skus + 1))
@@ -64,7 +64,7 @@ class Affinity:
         return sampler
 
     def digest(self) -> str:
-        """SHA-256 over all pairs and parameters."""
+        """Return the SHA-256 of all pairs and parameters."""
         hashed = hashlib.sha256(f"{self.default_weight!r} {self.share!r}".encode())
         for array in (self.first, self.second, self.weight):
             hashed.update(array.astype(array.dtype.newbyteorder("<")).tobytes())

@@ -1,4 +1,4 @@
-"""What a file says of its SKUs that need not say everything: a table, or one of RAWSim-O."""
+"""Contents of SKU files, which may be incomplete."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SkuFileContent:
-    """K SKUs in the order in which the file lists them; what is None the file does not say.
+    """K SKUs in the order of the file; None for missing columns.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class SkuFileContent:
     affinity
         Weights of pairs; None if the file neither lists any nor uses them.
     names
-        What each SKU is called, or nothing.
+        Names of the SKUs, or empty.
     """
 
     ids: NDArray[np.int64]

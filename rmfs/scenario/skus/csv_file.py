@@ -1,4 +1,4 @@
-"""SKU sets as tables: a CSV file with a row per SKU."""
+"""SKU sets as CSV files with a row per SKU."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 COLUMNS = ("sku", "popularity", "space_per_unit", "bundle_units")
-"""What is read; other columns of the file are left alone."""
+"""Columns that are read; other columns are ignored."""
 
 LONGEST_NAME = 200
 MOST_UNITS = 1_000_000
 
 
 def read_sku_table(path: Path) -> SkuFileContent:
-    """Read a SKU table: `sku` and, if they are there, the other `COLUMNS`.
+    """Read a SKU table: `sku` and, if present, the other `COLUMNS`.
 
     SKUs that are whole numbers keep them as ids; others are numbered from 0 and keep their text as
-    names. Without `popularity` all are ordered alike. A file of orders (with columns `order` and
-    `quantity`) will do: its SKUs, each as popular as it has order lines.
+    names. Without `popularity`, all are equally popular. A file of orders (with columns `order` and
+    `quantity`) is also accepted: its SKUs are as popular as their number of order lines.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def read_sku_table(path: Path) -> SkuFileContent:
     known = {column: head.index(column) for column in COLUMNS if column in head}
     doubles = sorted({column for column in known if head.count(column) > 1})
     if "sku" not in known or doubles:
-        wrong = f"column {doubles[0]} comes twice" if doubles else "column sku is missing"
+        wrong = f"column {doubles[0]} occurs twice" if doubles else "column sku is missing"
         raise InputError(f"{path}: line 1: {wrong}; columns: {', '.join(COLUMNS)}")
     found: dict[str, list[str]] = {column: [] for column in known}
     lines: list[int] = []
@@ -105,7 +105,7 @@ def _named(
         if not text or len(text) > LONGEST_NAME:
             raise InputError(f"{path}: line {line}: sku must have 1 to {LONGEST_NAME} characters")
         if text in seen:
-            raise InputError(f"{path}: line {line}: sku {text:.40} comes twice")
+            raise InputError(f"{path}: line {line}: sku {text:.40} occurs twice")
         seen.add(text)
     if all(text.isascii() and text.isdecimal() and len(text) < 16 for text in texts):
         numbers = [int(text) for text in texts]

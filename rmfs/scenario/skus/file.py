@@ -110,7 +110,7 @@ def read_sku_set(path: Path) -> SkuSet:
     }
     _check_lengths(columns, len(ids), source)
     if len(np.unique(ids)) < len(ids):
-        raise InputError(f"{source}: ids: a SKU comes twice")
+        raise InputError(f"{source}: ids: a SKU occurs twice")
     if not any(given.popularity):
         raise InputError(f"{source}: popularity: one must be positive")
     skus = SkuSet(

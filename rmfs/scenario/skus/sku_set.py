@@ -20,23 +20,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SkuSet:
-    """K SKUs; each is named by its index 0 ... K - 1.
+    """K SKUs, identified by their index 0 ... K - 1.
 
     Attributes
     ----------
     ids
         Number of each SKU in its file, or its index, shape (K,).
     popularity
-        Relative weight with which a SKU is ordered and replenished, shape (K,), 30 significant
-        bits.
+        Relative weight with which each is ordered and replenished, shape (K,), rounded to 30
+        significant bits.
     space_per_unit
-        Space units that one unit takes, shape (K,), in steps of 2**-20 (`exact.space`).
+        Space units of one unit, shape (K,), in steps of 2**-20 (`exact.space`).
     bundle_units
         Units per bundle, shape (K,).
     affinity
-        How SKUs are ordered together, or None: each line is drawn by popularity.
+        Pairs of SKUs that are ordered together. None: every line is drawn by popularity.
     names
-        What each SKU is called, or nothing; not part of the digest.
+        Names of the SKUs, or empty; not part of the digest.
     """
 
     ids: NDArray[np.int64]
@@ -64,7 +64,7 @@ class SkuSet:
 
     @cached_property
     def by_popularity(self) -> Categorical:
-        """Sampler of SKUs by popularity; its `probabilities` are the demand shares."""
+        """Sampler of SKUs by popularity; its `probabilities` are shares of demand."""
         return Categorical(self.popularity)
 
     @cached_property
@@ -73,7 +73,7 @@ class SkuSet:
         return {sku: index for index, sku in enumerate(self.ids.tolist())}
 
     def digest(self) -> str:
-        """SHA-256 over all arrays: equal for equal SKUs on every machine."""
+        """Return the SHA-256 of all arrays, which is equal for equal SKUs on every machine."""
         hashed = hashlib.sha256()
         for array in (self.ids, self.popularity, self.space_per_unit, self.bundle_units):
             hashed.update(array.astype(array.dtype.newbyteorder("<")).tobytes())
@@ -82,7 +82,7 @@ class SkuSet:
         return hashed.hexdigest()
 
     def check_fit(self, pod_capacity: float, source: str = "skus") -> None:
-        """Refuse bundles that no pod can hold.
+        """Raise an error if a bundle fits into no pod.
 
         Parameters
         ----------
@@ -94,7 +94,7 @@ class SkuSet:
         Raises
         ------
         InputError
-            If a bundle of some SKU is larger.
+            If a bundle of some SKU is too large.
         """
         too_large = np.flatnonzero(self.bundle_space > pod_capacity)
         if len(too_large):

@@ -1,4 +1,4 @@
-"""Orders and bundles with their times: kept as arrays, read, written, recorded, exported."""
+"""Streams of orders and bundles: arrays that can be read, written, recorded and exported."""
 
 from rmfs.scenario.streams.order_file import OrderFile as OrderFile
 from rmfs.scenario.streams.reading import first_moment as first_moment

@@ -25,7 +25,7 @@ class Columns:
     names
         As the file gives them.
     rows
-        What is to read the rows; it is told the names of the user's own columns.
+        What is to read the rows; it is given the names of the user's own columns.
 
     Raises
     ------
@@ -43,7 +43,7 @@ class Columns:
                 raise ValueError(f"unknown column {name!r:.40}; did you mean {near[0]}?")
         for name in names:
             if name and names.count(name) > 1:
-                raise ValueError(f"column {name} comes twice")
+                raise ValueError(f"column {name} occurs twice")
         needed = [name for name in missing if name in rows.required]
         if needed:
             found = ", ".join(names) or "none"

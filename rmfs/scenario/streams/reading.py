@@ -83,7 +83,7 @@ def first_moment(path: Path) -> datetime | None:
         _read(path, _FirstMoment(), Problems(path))
     except _FoundError as found:
         return found.moment
-    except InputError:  # is told of when the file is read
+    except InputError:  # reported when the file is read
         pass
     return None
 

@@ -1,4 +1,4 @@
-"""Keeping what a run was asked for, so that it can be published and replayed."""
+"""Records the arrivals of a run, so that they can be published and replayed."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from rmfs.scenario.streams.stream import BundleStreamBuilder, OrderStreamBuilder
 
 
 class StreamRecorder:
-    """Collects the orders and bundles of a run as they come into being.
+    """Collects the orders and bundles of a run as they arrive.
 
-    Handed to `order_intake` and `bundle_intake`, it makes a stream of what depended on the run: the
-    realised orders of a backlog, for example. `orders.build()` is a stream to be written with
+    Passed to `order_intake` and `bundle_intake`, it records streams that depend on the run, such as
+    the orders of a constant backlog. `orders.build()` is a stream that can be written with
     `write_stream` and read back with `mode = "stream"`.
 
     Attributes
     ----------
     orders, bundles
-        What has come so far.
+        Arrivals so far.
     """
 
     def __init__(self) -> None:

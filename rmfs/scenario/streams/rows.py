@@ -1,4 +1,4 @@
-"""Rows of a file become orders or bundles, if nothing is wrong with them."""
+"""Converts rows of a file to orders or bundles, with validation."""
 
 from __future__ import annotations
 
@@ -24,45 +24,46 @@ LONGEST_NAME = 200
 """Characters in the name of an order."""
 
 MOST_COMPARED = 10_000
-"""SKUs among which one is looked for that the user may have meant."""
+"""Maximum number of SKUs searched for a similar name in error messages."""
 
 
 class Rows(Protocol):
-    """Takes the rows of a file one after another."""
+    """Receives the rows of a file one after another."""
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the columns that a file may have."""
+        """Names of the known columns."""
 
     @property
     def required(self) -> frozenset[str]:
-        """Names of those that it must have."""
+        """Names of the required columns."""
 
     def begin(self, further: Sequence[str]) -> None:
-        """Take note of the names of the columns that the file has beside `columns`."""
+        """Store the names of the file's additional columns."""
 
     def take(self, number: int, fields: Sequence[str]) -> None:
-        """Take a row.
+        """Process a row.
 
         Parameters
         ----------
         number
-            Of the line or row.
+            Number of the line or row.
         fields
-            In the order of `columns`, empty where the file has none; then those of further columns.
+            Fields in the order of `columns`, empty for missing columns; then those of additional
+            columns.
         """
 
     def end(self) -> None:
-        """Check what only the whole file shows."""
+        """Run checks that need the whole file."""
 
 
 class _Fields:
-    """Reads single fields.
+    """Parses single fields.
 
     Parameters
     ----------
     skus
-        The SKUs that rows may name.
+        The valid SKUs.
     """
 
     def __init__(self, skus: SkuSet) -> None:
@@ -78,7 +79,7 @@ class _Fields:
         return index
 
     def _valid(self, text: str) -> str:
-        """Tell which SKUs there are, the nearest to a text first."""
+        """List valid SKUs, the most similar to a text first."""
         known = list(self._by_name) or [str(sku) for sku in self._index_of]
         some = difflib.get_close_matches(text[:LONGEST_NAME], known[:MOST_COMPARED]) or known[:3]
         more = f", ... ({len(known)} SKUs)" if len(known) > len(some) else ""
@@ -114,11 +115,11 @@ class _StreamRows:
         self._time_us = 0
 
     def begin(self, further: Sequence[str]) -> None:
-        """Keep what the further columns hold (see `Rows`)."""
+        """Store the names of the additional columns (see `Rows`)."""
         self.file = OrderFileBuilder(further)
 
     def take(self, number: int, fields: Sequence[str]) -> None:
-        """Take a row (see `Rows`)."""
+        """Process a row (see `Rows`)."""
         try:
             self._take(number, fields)
         except FieldError as error:
@@ -134,11 +135,11 @@ class OrderRows(_StreamRows):
     Parameters
     ----------
     skus
-        The SKUs that rows may name.
+        The valid SKUs.
     problems
-        Where to note what is wrong.
+        Collects problems.
     word
-        What a row is called: line or row.
+        Word for a row in messages: line or row.
     zero
         The moment of time zero, for times in ISO 8601 (see `Times`).
     classes
@@ -185,7 +186,7 @@ class OrderRows(_StreamRows):
         elif priority != self._priority:
             raise FieldError(f"priority differs from the line before of order {name:.40}")
         if index in self._skus:
-            raise FieldError(f"sku {sku} comes twice in order {name:.40}")
+            raise FieldError(f"sku {sku} occurs twice in order {name:.40}")
         self._skus.append(index)
         self._units.append(units)
         self.file.add_line(number, further)
@@ -232,11 +233,11 @@ class BundleRows(_StreamRows):
     Parameters
     ----------
     skus
-        The SKUs that rows may name.
+        The valid SKUs.
     problems
-        Where to note what is wrong.
+        Collects problems.
     word
-        What a row is called: line or row.
+        Word for a row in messages: line or row.
     largest
         Space units of the largest pod.
     zero

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.streams.order_file import OrderFile
 
 NO_DUE_US = -1
-"""Due time of an order for which none is given."""
+"""Due time of an order without one."""
 
 
 class _Frozen:
@@ -38,11 +38,11 @@ class OrderStream(_Frozen):
     due_us
         When each is due, shape (n,); `NO_DUE_US` where none is given.
     first_line
-        Line at which each order begins, and at last m, shape (n + 1,).
+        Index of the first line of each order, and finally m, shape (n + 1,).
     sku, units
         SKU (index) and units of each line, shape (m,).
     file
-        What the file they come from says beside that, if they come from one.
+        Additional contents of the file from which they were read, if any.
     classes
         Names of the classes of orders, if there are classes.
     priority
@@ -78,7 +78,7 @@ class BundleStream(_Frozen):
     sku, units
         SKU (index) and units of each, shape (n,).
     file
-        What the file they come from says beside that, if they come from one; a line each.
+        Additional contents of the file from which they were read, if any.
     """
 
     time_us: NDArray[np.int64]
@@ -91,7 +91,7 @@ class BundleStream(_Frozen):
 
 
 class OrderStreamBuilder:
-    """Collects orders, 16 bytes a line and 32 an order.
+    """Collects orders, at 16 bytes per line and 32 per order.
 
     Attributes
     ----------

@@ -1,8 +1,8 @@
-"""Streams as files, and the hash by which a stream is known.
+"""Streams as files, and the hash that identifies a stream.
 
-There is one text for a stream: the CSV file written here, with times in s to the microsecond. Its
-SHA-256 is the stream's digest, whatever the file the stream was read from looks like; of a CSV file
-written here it is the SHA-256 of the file.
+Every stream has one canonical text: the CSV file written here, with times in s to the microsecond.
+Its SHA-256 is the stream's digest, whatever the format of the file from which it was read; for a
+CSV file written here it is the SHA-256 of the file.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def write_streams(recorded: StreamRecorder, skus: SkuSet, folder: Path) -> dict[
 
 
 def digest(stream: Stream, skus: SkuSet) -> str:
-    """Return the SHA-256 of a stream's one text."""
+    """Return the SHA-256 of a stream's canonical text."""
     hashed = hashlib.sha256()
     for line in _text(stream, skus):
         hashed.update(line.encode())

@@ -119,7 +119,7 @@ def _curve(lines: NDArray[np.int64], skus: Drawn, seed: int) -> tuple[NDArray[np
 
 
 def drawn_skus(skus: GeneratedSkus, weights: NDArray[np.float64] | None) -> Drawn:
-    """Return what makes SKUs of a share of affinity and a seed.
+    """Return a function that creates SKUs from a share of affinity and a seed.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def with_affinity(skus: GeneratedSkus, share: float) -> GeneratedSkus:
 
 
 def simulated_lift(lines: NDArray[np.int64], skus: SkuSet, rng: np.random.Generator) -> float:
-    """Return the lift of orders with so many lines, as the generator draws them.
+    """Return the lift of orders with these numbers of lines, as the generator draws them.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What is told of a parameter that was fitted, and of how well the fit holds."""
+"""Estimates of fitted parameters, and measures of fit."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 LEVEL = 0.95
-"""Of all intervals."""
+"""Confidence of all intervals."""
 
 
 class Estimate(NamedTuple):
@@ -21,9 +21,9 @@ class Estimate(NamedTuple):
     Attributes
     ----------
     name
-        What it is.
+        Name of the parameter.
     value, low, high
-        Its value and interval (`LEVEL`).
+        Its value and its interval (`LEVEL`).
     """
 
     name: str
@@ -33,16 +33,16 @@ class Estimate(NamedTuple):
 
 
 class Agreement(NamedTuple):
-    """How a figure of the orders and of those of the twin compare.
+    """Agreement of a figure between the data and the twin.
 
     Attributes
     ----------
     name
-        What it is.
+        Name of the figure.
     data, twin
         The figure of both; empty (nan) for a test of the model alone.
     p
-        Probability of so large a deviation if the model holds; nan without a test.
+        Probability of such a deviation if the model holds; nan without a test.
     """
 
     name: str

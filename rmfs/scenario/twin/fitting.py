@@ -1,4 +1,4 @@
-"""From a file of orders to a scenario that generates orders like them."""
+"""Fits a scenario to a file of orders."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ if TYPE_CHECKING:
 DAY_H = 24
 WEEK_H = 168
 MOST_UNSEEN = 20
-"""So many times the SKUs seen there may be: with more, gamma weights say nothing."""
+"""Maximum ratio of unseen to seen SKUs; beyond, gamma weights are meaningless."""
 MOST_LISTED = 200
-"""Lines of an order, or units of a line: larger ones count as this."""
+"""Maximum number of lines of an order, or units of a line; larger ones count as this."""
 
 
 @dataclass(frozen=True, slots=True)
 class Twin:
-    """A generator, and how well it fits.
+    """A generator fitted to orders, with its fit.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Twin:
     orders
         Orders that were fitted.
     skus
-        Those of the twin, if they cannot be drawn from the scenario: they belong into a file.
+        SKUs of the twin, if they cannot be drawn from the scenario and need a file.
     """
 
     scenario: Scenario
@@ -70,15 +70,15 @@ def fit_twin(
     Parameters
     ----------
     path
-        Orders, as `demand.file` takes them; days count as whole.
+        File of orders, as for `demand.file`; days count as whole.
     name
-        Of the scenario.
+        Name of the scenario.
     weekly
-        Whether rates come again after a week, and not after a day.
+        Whether rates repeat every week instead of every day.
     listed
-        Whether the twin's SKUs are as popular as those of the file, each of them, and not gamma.
+        Whether each SKU keeps its popularity from the file, instead of gamma weights.
     seed
-        Of the twin's SKUs, and of the simulations that find the share of affinity.
+        Seed of the twin's SKUs, and of the simulations that estimate the share of affinity.
 
     Raises
     ------

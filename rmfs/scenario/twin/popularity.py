@@ -1,8 +1,8 @@
 """How popular SKUs are: gamma weights, fitted to how often each SKU was ordered.
 
-Of each order one line counts: lines of an order are not independent, orders are. With gamma
-weights such counts are negative binomial, and SKUs that were never ordered are not in the file:
-the likelihood is that of counts above 0, and tells also how many SKUs there are.
+One line of each order is used, because lines of an order are not independent but orders are. With
+gamma weights such counts are negative binomial, and SKUs that were never ordered are not in the
+file: the likelihood is that of positive counts, and also yields the total number of SKUs.
 """
 
 from __future__ import annotations
@@ -110,10 +110,10 @@ def _log_likelihood(n: NDArray[np.int64], shape: float, mean: float) -> NDArray[
 def _skus(
     seen: int, logs: NDArray[np.float64], covariance: NDArray[np.float64], z: float
 ) -> Estimate:
-    """Return how many SKUs there are: those seen over the probability to be seen.
+    """Estimate the number of SKUs: those seen, divided by the probability of being seen.
 
-    The interval is that of the number of unseen ones on the log scale, so that it stays above what
-    was seen: by the delta method for the parameters, and the draw of who is seen beside it.
+    The interval is computed for the number of unseen SKUs on the log scale, so that it stays above
+    the number seen. It covers the error of the parameters (delta method) and that of sampling.
     """
 
     def log_unseen(at: NDArray[np.float64]) -> float:

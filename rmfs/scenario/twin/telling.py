@@ -1,4 +1,4 @@
-"""What is told of a twin: on the terminal the main figures, in a file all."""
+"""Output of a twin: the main figures on the terminal, all of them in a file."""
 
 from __future__ import annotations
 

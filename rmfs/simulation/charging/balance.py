@@ -1,4 +1,4 @@
-"""Whether a fleet can get as much energy as it needs in the long run."""
+"""Long-run energy balance of a fleet."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class Balance(NamedTuple):
     Attributes
     ----------
     given_w
-        What all stations, and all waypoints that charge, give at most.
+        Maximum power of all energy stations and charging waypoints.
     least_w
-        What the fleet draws at least: its electronics alone.
+        Minimum power of the fleet: its electronics alone.
     has_stations
         Whether there is a station to which a robot can be sent for energy.
     """
@@ -32,7 +32,7 @@ class Balance(NamedTuple):
 
 
 def waypoint_power_w(layout: Layout, energy: Energy) -> dict[int, float]:
-    """Return the power of each waypoint that charges whoever stands there, W."""
+    """Return the charging power of each waypoint that has one, W."""
     power: dict[int, float] = {}
     queues: list[tuple[int, ...]] = []
     given = energy.inductive
@@ -50,7 +50,7 @@ def waypoint_power_w(layout: Layout, energy: Energy) -> dict[int, float]:
 
 
 def balance(layout: Layout, energy: Energy) -> Balance:
-    """Compare what a fleet can get with what it draws at least."""
+    """Compare the power available to a fleet with its minimum demand."""
     given_w = sum(
         other.kind.long_run_w
         for other in layout.other_stations
@@ -62,10 +62,10 @@ def balance(layout: Layout, energy: Energy) -> Balance:
 
 
 def working_w(layout: Layout, energy: Energy) -> float:
-    """Estimate what a fleet draws that always drives at top speed, half of it with a full pod.
+    """Estimate the power of a fleet that always drives at top speed, half the time with a full pod.
 
-    Starts and turns take more than that, waiting takes less: on the shipped sites the two about
-    cancel out. It is an estimate, not a bound.
+    Starts and turns take more, waiting takes less; at the shipped sites the two roughly cancel. It
+    is an estimate, not a bound.
     """
     pod_kg = energy.pod_kg + energy.goods_kg_per_space * float(layout.pod_capacity.mean()) / 2
     speed = sum(kind.top_speed_m_s for kind in layout.robot_kinds) / len(layout.robot_kinds)
@@ -75,12 +75,12 @@ def working_w(layout: Layout, energy: Energy) -> float:
 
 
 def refuse(layout: Layout, energy: Energy) -> None:
-    """Refuse batteries that nothing, or too little, charges.
+    """Refuse batteries that cannot be charged, or not enough.
 
     Raises
     ------
     InputError
-        Naming the deficit.
+        States the deficit.
     """
     found = balance(layout, energy)
     if not found.given_w:

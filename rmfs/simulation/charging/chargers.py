@@ -1,4 +1,4 @@
-"""The plug-in places of a run: robots leave them when told to, and places fail."""
+"""The plug-in places of a run, which robots leave on command, and which may fail."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""No robot strands of itself: who could not finish another task goes for energy in any case.
+"""Prevents stranding: a robot that could not complete another task is sent to charge in any case.
 
-What still goes wrong (a robot that was held up for long, a place out of order) is counted, and the
-robot is rescued after a stated time.
+What can still go wrong (a robot that was held up for long, a place out of service) is counted, and
+the robot is rescued after a given time.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 LOOK_US = 60_000_000
-"""How often all levels are looked at."""
+"""Time between checks of all levels."""
 
 AGAIN_US = 1_000_000
-"""When a robot cannot be held now, it is tried again so much later."""
+"""Delay before retrying to stop a robot that cannot be stopped now."""
 
 
 class EnergyGuard:
@@ -40,7 +40,7 @@ class EnergyGuard:
     Attributes
     ----------
     needs
-        What a robot needs at most.
+        Upper bounds of the energy that a robot needs.
     """
 
     def __init__(
@@ -70,7 +70,7 @@ class EnergyGuard:
         self._agenda.after(LOOK_US, self._look)
 
     def secure(self, consult: Consult) -> None:
-        """Before tasks are given: send for energy who could not finish another one."""
+        """Before tasks are assigned, send robots that could not complete another one to charge."""
         view = self._view
         for robot in [*view.asking.values(), *view.resting.values()]:
             if view.now_s >= self._safe_until_s[robot.index]:
@@ -101,7 +101,7 @@ class EnergyGuard:
     # --- robots that strand ---------------------------------------------------------------------
 
     def _look(self) -> None:
-        """Look at all levels: who is below the least strands; who rests may have become low."""
+        """Check all levels: robots may have to strand, or to charge although they rest."""
         batteries, view = self._batteries, self._view
         levels = batteries.levels_j()
         for robot in (levels < batteries.least_j).nonzero()[0].tolist():
@@ -118,7 +118,7 @@ class EnergyGuard:
         return isinstance(task, ChargeTask) and robot.station == task.station
 
     def _hold(self, robot: int) -> None:
-        """Let a robot stand where it next comes to rest, until somebody brings energy."""
+        """Stop a robot where it next comes to rest, until it is rescued."""
         lasting_us = round(self._batteries.given.rescue_after_s * 1e6)
         until_us = self._fleet.hold(robot, lasting_us)
         if until_us is None:
@@ -131,7 +131,7 @@ class EnergyGuard:
 
 
 def _most_w(given: Energy, view: View) -> float:
-    """Most power a robot draws at any moment, W."""
+    """Return the maximum power of a robot at any moment, W."""
     layout = view.layout
     mass = given.robot_kg + given.pod_kg
     mass += given.goods_kg_per_space * float(layout.pod_capacity.max())

@@ -1,11 +1,10 @@
-"""How much energy a robot needs at most for one more task and the way to a station for energy.
+"""Upper bound of the energy a robot needs for one more task and the way to an energy station.
 
-The bound holds for every way in the layout. From rest to rest, the mean power of a robot of *m* kg
-is at most *m p* + standby: a run of top speed *v* draws no more than *c g v* against rolling
-resistance, and no more than half *(1 + k) v²* of kinetic energy per kg in the time *v / a + v / b*
-that speeding up to it and braking take; a turn at the angular speed *w* draws *t g w*, and half
-*(r w)²* in the time of the bend. Times are the unhindered ones of traffic. What waiting and other
-robots add is what the reserve is for.
+The bound holds for every path in the layout. From rest to rest, the mean power of a robot of *m* kg
+is at most *m p* + standby: a run at top speed *v* draws at most *c g v* against rolling resistance,
+and at most half *(1 + k) v²* of kinetic energy per kg in the time *v / a + v / b* that accelerating
+and braking take; a turn at the angular speed *w* draws *t g w*, and half *(r w)²* in the time of
+the turn. Times are the unhindered ones of traffic. The reserve covers waiting and other robots.
 """
 
 from __future__ import annotations
@@ -23,11 +22,11 @@ if TYPE_CHECKING:
 
 GRAVITY = 9.80665
 BEND_RAD = np.pi / 2
-"""Bends of the layouts of this field are right angles or more."""
+"""Smallest turn; in layouts of this field, turns are at right angles or sharper."""
 
 
 def most_w_per_kg(given: Energy, kind: RobotKind) -> float:
-    """Most power per kg that motion draws in the mean, from rest to rest, W/kg."""
+    """Return the maximum mean power per kg of motion from rest to rest, W/kg."""
     v, a, b = kind.top_speed_m_s, kind.acceleration_m_s2, kind.deceleration_m_s2
     roll = given.rolling_resistance * GRAVITY * v
     kinetic = (1 + given.inertia_share) / 2 * v / (1 / a + 1 / b)
@@ -38,17 +37,17 @@ def most_w_per_kg(given: Energy, kind: RobotKind) -> float:
 
 
 class Needs:
-    """Energy that a robot needs at most, J.
+    """Upper bounds of the energy that a robot needs, J.
 
     Attributes
     ----------
     task_j
-        Of a robot without pod: fetch any pod, bring it to any station, store it anywhere, and go
-        for energy from there.
+        For a robot without a pod: fetch any pod, bring it to any station, store it anywhere, and go
+        to charge from there.
     store_j
-        Of a robot with a pod at a station: store it anywhere, and go for energy from there.
+        For a robot with a pod at a station: store it anywhere, and go to charge from there.
     visit_j
-        The same after a visit of any other station.
+        The same after a visit to any other station.
     """
 
     task_j: float
@@ -84,10 +83,10 @@ class Needs:
         self._loaded_w, self._work = loaded_w, work
 
     def task_from_j(self, waypoint: int) -> float:
-        """Return the same as `task_j` of a robot that stands at a waypoint.
+        """Return the same as `task_j` for a robot that stands at a given waypoint.
 
-        It goes to any pod from there, and brings it to the station that is farthest from the pod.
-        Never more than `task_j`.
+        It fetches any pod from there and brings it to the station farthest from the pod. Never more
+        than `task_j`.
         """
         if self._bring_j is None:
             each_s = [self._travel.to(at, loaded=True)[self._places] for at in self._work.tolist()]
@@ -100,5 +99,5 @@ class Needs:
 
 
 def _most(times: NDArray[Any]) -> float:
-    """Longest of the times for which there is a way."""
+    """Return the longest finite time."""
     return float(times[np.isfinite(times)].max(initial=0.0))

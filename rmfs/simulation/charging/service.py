@@ -57,7 +57,7 @@ class ChargeService:
             self._enter()
 
     def set_power(self, power_w: float) -> None:
-        """Give another power from now on; traffic has been told."""
+        """Change the charging power; the caller updates traffic."""
         self.power_w = power_w
         if self._task is not None:
             self._cancel()

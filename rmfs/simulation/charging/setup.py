@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 def count_energy(
     given: Energy | None, layout: Layout, world: World, fleet: Traffic, seed: int
 ) -> list[Observer]:
-    """Let traffic count energy, if that is wanted; returns who keeps it informed.
+    """Let traffic count energy, if configured; return the observers that keep it informed.
 
     Raises
     ------
     InputError
-        If there are batteries that nothing, or too little, charges.
+        If there are batteries that cannot be charged, or not enough.
     """
     if given is None:
         return []

@@ -1,4 +1,4 @@
-"""What happens at battery swap: a robot gets the fullest battery in stock and leaves its own."""
+"""Battery swap: a robot receives the fullest battery in stock and leaves its own behind."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Pacing: what an optimiser's thinking costs in simulated time (design: section 5).
+"""Pacing: how simulated time accounts for the computation of optimisers.
 
-A rule decides at once. A controller that asks an optimiser is told the answer later: how much
-later, the pacing says, and it is the pacing that has the question solved.
+A rule decides at once. A controller that asks an optimiser gets the answer later; the pacing
+determines how much later, and runs the optimiser.
 """
 
 from __future__ import annotations
@@ -27,51 +27,51 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Call
 
     Return = Callable[[Call, int], None]
-    """Told which call has come back, and at which simulated time (us) that takes effect."""
+    """Called with a call whose answer has arrived, and the simulated time (us) of its effect."""
 
 
 class Pacing(Protocol):
-    """Has questions solved, and says when each answer takes effect.
+    """Runs optimisers, and determines when each answer takes effect.
 
     Attributes
     ----------
     waits
-        Whether a solver may be at work while the simulation goes on.
+        Whether a solver may run while the simulation continues.
     """
 
     waits: bool
 
     def begin(self, modules: Iterable[str], give: Return) -> None:
-        """Get ready, before the clock counts.
+        """Prepare, before wall time is measured.
 
         Parameters
         ----------
         modules
-            Modules with the functions that will solve the questions.
+            Modules with the functions that answer the questions.
         give
-            To be called for each question once: also at once, from within `ask`.
+            To be called once for each question, possibly from within `ask`.
         """
         ...
 
     def ask(self, call: Call) -> None:
-        """Begin to solve a question."""
+        """Start solving a question."""
         ...
 
     def limit_us(self, now_us: int) -> int:
-        """Latest simulated time that may be simulated now; waits until it is past `now_us`."""
+        """Return the latest time that may be simulated now; waits until it is past `now_us`."""
         ...
 
     def end(self) -> None:
-        """Let go of whatever is held; questions that are not answered are given up."""
+        """Release all resources; unanswered questions are abandoned."""
         ...
 
 
 Paced = InstantPacing | WallPacing | WorkPacing | FixedPacing | Replay
-"""A mode with its parameters; for a replay the answers that were read from its run."""
+"""A mode with its parameters; for a replay, the answers read from its run."""
 
 
 def pacing_of(settings: Paced, seed: int) -> Pacing:
-    """Make the pacing of a run.
+    """Create the pacing of a run.
 
     Parameters
     ----------

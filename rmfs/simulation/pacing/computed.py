@@ -1,4 +1,4 @@
-"""Modes that repeat: a question is solved at once, and its answer held back for a computed time."""
+"""Reproducible modes: a question is solved at once, and its answer delayed by a computed time."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ SECONDS_PER_UNIT = {
     "scipy": 1.2e-08,
     "visits": 3.98e-09,
 }
-"""Seconds of a unit of work of each back end, as measured by `python -m
-tests.tools.calibrate` on an AMD EPYC on 2026-11-22 (results/published/seconds-per-unit.md)."""
+"""Seconds per unit of work of each back end, as measured by `python -m tests.tools.calibrate` on an
+AMD EPYC on 2026-11-22 (results/published/seconds-per-unit.md)."""
 
 SECONDS_PER_CALL = {
     "clarabel": 0.0,
@@ -41,7 +41,7 @@ SECONDS_PER_CALL = {
     "scipy": 6.29e-05,
     "visits": 3.114e-05,
 }
-"""Seconds of a call besides, by the same measurement; of other back ends none."""
+"""Additional seconds per call, from the same measurement; 0 for other back ends."""
 
 SECONDS_PER_ENTRY = {
     "clarabel": 0.0,
@@ -53,30 +53,30 @@ SECONDS_PER_ENTRY = {
     "scipy": 0.0,
     "visits": 6.673e-09,
 }
-"""Seconds of an entry built (`Answer.built`), by the same measurement; of other back ends none."""
+"""Seconds per entry built (`Answer.built`), from the same measurement; 0 for other back ends."""
 
 
 SECONDS_PER_INSTANT = 1.4e-4
-"""Seconds of a simulated instant of a trial (back end `rollout`), copying of the run included: rule
-POA rollout on the site `small-arrivals`, same machine and day (6.8 s for 49,000 instants)."""
+"""Seconds per simulated instant of a trial (back end `rollout`), including copies of the run: rule
+POA rollout at the site `small-arrivals`, same machine and day (6.8 s for 49,000 instants)."""
 
 
 class Computed(ABC):
-    """Solves in this process; nothing runs beside the simulation."""
+    """Solves in this process, synchronously."""
 
     waits = False
 
     def begin(self, modules: Iterable[str], give: Callable[[Call, int], None]) -> None:
-        """Remember whom to give answers to."""
+        """Store the callback for answers."""
         self._give = give
 
     def ask(self, call: Call) -> None:
-        """Solve the question and hold its answer back.
+        """Solve the question and delay its answer.
 
         Raises
         ------
         OptimiserError
-            If the optimiser fails: a run that must repeat cannot go on by chance.
+            If the optimiser fails, because a reproducible run must not depend on chance.
         """
         ask = call.ask
         try:
@@ -91,7 +91,7 @@ class Computed(ABC):
         self._give(call, call.requested_us + ceil(self.seconds(answer) * 1e6))
 
     def limit_us(self, now_us: int) -> int:
-        """No limit: what is held back is in the agenda."""
+        """Return no limit: delayed answers are in the agenda."""
         return NEVER_US
 
     def end(self) -> None:  # noqa: B027 - not for subclasses: there is nothing to end
@@ -99,7 +99,7 @@ class Computed(ABC):
 
     @abstractmethod
     def seconds(self, answer: Answer) -> float:
-        """Work out the simulated time that an answer takes."""
+        """Return the simulated time that an answer takes."""
 
 
 class Instant(Computed):
@@ -111,7 +111,7 @@ class Instant(Computed):
 
 
 class Work(Computed):
-    """Answers take a time in proportion to the work they were."""
+    """Answers take simulated time in proportion to their work."""
 
     def __init__(self, settings: WorkPacing) -> None:
         self._per_call = settings.seconds_per_call
@@ -119,12 +119,12 @@ class Work(Computed):
         self._per_entry = settings.seconds_per_entry
 
     def seconds(self, answer: Answer) -> float:
-        """Seconds per call, per unit of work and per entry built, all of the back end.
+        """Return the time by calls, units of work and entries built of the back end.
 
         Raises
         ------
         InputError
-            If nothing says what a unit of this back end takes.
+            If the time per unit of this back end is unknown.
         """
         unit, call = self._per_unit, self._per_call
         if isinstance(unit, dict):

@@ -1,11 +1,11 @@
-"""What can go wrong with an optimiser in the loop so that a run has to stop."""
+"""Errors of optimisers that stop a run."""
 
 from __future__ import annotations
 
 
 class OptimiserError(RuntimeError):
-    """An optimiser failed where a run must repeat: going on by the rule would hide it."""
+    """An optimiser failed in a reproducible run, where falling back to the rule would hide it."""
 
 
 class ReplayError(RuntimeError):
-    """A run that is replayed has come to another state than the one that was recorded."""
+    """A replayed run deviates from the recorded one."""

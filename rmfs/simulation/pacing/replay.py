@@ -1,4 +1,4 @@
-"""Replay: the answers of a recorded run, at the times at which they took effect there."""
+"""Replay: uses the answers of a recorded run, at the recorded times."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 
 class Replay:
-    """Calls no solver.
+    """Pacing that calls no solver.
 
     Parameters
     ----------
     settings
-        The run to be replayed.
+        The run to replay.
     answers
-        The rows of its table `answers`.
+        Rows of its table `answers`.
     """
 
     waits = False
@@ -43,7 +43,7 @@ class Replay:
         Raises
         ------
         ReplayError
-            If this is not the question that was recorded.
+            If this is not the recorded question.
         """
         row = self._recorded(call)
         completed_us = int(row["completed_us"])

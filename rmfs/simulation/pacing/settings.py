@@ -1,4 +1,4 @@
-"""Pacing modes and their parameters, from what a user types."""
+"""Pacing modes and their parameters, parsed from user input."""
 
 from __future__ import annotations
 
@@ -30,30 +30,30 @@ class InstantPacing(_Mode):
 
 
 class WallPacing(_Mode):
-    """Optimisers take the wall time they need; they run beside the simulation."""
+    """Optimisers take the wall time that they need, and run in parallel with the simulation."""
 
     mode: Literal["wall"] = "wall"
     speed: Positive = 1.0
-    """Simulated seconds that pass in a second of wall time while an optimiser is running."""
+    """Simulated seconds per second of wall time while an optimiser is running."""
     workers: Annotated[int, Field(ge=1, le=64)] = 2
-    """Worker processes, of one thread each; further questions wait for one."""
+    """Number of single-threaded worker processes; further questions wait for one."""
     patience_s: Positive = 300.0
-    """Wall time after which a worker that has not answered is given up and replaced."""
+    """Wall time after which a worker that has not answered is stopped and replaced."""
 
 
 class WorkPacing(_Mode):
-    """Optimisers take a time in proportion to their deterministic work."""
+    """Optimisers take simulated time in proportion to their deterministic work."""
 
     mode: Literal["work"] = "work"
     seconds_per_unit: NotNegative | dict[str, NotNegative] = Field(default_factory=dict)
-    """Simulated seconds per unit of work: one number for all back ends, or one for each by name;
-    those not named take what they take on the machine of the published figures."""
+    """Simulated seconds per unit of work: one number for all back ends, or numbers by name; by
+    default those of the machine of the published figures."""
     seconds_per_call: NotNegative | None = None
-    """Simulated seconds that every call takes besides: one number for all back ends; by default
-    what it takes on the machine of the published figures."""
+    """Additional simulated seconds per call, for all back ends; by default those of the machine of
+    the published figures."""
     seconds_per_entry: NotNegative | None = None
-    """Simulated seconds per entry of the solver's model that is built: one number for all back
-    ends; by default as above."""
+    """Simulated seconds per entry of the solver's model that is built, for all back ends; by
+    default as above."""
 
 
 class FixedPacing(_Mode):
@@ -61,16 +61,16 @@ class FixedPacing(_Mode):
 
     mode: Literal["fixed"] = "fixed"
     seconds: NotNegative | Distribution = 1.0
-    """Simulated seconds of each call: a number or a distribution, such as
+    """Simulated seconds per call: a number or a distribution, such as
     `{distribution = "exponential", rate = 0.5}`."""
 
 
 class ReplayPacing(_Mode):
-    """Optimisers are not called: their answers are those of a recorded run."""
+    """Optimisers are not called; the answers are those of a recorded run."""
 
     mode: Literal["replay"] = "replay"
     run: Path
-    """Folder of that run."""
+    """Folder of the recorded run."""
 
 
 PacingSettings = InstantPacing | WallPacing | WorkPacing | FixedPacing | ReplayPacing
@@ -84,12 +84,12 @@ MODES: dict[str, type[PacingSettings]] = {
 }
 
 _ARGUMENTS = {"fixed": "seconds", "replay": "run"}
-"""What stands behind the `=` of a mode."""
+"""The parameter given after the `=` of a mode."""
 _EXAMPLES = {"fixed": "SECONDS", "replay": "RUN_DIR"}
 
 
 def pacing_settings(mode: str, overrides: Sequence[tuple[list[str], Any]] = ()) -> PacingSettings:
-    """Read a pacing mode.
+    """Parse a pacing mode.
 
     Parameters
     ----------
@@ -116,5 +116,5 @@ def pacing_settings(mode: str, overrides: Sequence[tuple[list[str], Any]] = ()) 
     table = config.apply_overrides(table, list(overrides))
     wanted = _ARGUMENTS.get(name, "")
     if wanted and wanted not in table:
-        raise InputError(f"pacing {mode}: say which, {name}={_EXAMPLES[name]}")
+        raise InputError(f"pacing {mode}: must have a value, as in {name}={_EXAMPLES[name]}")
     return config.validate(MODES[name], table, f"pacing {name}")

@@ -1,4 +1,4 @@
-"""Wall pacing: optimisers run beside the simulation, which is held back by their wall time."""
+"""Wall pacing: optimisers run in parallel with the simulation, which waits for their wall time."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ if TYPE_CHECKING:
     from rmfs.simulation.pacing.settings import WallPacing
 
 STEP_S = 0.005
-"""Wall time by which a simulation that is held back goes on at a time; it sleeps in between."""
+"""Wall time between steps of a simulation that waits."""
 
 
 @dataclass(eq=False)
 class _Open:
-    """A question that has been handed over.
+    """A submitted question.
 
     Attributes
     ----------
     since_s
-        When, on the monotonic clock.
+        When it was submitted, on the monotonic clock.
     load
-        The question as it is sent.
+        The serialised question.
     """
 
     call: Call
@@ -42,13 +42,13 @@ class _Open:
 
 
 class Wall:
-    """Hands questions to worker processes and holds the simulation back while any is open.
+    """Submits questions to worker processes and limits the simulation while any is open.
 
     While a question is open, the simulated time since it was asked is at most the wall time since
-    it was handed over, times `speed` (paper, section 3.1). Its answer takes effect when that wall
-    time, times `speed`, has passed in the simulation, also if the simulation gets there later. The
+    it was submitted, times `speed` (paper, section 3.1). Its answer takes effect when that wall
+    time, times `speed`, has passed in the simulation, even if the simulation gets there later. The
     wall time runs from before the question is pickled until the worker has pickled the answer;
-    waiting for a worker counts, the start of a worker does not.
+    waiting for a free worker counts, but starting a worker does not.
 
     Parameters
     ----------
@@ -67,14 +67,14 @@ class Wall:
         self._modules: list[str] = []
 
     def begin(self, modules: Iterable[str], give: Callable[[Call, int], None]) -> None:
-        """Start the workers and wait until they are ready, if anybody is going to ask."""
+        """Start the workers and wait until they are ready, if any controller asks optimisers."""
         self._give = give
         self._modules = list(modules)
         if self._modules:
             self._started().await_ready()
 
     def ask(self, call: Call) -> None:
-        """Hand a question to a worker, or let it wait for one."""
+        """Submit a question to a worker, or queue it."""
         worker = self._started().idle()
         since_s = time.monotonic()
         load = pickle.dumps((call.ask.solve, call.ask.question))
@@ -86,7 +86,7 @@ class Wall:
             self._hand_over(asked, worker)
 
     def limit_us(self, now_us: int) -> int:
-        """Time that has been paid for with wall time; sleeps until that is a step past `now_us`."""
+        """Return the simulated time covered by wall time; sleep until it passes `now_us`."""
         while self._open:
             self._collect(now_us)
             if not self._open:
@@ -121,7 +121,7 @@ class Wall:
         )
 
     def _collect(self, now_us: int) -> None:
-        """Take the replies that have come, give up what takes too long, and hand over the rest."""
+        """Collect replies, stop what takes too long, and submit queued questions."""
         for asked in list(self._open):
             reply = self._reply(asked)
             if reply is not None:
@@ -133,7 +133,7 @@ class Wall:
             self._hand_over(self._queue.popleft(), worker)
 
     def _reply(self, asked: _Open) -> Reply | None:
-        """Return what became of a question; None while it is open."""
+        """Return the reply to a question; None while it is open."""
         worker, workers = asked.worker, self._started()
         failure = ""
         if worker is not None:

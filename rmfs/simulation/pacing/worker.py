@@ -1,4 +1,4 @@
-"""A worker process: solves the questions it is sent, one after another, until told no more.
+"""A worker process: answers questions one after another until its connection is closed.
 
 It is started with a bare interpreter, not by forking or by importing the user's script again, so
 that a script needs no guard and a notebook works.

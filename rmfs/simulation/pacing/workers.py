@@ -154,7 +154,7 @@ class Workers:
     Parameters
     ----------
     count
-        How many.
+        Their number.
     modules
         What each imports before it is ready.
     """

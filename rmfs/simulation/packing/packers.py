@@ -1,4 +1,4 @@
-"""Packers: orders that are all there are packed, first come, first served."""
+"""Packers, who pack complete orders, first come, first served."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ if TYPE_CHECKING:
 
 
 class Packers:
-    """People who pack, all alike.
+    """Packers, all alike.
 
     Parameters
     ----------
     given
-        How many there are, and what they take.
+        Their number and packing times.
     rng
-        Draws their times.
+        Random generator of packing times.
 
     Attributes
     ----------
     waiting
-        What waits for a packer.
+        Parcels that wait for a packer.
     busy
-        How many pack.
+        Number of busy packers.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class Packers:
         self.busy = 0
 
     def add(self, parcel: Parcel) -> None:
-        """Pack an order as soon as somebody is free."""
+        """Pack an order as soon as a packer is free."""
         if self._given.packers is None or self.busy < self._given.packers:
             self._begin(parcel)
         else:

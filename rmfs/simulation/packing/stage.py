@@ -1,8 +1,8 @@
-"""The way from the pick stations to the packed parcel.
+"""The packing stage, from the pick stations to the packed parcel.
 
-A pick station asks before it lets an order, or a part of one, go. If the wall or the conveyor is
-full, it keeps the tote in its slot, and is called as soon as there is room. Every time that needs
-none passes at once, without an entry in the agenda: a stage that costs nothing changes nothing.
+A pick station asks the stage before it releases an order, or a part of one. If the wall or the
+conveyor is full, the tote stays in its slot, and the station is called as soon as there is room.
+Durations of zero need no agenda entry, so that a stage without any delays changes nothing.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ if TYPE_CHECKING:
 
 
 class PackingStage(Observer):
-    """Takes what pick stations hand on, and brings it to the packed parcel.
+    """Takes orders from pick stations, and brings them to packing.
 
     Parameters
     ----------
     given
-        What the scenario says.
+        Parameters of the scenario.
     services
-        Of all stations; pick stations ask this stage from now on.
+        Services of all stations; pick stations use this stage from now on.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class PackingStage(Observer):
                 self._services.append(service)
 
     def takes(self, order: Order) -> bool:
-        """Whether a pick station may let an order go; if not, it is called when it may."""
+        """Whether a pick station may release an order; otherwise it is called when it may."""
         if self._has_room(order):
             return True
         after_us = round(self._given.by_hand_after_s * 1e6)
@@ -83,12 +83,12 @@ class PackingStage(Observer):
         return False
 
     def released(self, order: Order, *, last: bool, by_hand: bool = False) -> None:
-        """An order, or a part of one, has left its pick station.
+        """Handle an order, or a part of one, that has left its pick station.
 
         Parameters
         ----------
         last
-            Whether nothing of the order is left to be picked.
+            Whether all of the order has now been picked.
         """
         wall, now_s = self._wall, self._world.now_s
         whole = _whole(order)
@@ -106,7 +106,7 @@ class PackingStage(Observer):
             self._let_go()  # parts that had to wait for a slot need none any more
 
     def order_assigned(self, order: Order) -> None:
-        """Lines that join a part at its station keep it there."""
+        """Update for lines that join a part at its station, which must then stay."""
         for held in self._wall.held:
             if held.order is order:
                 self._forget(held)
@@ -126,7 +126,7 @@ class PackingStage(Observer):
         return whole.slots_taken == 1 and whole not in self._world.orders
 
     def _arrive(self, tote: Tote) -> None:
-        """Let a tote reach the wall."""
+        """Handle the arrival of a tote at the wall."""
         self._on_conveyor -= not tote.by_hand
         whole = self._wall.arrive(tote, self._world.now_s)
         if whole:
@@ -134,7 +134,7 @@ class PackingStage(Observer):
         self._let_go()
 
     def _let_go(self) -> None:
-        """Let everything go that may, longest wait first."""
+        """Release all totes for which there is room, longest wait first."""
         while True:
             # each that goes may come back here before this looks again
             ready = next((held for held in self._wall.held if self._has_room(held.order)), None)
@@ -144,14 +144,14 @@ class PackingStage(Observer):
             self._services[ready.order.station].hand_on_held(ready.order)
 
     def _carry(self, order: Order) -> None:
-        """Carry a tote away that has kept its station waiting for too long."""
+        """Carry a tote by hand that has waited at its station for too long."""
         held = next(one for one in self._wall.held if one.order is order)
         held.timer = -1
         self._forget(held)
         self._services[order.station].hand_on_held(order, by_hand=True)
 
     def _forget(self, held: HeldTote) -> None:
-        """Let a tote no longer be one that waits."""
+        """Remove a tote from those that wait."""
         self._wall.held.remove(held)
         if held.timer >= 0:
             self._agenda.cancel(held.timer)
@@ -168,14 +168,14 @@ def packing_stage(
     world: World,
     events: Observer,
 ) -> list[Observer]:
-    """Make the stage, if a scenario has one; returns who observes the run for it."""
+    """Create the stage, if a scenario has one; return the observers of the run for it."""
     if given is None:
         return []
     return [PackingStage(given, layout, services, seed, agenda=agenda, world=world, events=events)]
 
 
 def travel_s(given: ToteTravel, layout: Layout) -> NDArray[np.float64]:
-    """Return what a tote takes from each pick station to the wall, in s, shape (S,)."""
+    """Return the travel time of a tote from each pick station to the wall, in s, shape (S,)."""
     at = [station.waypoint for station in layout.pick_stations]
     x_m, y_m = layout.x_m[at], layout.y_m[at]
     if given.speed_m_s is None:

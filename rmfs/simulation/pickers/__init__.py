@@ -1,1 +1,1 @@
-"""People at the pick stations: who is there when, and how long each unit takes them."""
+"""Pickers at the pick stations: their presence, and the time that each unit takes them."""

@@ -1,4 +1,4 @@
-"""How long a unit keeps the picker, the station and the robot, and whether it is the right one."""
+"""The time and correctness of each pick, given the picker."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ if TYPE_CHECKING:
     from rmfs.world.tasks import Pick, PickTask
 
 TIMES, ERRORS, SPEEDS = range(3)
-"""Random streams of each picker: switching one cause on does not change the draws of another."""
+"""Random streams of each picker, separate so that enabling one cause changes no other draws."""
 
 
 class Hands(Observer):
-    """What every pick station asks before it begins with a unit.
+    """Determines for pick stations how each unit is handled.
 
     Parameters
     ----------
     staff
         The pickers.
     layers, faces
-        Where units lie in pods, if pods have layers or faces.
+        Positions of units in pods, if pods have layers or faces.
     seed
-        Of the run.
+        Seed of the run.
     """
 
     def __init__(
@@ -44,12 +44,12 @@ class Hands(Observer):
     ) -> None:
         self._staff, self._layers, self._faces, self._world = staff, layers, faces, world
         self._seen: dict[int, tuple[int, int]] = {}
-        """Per station, of which of its visits what was seen, and the face."""
+        """For each station, the number of its visit, and the face last shown in it."""
         self._times = [generator(seed, Stream.PICKERS, p.index, TIMES) for p in staff.pickers]
         self._errors = [generator(seed, Stream.PICKERS, p.index, ERRORS) for p in staff.pickers]
 
     def are_at(self, station: int) -> bool:
-        """Whether somebody is there to pick."""
+        """Whether a picker is at a station."""
         return self._staff.at_station[station] is not None
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
@@ -65,12 +65,12 @@ class Hands(Observer):
         return next(on_face, None)
 
     def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:
-        """Let the picker of a station begin with a unit.
+        """Let the picker of a station start with a unit.
 
         Parameters
         ----------
         station_s, robot_s
-            For how long it keeps them as the layout says.
+            Times for which the unit occupies station and robot according to the layout.
         """
         staff, now_s = self._staff, self._world.now_s
         picker = staff.at_station[station]
@@ -98,7 +98,7 @@ class Hands(Observer):
         return Handled(*how, face, turned)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
-        """Lay the units of a bundle into their pod."""
+        """Store the units of a bundle in the layers or on the faces of their pod."""
         if self._layers is not None:
             self._layers.put(bundle.pod, bundle.sku, bundle.units)
         if self._faces is not None:
@@ -110,7 +110,7 @@ class Hands(Observer):
         return face if visit == self._world.stations[station].visits else -1
 
     def _turn(self, station: int, pod: int, sku: int) -> tuple[int, bool]:
-        """Take a unit from its face; returns that, and whether the pod had to be turned."""
+        """Take a unit from its face; return the face, and whether the pod had to be turned."""
         if self._faces is None:
             return -1, False
         shown = self._shown(station)

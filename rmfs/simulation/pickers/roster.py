@@ -1,4 +1,4 @@
-"""Shifts and breaks: pickers come to their stations and leave them."""
+"""Shifts and breaks of pickers."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
 
 
 class RosterClock:
-    """Lets pickers come and leave as the roster says; without one all come at time zero.
+    """Lets pickers come and leave according to the roster; without one, all come at time zero.
 
     Parameters
     ----------
     given
-        What the scenario says.
+        Parameters of the scenario.
     gone_s
-        What the clock of the warehouse shows at time zero.
+        Time of day at time zero, in s.
     services
-        Of all stations, pick stations first: those that get a picker go on.
+        Services of all stations, pick stations first; those that get a picker continue.
     """
 
     def __init__(
@@ -52,11 +52,11 @@ class RosterClock:
             self._breaks_us = [_us(period) for period in given.breaks_s]
 
     def begin(self) -> None:
-        """Let those come who are there at time zero."""
+        """Place the pickers who are present at time zero."""
         self._change()
 
     def _change(self) -> None:
-        """Let everybody come or leave whose time it is, and enter the next such time."""
+        """Let pickers come or leave that are due, and schedule the next change."""
         staff, now_s = self._staff, self._world.now_s
         shift = self._shift()
         for picker in staff.pickers:
@@ -79,7 +79,7 @@ class RosterClock:
         self._events.picker_left(picker.index, station, since_s, max(now_s, picker.busy_until_s))
 
     def _shift(self) -> int:
-        """Return the shift that works now, or -1."""
+        """Return the current shift, or -1."""
         if not self._cycle_us:
             return 0
         at_us = self._in_cycle_us

@@ -1,4 +1,4 @@
-"""The people of a scenario, if it names any."""
+"""Creates the pickers of a scenario, if it has any."""
 
 from __future__ import annotations
 
@@ -37,21 +37,21 @@ def staffed(
     world: World,
     events: Observer,
 ) -> tuple[list[Observer], RosterClock | None]:
-    """Make pickers, if the scenario has them; pick stations ask them from now on.
+    """Create pickers, if the scenario has them; pick stations use them from now on.
 
     Parameters
     ----------
     gone_s
-        What the clock of the warehouse shows at time zero.
+        Time of day at time zero, in s.
 
     Returns
     -------
-    Who observes the run for them, and what lets them come.
+    Observers of the run for them, and the clock of their roster.
 
     Raises
     ------
     InputError
-        If a shift has more pickers than there are pick stations, or a file of times is broken.
+        If a shift has more pickers than there are pick stations, or a file of times is invalid.
     """
     if given is None:
         return [], None
@@ -94,12 +94,12 @@ def _speed(given: Pickers, index: int, seed: int) -> float:
         return 1.0
     square = given.speed_variation**2
     rng = generator(seed, Stream.PICKERS, index, SPEEDS)
-    # who is almost motionless would keep a station for ever
+    # a picker who hardly moves would block a station forever
     return max(float(rng.gamma(1.0 / square, square)), 0.1)
 
 
 def _layers(given: Pickers, layout: Layout, world: World) -> PodLayers | None:
-    """Lay the stock of time zero into layers: pod by pod, SKU by SKU."""
+    """Distribute the initial stock over layers, pod by pod and SKU by SKU."""
     if given.layers is None:
         return None
     skus = world.skus
@@ -109,7 +109,7 @@ def _layers(given: Pickers, layout: Layout, world: World) -> PodLayers | None:
 
 
 def _faces(given: Pickers, layout: Layout, world: World) -> PodFaces | None:
-    """Lay the stock of time zero onto faces, likewise."""
+    """Distribute the initial stock over faces in the same way."""
     if given.faces is None:
         return None
     faces = PodFaces(given.faces, world.skus.space_per_unit, layout.pod_capacity)

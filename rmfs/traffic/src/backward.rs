@@ -3,6 +3,7 @@
 use crate::buckets::Buckets;
 use crate::costs::{Model, UNREACHABLE};
 use crate::network::Network;
+use crate::patience::look_up;
 
 /// Keeps the bound from the start below the sum of rounded edge times.
 const SAFETY: f64 = 0.999_99;
@@ -177,6 +178,7 @@ impl Backward {
     /// Searches on until every state with a total time below `limit` is known.
     pub fn advance(&mut self, network: &Network, model: &Model, limit: u32) {
         while let Some((cost, state)) = self.queue.pop(limit) {
+            look_up();
             let index = state / ENTRIES;
             let (node, heading) = ((index / self.headings) as u32, (index % self.headings) as u8);
             if state % ENTRIES == ROLLING {

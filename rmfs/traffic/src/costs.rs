@@ -13,6 +13,7 @@ use crate::backward::{Backward, ROLLING};
 use crate::buckets::Buckets;
 use crate::kinematics::Kind;
 use crate::network::Network;
+use crate::patience::look_up;
 use crate::units::Us;
 
 /// Time that stands for "cannot be reached".
@@ -92,6 +93,7 @@ impl Model {
             queue.improve((source as usize * count + heading) * 2, 0, 0);
         }
         while let Some((cost, state)) = queue.pop(u32::MAX) {
+            look_up();
             let (node, heading) = ((state / 2 / count) as u32, (state / 2 % count) as u8);
             let ends_here = loaded && network.storage[node as usize] && node != source;
             if state % 2 == ROLLING {

@@ -9,6 +9,7 @@ pub mod heat;
 pub mod kinematics;
 pub mod log;
 pub mod network;
+pub mod patience;
 pub mod planner;
 pub mod postpone;
 pub mod random;

@@ -42,6 +42,8 @@ pub struct Row {
     pub heading_before: u8,
     pub heading: u8,
     pub pod: i32,
+    /// With which a run was driven: robots are slow at times. 0 for other pieces.
+    pub top_speed: f64,
 }
 
 /// Totals of one robot since the last reset.
@@ -192,6 +194,7 @@ impl Record {
             heading_before: heading,
             heading,
             pod: pod_id(pod),
+            top_speed: 0.0,
         });
     }
 
@@ -221,6 +224,7 @@ impl Record {
             heading_before: heading,
             heading,
             pod: pod as i32,
+            top_speed: 0.0,
         });
     }
 
@@ -315,6 +319,7 @@ pub fn move_rows(
         heading_before,
         heading: step.heading,
         pod: pod_id(pod),
+        top_speed: if piece == Piece::Run { kind.top_speed } else { 0.0 },
     };
     let turning = (turn > 0)
         .then(|| row(step.start - turn, step.start, Piece::Turn, step.from, step.heading_before));

@@ -183,10 +183,12 @@ pub fn occupation<'a>(
         let mut passed = 0.0;
         for (i, &(next, distance)) in line.iter().enumerate() {
             let reached = profile.time_at(distance);
+            // what had been left when the delay came was not left later for it
+            let late = if i + 1 < step.begun as usize { 0 } else { step.late };
             held.push(Held {
                 resource: network.resource[node as usize],
                 start: since,
-                end: step.start + step.late + ceil_us(reached),
+                end: step.start + late + ceil_us(reached),
                 entered_by,
             });
             let late = if i < step.begun as usize { 0 } else { step.late };

@@ -1,3 +1,3 @@
-"""CA by a model: who charges when, where and for how long, over a look-ahead."""
+"""CA by a model: schedules which robot charges when, where and for how long."""
 
 from rmfs.solvers.control.charging.controller import ScheduleControl as ScheduleControl

@@ -1,4 +1,4 @@
-"""CA schedule: charging planned ahead for the whole fleet."""
+"""CA schedule: plans the charging of the whole fleet ahead."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ if TYPE_CHECKING:
 
 
 class ScheduleControl(ByLevel[ScheduleParameters]):
-    """Plans who charges when, where and for how long, and carries out what is to begin now.
+    """Plans which robots charge when, where and for how long, and carries out the next steps.
 
-    Every `period_s` the levels of all robots, the places and the robots that work has use for are
-    put into a model that weighs robot time missed by work against energy, over `slots` slots of
-    time. Robots whose stay is to begin are sent when they are free; those that charge stay as long
-    as the plan of the day says, and leave when it says so. Until the first answer, and after a
-    failure, robots go below `below_share`, until `until_share`, as by the rule threshold.
+    Every `period_s` a model is given the levels of all robots, the places and the forecast number
+    of robots needed for work. It weighs robot time that work lacks against energy, over `slots`
+    time slots. Robots whose stay is due are sent when they are free; charging robots stay as long
+    as the current plan says. Until the first answer, and after a failure, the rule `threshold`
+    applies, with `below_share` and `until_share`.
     """
 
     parameters_model = ScheduleParameters
@@ -51,13 +51,13 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
         self._plan: tuple[Call, set[int], dict[int, int]] | None = None
 
     def next_event_s(self) -> float:
-        """When the next schedule is to be made."""
+        """Time of the next schedule."""
         if self.view.batteries is None or self.in_flight:
             return inf
         return max(self._asked_s, 0.0) + self.parameters.period_s
 
     def decide(self) -> Iterator[Told]:
-        """Ask for a schedule when it is time, and send who has come free meanwhile."""
+        """Ask for a schedule when it is due, and send robots that have become free meanwhile."""
         batteries = self.view.batteries
         if batteries is None:
             return
@@ -69,7 +69,7 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
         yield from self._carry_out(batteries)
 
     def answered(self, call: Call) -> Iterator[Told]:
-        """Keep the schedule, and carry out what is to be done now."""
+        """Store the schedule, and carry out what is due now."""
         self._plan = None
         if call.solution is not None:
             stays = zip(call.solution["group"], call.solution["begin"], strict=True)
@@ -88,12 +88,12 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
             yield from self._carry_out(batteries)
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """By the rule: the upper level, below the lower one."""
+        """Return the level by the rule: the upper one, if the robot is below the lower one."""
         given = self.parameters
         return given.until_share if share < given.below_share else 0.0
 
     def target_share(self) -> float:
-        """All there is room for: the schedule says when it is enough."""
+        """A full battery: the schedule determines when robots leave."""
         batteries = self.view.batteries
         return 1.0 if batteries is None else batteries.given.full_share
 
@@ -134,7 +134,7 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
                     yield By(Unplug(view.robots[robot_here]), call)
 
     def _leave(self, batteries: Batteries) -> Iterator[Unplug]:
-        """By the rule: let robots leave that have the upper level."""
+        """By the rule, let robots leave that have reached the upper level."""
         for charger in self.view.chargers:
             here = charger.robot
             enough = max(self.parameters.until_share, batteries.enough_share)

@@ -1,4 +1,4 @@
-"""How many robots work has use for, from what was seen of late."""
+"""Forecast of the number of robots needed for work, from recent observations."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ class _Seen(NamedTuple):
 
 
 class Forecast:
-    """Counts the robots that work makes use of, and expects what was counted of late.
+    """Counts the robots that work uses, and forecasts their number from recent counts.
 
-    Of no use are robots at rest, and those that queue behind another one that waits at the same
-    station already. So many robots kept so many of the stations with work busy; to keep all of them
-    busy takes more in proportion.
+    Robots at rest are not used, nor are those that queue behind another waiting robot at the same
+    station. The count is scaled up in proportion from the stations with work that were busy to all
+    stations with work.
 
     Parameters
     ----------
     view
         The world.
     window_s
-        How long what was counted is remembered.
+        How long counts are remembered.
     cases
-        How many cases are told apart.
+        Number of cases (scenarios) of the forecast.
     """
 
     def __init__(self, view: View, window_s: float, cases: int) -> None:
@@ -47,13 +47,13 @@ class Forecast:
         self._queues = {s.index: set(view.layout.stations[s.index].queue) for s in view.stations}
 
     def look(self) -> None:
-        """Count now."""
+        """Count the robots in use now."""
         self._seen.append(self._count())
         while self._seen[0].time_s < self._view.now_s - self._window_s:
             self._seen.popleft()
 
     def cases(self) -> NDArray[np.int64]:
-        """Return as many cases as are told apart, each as likely as the others, shape (Q,)."""
+        """Return the cases, all equally likely, shape (Q,)."""
         robots = len(self._view.robots)
         busy = sum(seen.busy for seen in self._seen)
         stations = sum(seen.stations for seen in self._seen)

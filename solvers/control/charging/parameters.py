@@ -18,35 +18,35 @@ class ScheduleParameters(LevelParameters):
     """Parameters of CA schedule."""
 
     method: Literal["highs", "cp_sat", "greedy"] = "highs"
-    """Who decides: HiGHS or CP-SAT, beginning with the greedy rule, or that rule alone."""
+    """Solver: HiGHS or CP-SAT, starting from the greedy rule, or that rule alone."""
     period_s: Positive = 60.0
-    """Seconds after which the schedule is made anew."""
+    """Seconds between schedules."""
     slot_share: Annotated[float, pydantic.Field(gt=0, le=1)] = 0.1
-    """A slot is as long as a place takes to charge this share of a battery."""
+    """Length of a slot: the time in which a place charges this share of a battery."""
     slots: Count = 10
-    """Slots to look ahead."""
+    """Number of slots to plan ahead."""
     longest: Count = 7
-    """Slots of a stay, at most."""
+    """Maximum length of a stay in slots."""
     worth: NotNegative = 1.15
-    """Robot time that energy is worth, relative to what a place takes to give it."""
+    """Value of energy in robot time, relative to the time in which a place supplies it."""
     idle: Share = 0.6
-    """What the time of a robot costs that work has no use for, relative to one that is missed."""
+    """Cost of time of a robot not needed for work, relative to that of a missing robot."""
     curve: Share = 0.2
-    """How much more the first energy of a battery is worth than the last."""
+    """Relative difference in value between the first and the last energy of a battery."""
     margin_share: Share = 0.0
-    """How far above the level at which robots go for energy in any case nobody should be lower."""
+    """Safety margin above the level at which robots are sent to charge in any case."""
     window_s: Positive = 1200.0
-    """Seconds of the past from which it is told how many robots work has use for."""
+    """Length in seconds of the past period from which the number of needed robots is forecast."""
     cases: Count = 4
-    """Cases of that to look at."""
+    """Number of cases of the forecast."""
     nodes: Count = 20
     """Limit of HiGHS in nodes."""
     work_s: Positive = 0.25
-    """Limit of CP-SAT in deterministic seconds: about the same in wall time."""
+    """Limit of CP-SAT in deterministic seconds, which are close to wall time."""
     gap: NotNegative = 0.005
     """Relative gap between value and bound at which the search ends."""
 
     @property
     def limits(self) -> Limits:
-        """The same as limits of the model."""
+        """Return these values as limits of the model."""
         return Limits(deterministic_s=self.work_s, nodes=self.nodes, gap=self.gap)

@@ -1,4 +1,4 @@
-"""What CA schedule asks, and how it is solved."""
+"""The question of CA schedule, and its solution."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from rmfs.solvers.models.solution import Limits
 
 @dataclass(frozen=True)
 class Question:
-    """Robots, places and work.
+    """Robots, places and forecast work.
 
     Attributes
     ----------
     method
-        `highs` or `cp_sat`, each beginning with the greedy rule unless that is proven to be good
+        `highs` or `cp_sat`, each starting from the greedy rule unless that is proven to be good
         enough, or `greedy` alone.
     """
 

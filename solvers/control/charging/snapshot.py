@@ -1,4 +1,4 @@
-"""Between the world and the charging model."""
+"""Converts the state of the world to the charging model."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Group:
-    """Stations for energy that are alike.
+    """A group of identical energy stations.
 
     Attributes
     ----------
     stations
         The stations.
     power_w
-        What a place gives; 0 for swap.
+        Charging power of a place; 0 for swap.
     swapped_share
         Level after a swap; 0 for plug-in places.
     swaps_s
@@ -81,16 +81,16 @@ def snapshot(
     wanted: NDArray[np.int64],
     given: ScheduleParameters,
 ) -> Charging:
-    """State the problem.
+    """State the charging problem.
 
     Parameters
     ----------
     view, batteries
         The world.
     groups
-        The groups of stations, as the model numbers them.
+        The groups of stations, in the numbering of the model.
     wanted
-        Robots that work has use for, in cases, shape (Q,).
+        Robots needed for work in each case, shape (Q,).
     given
         Parameters of the controller.
     """

@@ -1,4 +1,4 @@
-"""POA pile-on: orders and pods decided together by a model, with PPS as its dummy."""
+"""POA pile-on: decides orders and pods jointly by a model; PPS must be its dummy."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ if TYPE_CHECKING:
 
 
 class PileOnControl(PickOrderAssignment[PileOnParameters]):
-    """Keeps a plan of orders for slots and pods for robots, and asks the model to go on with it.
+    """Maintains a plan of orders for slots and pods for robots, which the model extends.
 
-    The model is asked, at most once per `buffer_s`, after what `triggers` names: a station runs out
-    of work within the horizon, a pod reaches a station, a slot is free for which nothing is
-    planned. It says which orders go where and which pods are called for them; *prospects* too,
-    orders that the same pods can serve as soon as slots are free. All this is kept in a plan, from
-    which slots and robots are served until something no longer holds.
+    The model is asked, at most once per `buffer_s`, after the events in `triggers`: a station runs
+    out of work within the horizon, a pod reaches a station, or a slot is free for which nothing is
+    planned. It determines which orders go to which station, and which pods are called for them. It
+    also returns *prospects*: orders that the same pods can serve as soon as slots are free. Slots
+    and robots are served from this plan until parts of it become invalid.
 
-    Robots get the pods called for their station, the nearest first. The heuristics are pod match
-    if the optimiser fails, and PPS lexicographic, with its defaults, for open requests that no pod
-    called or under way can serve, and for replenishment.
+    A robot gets the nearest of the pods called for its station. Heuristics take over in three
+    cases: pod match if the optimiser fails, and PPS lexicographic, with its defaults, for
+    replenishment and for open requests that no pod called or under way can serve.
     """
 
     parameters_model = PileOnParameters
@@ -64,11 +64,11 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     # --- orders ---------------------------------------------------------------------------------
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Take note of a pod that can be served: what it has left should be used."""
+        """Record that a pod has arrived, whose remaining units should be used."""
         self._arrived = True
 
     def next_event_s(self) -> float:
-        """When the optimiser may be asked again, if it is to be asked."""
+        """Return when the optimiser may be asked again, if there is something to ask."""
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Decision]:
@@ -83,7 +83,7 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
             yield taken.ask(self.parameters)
 
     def answered(self, call: Call) -> Iterator[Decision]:
-        """Take what still holds of an answer into the plan, and carry it out as far as possible."""
+        """Add the valid parts of an answer to the plan, and carry it out as far as possible."""
         taken: snapshot.Snapshot = call.ask.memo
         if call.solution is not None:
             self._plan.extend(call.solution, taken.items, call)
@@ -113,7 +113,7 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         return False
 
     def _carry_out(self) -> Iterator[Decision]:
-        """Put planned orders on free slots."""
+        """Assign planned orders to free slots."""
         for station in self.view.pick_stations:
             for planned in self._plan.due(station):
                 yield By(planned.item.decision(station.index), planned.call)
@@ -121,7 +121,7 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     # --- pods -----------------------------------------------------------------------------------
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int | By[int]:
-        """Give a robot the nearest of the pods called, or what the heuristic says if none is."""
+        """Choose the nearest of the called pods, or by the heuristic if there is none."""
         called = self._plan.pods[station.index]
         pods = [pod for pod in called if self._plan.useful(pod, station)]
         if pods:
@@ -132,9 +132,9 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         return self._heuristic.pick_pod(robot, station) if missing.any() and not called else -1
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Ask the heuristic."""
+        """Choose by the heuristic."""
         return self._heuristic.replenishment_pod(robot, station)
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Ask the heuristic."""
+        """Choose by the heuristic."""
         return self._heuristic.next_station(robot, stations)

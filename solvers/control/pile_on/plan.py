@@ -1,4 +1,4 @@
-"""What has been decided and not yet done: orders that wait for a slot, pods for a robot."""
+"""The plan: orders that wait for a slot, and pods that wait for a robot."""
 
 from __future__ import annotations
 
@@ -21,42 +21,42 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Planned:
-    """An item for a station, and the call that decided so (None: the heuristic)."""
+    """An item planned for a station, and the call that decided it (None: the heuristic)."""
 
     item: Item
     call: Call | None
 
 
 class Called(NamedTuple):
-    """Who called a pod (None: the heuristic), and the robot meant to fetch it (-1: any)."""
+    """The call that called a pod (None: the heuristic), and the robot to fetch it (-1: any)."""
 
     call: Call | None
     robot: int = -1
 
 
 class Plan:
-    """Items that wait for a slot, and pods called that wait for a robot, per pick station.
+    """For each pick station, items that wait for a slot, and called pods that wait for a robot.
 
-    A planned item keeps the stock it was planned with: later questions leave it out, and count its
-    units as demand of its station.
+    A planned item reserves the stock with which it was planned: later questions omit it and count
+    its units as demand of its station.
 
     Attributes
     ----------
     items
-        Per station, in the order of the decisions.
+        Items of each station, in the order of the decisions.
     pods
-        Per station, the pods called.
+        Pods called for each station.
 
     Parameters
     ----------
     view
         The world.
     kept_slots
-        Slots of each station kept for what the pod at its head can serve.
+        Slots of each station reserved for what the pod at its head can serve.
     later
-        Whether items may be put on a station while stock for some of their lines is yet to come.
+        Whether items may be assigned while pods for some of their lines are still to come.
     split_orders
-        Orders that may be split at a time; None: as many as the put wall holds.
+        Maximum number of orders split at a time; None: as many as the put wall holds.
     """
 
     def __init__(
@@ -75,32 +75,32 @@ class Plan:
         self.pods: list[dict[int, Called]] = [{} for _ in view.pick_stations]
 
     def keys(self) -> set[tuple[int, int]]:
-        """Keys of all planned items."""
+        """Return the keys of all planned items."""
         return {planned.item.key for items in self.items for planned in items}
 
     def splitting(self, pays: Callable[[Order], bool] | None = None) -> Splitting:
-        """Return which orders may be split now, with those of which lines are planned.
+        """Return which orders may be split now, including those with lines already planned.
 
         Parameters
         ----------
         pays
-            Whether an order that is not split yet is worth it; None: always.
+            Whether splitting an order is worth its cost; None: always.
         """
         planned = [one.item for items in self.items for one in items]
         orders = [item.order for item in planned if item.line is not None]
         return Splitting(self._view, self._split_orders, orders, pays)
 
     def extend(self, solution: Mapping[str, Any], items: Sequence[Item], call: Call | None) -> None:
-        """Take in what can still be done of a solution; count the rest as stale.
+        """Add the valid parts of a solution; count the rest as stale.
 
         Parameters
         ----------
         solution
             `pod_station`, `pod_robot`, and `station` and `prospect` of each item; -1 for none.
         items
-            What is behind the numbers of the solution.
+            Items behind the indices of the solution.
         call
-            The call that brought it; None: the heuristic.
+            The call of the solution; None: the heuristic.
         """
         pod_station, pod_robot = (np.asarray(solution[k]) for k in ("pod_station", "pod_robot"))
         for pod in np.flatnonzero(pod_station >= 0).tolist():
@@ -121,11 +121,11 @@ class Plan:
                     self._stale(call)
 
     def due(self, station: PickStation) -> Iterator[Planned]:
-        """Yield what can be put on a station now; each is put there before the next is asked for.
+        """Yield items that can be assigned to a station now, one at a time.
 
-        What the pod at the head can serve comes first, and may take the slots kept for that. What
-        no longer holds is dropped, and counted as stale: items that left the backlog, and items
-        whose stock has gone.
+        Items that the pod at the head can serve come first and may use the reserved slots. Invalid
+        items are dropped and counted as stale: those that have left the backlog, and those whose
+        stock has gone.
         """
         self._forget_pods(station)
         waiting = self.items[station.index]
@@ -160,7 +160,7 @@ class Plan:
         )
 
     def _head(self, station: PickStation) -> int:
-        """The pod at the head of the queue, if it is there for picks; or -1."""
+        """Return the pod at the head of the queue, if it is there for picks; or -1."""
         if station.robot < 0:
             return -1
         pod = self._view.robots[station.robot].pod
@@ -171,7 +171,7 @@ class Plan:
         return all(available(line.sku, pod) >= line.units for line in item.lines)
 
     def _covered(self, item: Item, station: PickStation) -> bool:
-        """Whether pods on their way and pods called still have the units to spare."""
+        """Whether pods under way and pods called still have the units to spare."""
         inventory, index = self._view.inventory, station.index
         available, need = inventory.available.item, self._view.need.item
         for line in item.lines:
@@ -182,7 +182,7 @@ class Plan:
         return True
 
     def _forget_pods(self, station: PickStation) -> None:
-        """Forget pods that somebody has taken, or that nothing here needs any more."""
+        """Drop pods that have been taken, or that are no longer needed here."""
         pods = self.pods[station.index]
         for pod in list(pods):
             wanted = self.useful(pod, station) or self._is_planned_for(pod, station)
@@ -198,7 +198,7 @@ class Plan:
         )
 
     def useful(self, pod: int, station: PickStation) -> bool:
-        """Whether a pod called can serve an open request of its station."""
+        """Whether a called pod can serve an open request of its station."""
         inventory, at_hand = self._view.inventory, self._view.storage.is_at_hand.item
         return bool(at_hand(pod)) and inventory.serves(pod, list(station.requests.lines))
 

@@ -1,4 +1,4 @@
-"""The question for the worker: a snapshot, who decides, and for how long."""
+"""The question for the optimiser: a snapshot, the method, and its limits."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Question:
-    """What is to be decided.
+    """The decision problem at one instant.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class Question:
     method
         `joint`, `cp_sat`, `greedy` or `hadgs`.
     limits, pruning
-        Of CP-SAT.
+        Limits and candidates of CP-SAT.
     bound_steps
         Steps of the search for a bound.
     """
@@ -43,18 +43,18 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Decide.
+    """Solve the problem.
 
     Parameters
     ----------
     question
-        What is to be decided.
+        The decision problem.
 
     Returns
     -------
     Answer
         `station` and `prospect` of each order, `pod_station` and `pod_robot` of each pod; -1 for
-        none. The bound is one of all decisions that the snapshot allows.
+        none. The bound is valid for all decisions that the snapshot allows.
     """
     data = question.data
     if question.method == "joint":
@@ -81,7 +81,7 @@ def solve(question: Question) -> Answer:
 
 
 def by_rule(question: Question) -> Mapping[str, Any]:
-    """Decide by pod match alone, when the optimiser has failed; as `Answer.solution`."""
+    """Decide by pod match alone, if the optimiser has failed; as `Answer.solution`."""
     found = solve(replace(question, method="greedy", bound_steps=0)).solution
     assert found is not None
     return found

@@ -1,4 +1,4 @@
-"""From the world to the arrays of the pile-on models."""
+"""Converts the state of the world to arrays of the pile-on models."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ if TYPE_CHECKING:
     from rmfs.world.stations import PickStation
 
 UNREACHABLE_S = 1e5
-"""Time that stands for no way at all."""
+"""Time used where there is no path."""
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Arrays of one instant and what is behind their numbers.
+    """Arrays for one instant, and the objects behind their indices.
 
     Attributes
     ----------
     items
-        The order, or line, of each order number of the model.
+        The order, or line, behind each order index of the model.
     robots
-        The robot of each robot number.
+        The robot behind each robot index.
     """
 
     data: PileOn
@@ -48,7 +48,7 @@ class Snapshot:
     robots: Sequence[Robot] = ()
 
     def ask(self, given: JointParameters) -> Ask[Question]:
-        """Make the question for the optimiser of it."""
+        """Return the question for the optimiser."""
         data = self.data
         sizes = {
             "stations": int((data.slots > 0).sum()),
@@ -72,10 +72,10 @@ def take(
     robots
         Robots that are free to fetch pods; None if robots are not decided.
 
-    Orders that stock cannot serve are left out, and so is what is planned already: its units are
-    demand of its station, and pods called are on their way as far as the model is concerned. A
-    station gets a slot for each item that pods on their way cover to the full, and one more if it
-    needs a pod; `when_needed = false` gives it all its free slots.
+    Orders that stock cannot serve are omitted, and so are planned ones: their units count as demand
+    of their station, and called pods count as under way. A station gets a slot for each item that
+    pods under way cover completely, and one more if it needs a pod; with `when_needed = false` it
+    gets all its free slots.
     """
     taken = plan.keys()
     open_units = _open_units(view, plan)
@@ -108,7 +108,7 @@ def take(
 def _worth_splitting(
     view: View, plan: Plan, given: JointParameters, open_units: NDArray[np.int64]
 ) -> Callable[[Order], bool] | None:
-    """Say which orders cost more than a part if they are served whole now; None: it is free."""
+    """Return which orders cost more than a part if served whole now; None: parts are free."""
     if not given.split or not given.part_s:
         return None
     whole = [Item(order) for order in view.orders if len(order.lines) > 1 and not order.parts]
@@ -124,7 +124,7 @@ def _worth_splitting(
 
 
 def _open_units(view: View, plan: Plan) -> NDArray[np.int64]:
-    """Units that orders at stations, and planned ones, wait for, shape (S, K)."""
+    """Return open units of orders at stations and of planned ones, shape (S, K)."""
     open_units = view.need.astype(np.int64)
     for station, planned in enumerate(plan.items):
         for one in planned:
@@ -140,7 +140,7 @@ def _arrays(
     items: Sequence[Item],
     open_units: NDArray[np.int64],
 ) -> PileOn:
-    """Build the input; slots are what a station may plan ahead at most."""
+    """Build the input; slots limit how much a station may plan ahead."""
     rows = [
         (number, line.sku, line.units)
         for number, item in enumerate(items)
@@ -175,9 +175,9 @@ def _arrays(
 
 
 def _travel(view: View, given: JointParameters) -> NDArray[np.float64]:
-    """Time of a loaded robot from each pod's place to each pick station, shape (P, S), s.
+    """Return the time of a loaded robot from each pod to each pick station, shape (P, S), s.
 
-    And what it costs that the station has more work than others (`balance`).
+    Includes the cost of stations with more work than others (`balance`).
     """
     at = view.storage.pod_waypoint
     times = [view.travel.to(s.waypoint, loaded=True)[at] for s in view.pick_stations]
@@ -188,7 +188,7 @@ def _travel(view: View, given: JointParameters) -> NDArray[np.float64]:
 
 
 def _fetch(view: View, robots: Sequence[Robot]) -> NDArray[np.float64]:
-    """Estimated time of an empty robot to each pod's place, shape (R, P), s."""
+    """Return the estimated time of an empty robot to each pod's place, shape (R, P), s."""
     at = view.storage.pod_waypoint
     times = [view.travel.estimate_s(view.travel.robot_waypoint(r.index), at) for r in robots]
     found = np.array(times).reshape(len(robots), len(at))
@@ -196,7 +196,7 @@ def _fetch(view: View, robots: Sequence[Robot]) -> NDArray[np.float64]:
 
 
 def _needs_pod(view: View, plan: Plan, given: JointParameters, station: PickStation) -> bool:
-    """Whether a station, with no pod called, has less work than the horizon asks for."""
+    """Whether a station without called pods has less work than the horizon requires."""
     if not station.active:
         return False
     if not given.when_needed:
@@ -210,7 +210,7 @@ def _needs_pod(view: View, plan: Plan, given: JointParameters, station: PickStat
 
 
 def _runs_short(view: View, plan: Plan, given: JointParameters, station: PickStation) -> bool:
-    """Whether pods on their way, and those called, have less work than the horizon asks for."""
+    """Whether pods under way and called pods have less work than the horizon requires."""
     index, inventory = station.index, view.inventory
     units = sum(len(task.picks) for task in station.tasks.values())
     coming = inventory.inbound[index] + inventory.available[:, list(plan.pods[index])].sum(axis=1)
@@ -220,7 +220,7 @@ def _runs_short(view: View, plan: Plan, given: JointParameters, station: PickSta
 
 
 def _coverable(data: PileOn) -> NDArray[np.int64]:
-    """How many orders each station can fill from pods on their way alone, shape (S,)."""
+    """Return the number of orders each station can fill from pods under way alone, shape (S,)."""
     pairs = everything(data)
     partial = PartialAssignment(
         data, Candidates(np.zeros_like(pairs.calls), pairs.places, pairs.fetches)

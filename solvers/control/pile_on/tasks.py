@@ -1,4 +1,4 @@
-"""TA pile-on: orders, pods and robots decided together by the model M1G of Jiao et al. (2025)."""
+"""TA pile-on: decides orders, pods and robots jointly by the model M1G of Jiao et al. (2025)."""
 
 from __future__ import annotations
 
@@ -44,22 +44,23 @@ class PileOnTasksParameters(JointParameters):
     """Parameters of the joint control of orders, pods and robots; defaults are those of M1G."""
 
     triggers: tuple[AsksTasks, ...] = ("pod-at-station", "robot-free", "new-order")
-    """After what the optimiser is asked: a pod has reached a station, a robot is free, an order has
-    come while robots rest."""
+    """Events after which the optimiser is asked: a pod has reached a station, a robot is free, or
+    an order has arrived while robots rest."""
 
     when_needed: bool = False
     """Whether pods are called only for stations that run out of work within the horizon; otherwise
     whenever a slot can be filled, as in M1G."""
     kept_slots: Annotated[int, pydantic.Field(ge=0)] = 0
-    """Slots of each station kept for what the pod at its head can serve."""
+    """Slots of each station reserved for what the pod at its head can serve."""
     reward_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 40.0
-    """Seconds of a robot that one more order of a visit is worth."""
+    """Value of each additional order of a visit, in seconds of a robot."""
     visit_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Seconds that a visit costs a robot besides the ways."""
+    """Cost of a visit in addition to the trips, in seconds of a robot."""
     age_reward: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
-    """What a second of waiting adds to the worth of an order that gets a slot."""
+    """Additional value of assigning an order per second that it has waited."""
     replenishment_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.33
-    """Share of the robots that may work for replenishment stations at a time; one at least."""
+    """Maximum share of the robots working for replenishment stations at a time; at least one
+    robot."""
     rest: RestRule = "nearest"
     """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
     `random`."""
@@ -73,18 +74,17 @@ _ASKS: dict[Trigger, AsksTasks] = {
 
 
 class PileOnTasks(JointAllocation[PileOnTasksParameters]):
-    """Asks the model which orders take slots, which pods come, and which robots fetch them.
+    """Asks a model which orders take slots, which pods come, and which robots fetch them.
 
-    The model is asked, at most once per `buffer_s`, after what `triggers` names (a pod has reached
-    a station, a robot is free, an order has come while robots rest), as long as a slot is free for
-    which nothing is planned. The robots it may send are those without a task. What it says is kept
-    as a plan and carried out as POA pile-on does; a pod called whose robot has got another task
-    meanwhile goes to the next robot that is free.
+    The model is asked, at most once per `buffer_s`, after the events in `triggers`, as long as a
+    slot is free for which nothing is planned. It may send the robots without a task. Its answer is
+    stored as a plan and carried out as in POA pile-on; a called pod whose robot has got another
+    task meanwhile goes to the next free robot.
 
-    What M1G leaves open is decided by rules: a robot with a pod goes on while the pod can serve its
-    station, then parks it where PSA says; up to a share of the robots brings pods to replenishment
-    stations, the nearest with work first, pods by PPS lexicographic; the others rest. If the
-    optimiser fails, pod match decides.
+    Decisions outside M1G are made by rules. A robot with a pod continues while the pod can serve
+    its station, and then parks it where PSA says. Up to a share of the robots bring pods to
+    replenishment stations, the nearest station with work first, with pods chosen by PPS
+    lexicographic; the others rest. If the optimiser fails, pod match decides.
     """
 
     parameters_model = PileOnTasksParameters
@@ -114,19 +114,19 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
         self._changed = True
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Take note that the model may decide otherwise than before.
+        """Record that the model may now decide differently.
 
-        A new order alone changes nothing as long as there is no robot for its pods.
+        A new order alone changes nothing as long as no robot is free for its pods.
         """
         asks = _ASKS[trigger] in self.parameters.triggers
         self._changed |= asks and (trigger is not Trigger.NEW_ORDER or bool(self.view.resting))
 
     def next_event_s(self) -> float:
-        """When the optimiser may be asked again, if it is to be asked."""
+        """Return when the optimiser may be asked again, if there is something to ask."""
         return self._buffer.next_event_s
 
     def decide(self, consult: Consult) -> Iterator[Decision]:
-        """Carry out the plan, ask if slots are left, and give the other robots their tasks."""
+        """Carry out the plan, ask if slots are left, and assign tasks to the other robots."""
         for robot in [r for r in self.view.asking.values() if r.pod >= 0]:
             yield from self._go_on(robot, consult)
         yield from self._replenish(self._most_at_bundles - self._at_bundles())
@@ -136,7 +136,7 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
             yield self._to_rest(robot)
 
     def answered(self, call: Call) -> Iterator[Decision]:
-        """Take what still holds of an answer into the plan, and carry it out as far as possible."""
+        """Add the valid parts of an answer to the plan, and carry it out as far as possible."""
         taken: snapshot.Snapshot = call.ask.memo
         if call.solution is not None:
             self._plan.extend(call.solution, taken.items, call)
@@ -170,14 +170,14 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     # --- orders and pods ------------------------------------------------------------------------
 
     def _carry_out(self) -> Iterator[Decision]:
-        """Put planned orders on free slots, and send robots for the pods called."""
+        """Assign planned orders to free slots, and send robots for the called pods."""
         for station in self.view.pick_stations:
             for planned in self._plan.due(station):
                 yield By(planned.item.decision(station.index), planned.call)
             yield from self._fetch(station)
 
     def _fetch(self, station: PickStation) -> Iterator[Decision]:
-        """Send a robot for each pod called: the one the model named, or else the nearest free."""
+        """Send a robot for each called pod: the one in the plan, or else the nearest free one."""
         called = self._plan.pods[station.index]
         for pod in [pod for pod in called if self._plan.useful(pod, station)]:
             free = {robot.index: robot for robot in self._free_robots()}
@@ -191,7 +191,7 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     # --- what the model leaves open -------------------------------------------------------------
 
     def _go_on(self, robot: Robot, consult: Consult) -> Iterator[Decision]:
-        """Use a pod that has been served again, or park it."""
+        """Use a pod again that has been served, or park it."""
         station = robot.station
         if station >= 0 and consult.serves(robot.pod, station):
             yield bring(self.view, robot, robot.pod, station)

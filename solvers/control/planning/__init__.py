@@ -1,3 +1,3 @@
-"""TA planning: visits of several pods per station planned ahead, orders and robots with them."""
+"""TA planning: plans several visits of pods per station ahead, with orders and robots."""
 
 from rmfs.solvers.control.planning.controller import PlanningControl as PlanningControl

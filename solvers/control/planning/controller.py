@@ -1,4 +1,4 @@
-"""TA planning: which pods come to which station in which order, for which orders, by whom."""
+"""TA planning: plans the sequence of pods at each station, with their orders and robots."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from rmfs.control.ta import WORK
 from rmfs.control.ta.stations import bring, keeper_of
 from rmfs.solvers.control.joint import JointAllocation
 from rmfs.solvers.control.planning import snapshot
+from rmfs.solvers.control.planning.expected import ExpectedOrders
 from rmfs.solvers.control.planning.parameters import PlanningParameters
 from rmfs.solvers.control.planning.plan import Plan
 from rmfs.solvers.control.planning.question import by_rule
@@ -36,25 +37,25 @@ if TYPE_CHECKING:
     Decision = Ask[Question] | TaskDecision | By[Any]
 
 _WORTH_A_PLAN = 2
-"""Free slots of a station from which on a new order alone is worth a new plan."""
+"""Number of free slots of a station from which a new order alone justifies a new plan."""
 
 
 class PlanningControl(JointAllocation[PlanningParameters]):
-    """Plans the next visits of every pick station, and commits itself to the first steps only.
+    """Plans the next visits of every pick station, but commits only to the first steps.
 
     The model is asked, at most once per `buffer_s`, when a pod has reached a pick station, a robot
-    without pod is free, or an order has come for which there are slots or idle robots. It plans
-    several visits per station, with the orders that each serves: whole orders, which keep their
-    slot until their last pod has come, or their lines apart (`split`). The plan goes on from the
-    last one. Of it only this is carried out: orders whose first pod is under way take slots, and a
-    station whose pods under way have less work than `horizon_s` is sent the next pod by the nearest
-    free robot.
+    without a pod is free, or an order has arrived for which there are slots or idle robots. It
+    plans several visits per station, with the orders that each serves: whole orders, which keep
+    their slot until their last pod has come, or separate lines (`split`). Each plan starts from the
+    previous one. Only two kinds of steps are carried out: orders whose first pod is under way get
+    slots, and a station whose pods under way have less work than `horizon_s` is sent its next pod
+    by the nearest free robot.
 
-    The rest is left to rules. A robot with a pod goes on while there is work for it at its station,
-    takes it to a replenishment station for which bundles of this pod wait, or parks it where PSA
-    says. While the stock is below `stock_floor` some robots work for bundles (`bundle_share`);
-    robots that no pick station needs do so as well, up to `stock_ceiling`. If the optimiser fails,
-    its start rule plans.
+    All other decisions are made by rules. A robot with a pod continues while there is work for it
+    at its station, takes it to a replenishment station where bundles for this pod wait, or parks it
+    where PSA says. While the stock is below `stock_floor`, some robots work for bundles
+    (`bundle_share`); robots that no pick station needs do so as well, up to `stock_ceiling`. If the
+    optimiser fails, its start rule makes the plan.
     """
 
     parameters_model = PlanningParameters
@@ -78,12 +79,15 @@ class PlanningControl(JointAllocation[PlanningParameters]):
         self._asked = 0
         self._changed = True
         self._wants_to_ask = False
+        self._expected = ExpectedOrders(view, rng) if parameters.expected_s else None
 
     # --- when the model is asked ----------------------------------------------------------------
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Take note that another plan may be better."""
+        """Record that another plan may now be better."""
         view = self.view
+        if self._expected is not None and trigger is Trigger.NEW_ORDER:
+            self._expected.hear(subject)
         if trigger is Trigger.ROBOT_FREE:
             self._changed |= view.robots[subject].pod < 0
         elif trigger is Trigger.POD_AT_STATION:
@@ -93,11 +97,11 @@ class PlanningControl(JointAllocation[PlanningParameters]):
             self._changed |= bool(view.resting) or free > _WORTH_A_PLAN
 
     def next_event_s(self) -> float:
-        """When the optimiser may be asked again, if it is to be asked."""
+        """Return when the optimiser may be asked again, if there is something to ask."""
         return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
 
     def decide(self, consult: Consult) -> Iterator[Decision]:
-        """Plan if something has changed, carry out what is due, and give robots their tasks."""
+        """Plan if something has changed, carry out what is due, and assign tasks to robots."""
         yield from self._give_slots()
         yield from self._ask()
         yield from self._give_slots()
@@ -108,7 +112,7 @@ class PlanningControl(JointAllocation[PlanningParameters]):
             yield self._to_rest(robot)
 
     def answered(self, call: Call) -> Iterator[Decision]:
-        """Take the plan, and carry out what is due; robots are told when they are asked about."""
+        """Store the plan and carry out what is due; robots get tasks when they are asked about."""
         memo: snapshot.Memo = call.ask.memo
         if call.solution is not None:
             self._plan.take(call.solution, memo, call)
@@ -124,12 +128,15 @@ class PlanningControl(JointAllocation[PlanningParameters]):
             return
         self._asked_s, self._changed, self._wants_to_ask = now_s, False, False
         self._asked += 1
-        question = snapshot.ask(self.view, given, self._neediest(), self._plan, self._asked)
+        expected = self._expected.draw(given.expected_s, given.scenarios) if self._expected else ()
+        question = snapshot.ask(
+            self.view, given, self._neediest(), self._plan, self._asked, expected
+        )
         if question is not None:
             yield question
 
     def _neediest(self) -> list[PickStation]:
-        """Choose the stations to plan for: those with the least work on its way, in their order."""
+        """Choose the stations to plan for: those with the least work under way, in their order."""
         stations = self.view.pick_stations
         most = self.parameters.stations
         if len(stations) <= most:
@@ -141,7 +148,7 @@ class PlanningControl(JointAllocation[PlanningParameters]):
     # --- what is due of the plan ----------------------------------------------------------------
 
     def _give_slots(self) -> Iterator[Decision]:
-        """Put orders on slots whose first pod is under way."""
+        """Assign slots to orders whose first pod is under way."""
         for station in self.view.pick_stations:
             for decision in self._plan.due(station):
                 yield By(decision, self._plan.call(station.index))
@@ -163,7 +170,7 @@ class PlanningControl(JointAllocation[PlanningParameters]):
             yield from self._replenish(len(view.robots))
 
     def _short(self) -> PickStation | None:
-        """Find the station with the least work of those that are to be sent a pod."""
+        """Return the station with the least work among those that need a pod."""
         given, found = self.parameters, []
         for station in self.view.pick_stations:
             room = len(station.tasks) < given.robots_per_station
@@ -177,7 +184,7 @@ class PlanningControl(JointAllocation[PlanningParameters]):
     # --- what is left to rules ------------------------------------------------------------------
 
     def _go_on(self, robot: Robot, consult: Consult) -> Iterator[Decision]:
-        """Use a pod that has been served again, take it to its bundles, or park it."""
+        """Use a pod again that has been served, take it to its bundles, or park it."""
         view, here = self.view, robot.station
         if here >= 0 and consult.serves(robot.pod, here):
             yield bring(view, robot, robot.pod, here)
@@ -194,6 +201,6 @@ class PlanningControl(JointAllocation[PlanningParameters]):
             yield Park(robot, place)
 
     def _waits(self, robot: Robot, station: PickStation) -> bool:
-        """Whether a pod waits for a slot that is about to be free, for an order it serves alone."""
+        """Whether a pod waits for a slot about to be free, for an order that it serves alone."""
         soon = any(order.unpicked_units == 0 for order in station.orders.values())
         return soon and self._plan.streams(robot.pod, station.index)

@@ -1,4 +1,4 @@
-"""What has been planned and not yet done: visits to come, and orders that wait for their slot."""
+"""The plan: visits to come, and orders that wait for their slots."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Planned:
-    """A waiting order, or a line of one, with a station.
+    """A waiting order, or a line of one, planned for a station.
 
     Attributes
     ----------
@@ -43,22 +43,22 @@ class Planned:
 
     @property
     def sequence(self) -> tuple[int, int, tuple[int, int]]:
-        """Orders that come first are smaller."""
+        """Sort key: smaller values come first."""
         return self.first, self.last, self.item.key
 
 
 class Plan:
-    """The last plan, as far as it still holds.
+    """The last plan, as far as it is still valid.
 
     Parameters
     ----------
     split_orders
-        Orders that may be split at a time; None: as many as the put wall holds.
+        Maximum number of orders split at a time; None: as many as the put wall holds.
 
     Attributes
     ----------
     pods
-        Per station, the pods of the visits to come.
+        For each station, the pods of the visits to come.
     """
 
     def __init__(self, view: View, split_orders: int | None = None) -> None:
@@ -69,18 +69,27 @@ class Plan:
         self._call: list[Call | None] = [None for _ in view.pick_stations]
 
     def take(self, solution: Mapping[str, Any], memo: Memo, call: Call | None) -> None:
-        """Replace the plan, at the stations it was asked for, by a solution."""
+        """Replace the plan by a solution, at the stations that were part of the question."""
         visits: dict[int, list[tuple[int, int]]] = {}
         served = zip(memo.lines, memo.order_of, solution["line_visit"].tolist(), strict=True)
         for line, number, visit in served:
             if visit >= 0:
                 visits.setdefault(number, []).append((visit, line.open_units))
-        for number, row in enumerate(solution["pods"].tolist()):
-            station = memo.stations[number].index
-            self.pods[station] = [pod for pod in row if pod >= 0]
+        stations = solution["order_station"].tolist()
+        sequences = [
+            [*memo.under_way[number], *(pod for pod in row if pod >= 0)]
+            for number, row in enumerate(solution["pods"].tolist())
+        ]
+        hoped = _only_hoped_for(visits, stations, memo.expected)
+        for number, sequence in enumerate(sequences):
+            station, first = memo.stations[number].index, len(memo.under_way[number])
+            self.pods[station] = [
+                pod
+                for visit, pod in enumerate(sequence[first:], first)
+                if (number, visit) not in hoped
+            ]
             self._orders[station] = []
             self._call[station] = call
-        stations = solution["order_station"].tolist()
         splitting = self.splitting(range(len(self._orders)))
         for number, (item, at) in enumerate(zip(memo.items, stations, strict=True)):
             if at >= 0 and item is not None and item.waits(self._view):
@@ -89,22 +98,21 @@ class Plan:
                         self._stale(memo.stations[at].index)
                         continue
                     splitting.add(item.order)
-                sequence = [*memo.under_way[at], *self.pods[memo.stations[at].index]]
-                planned = _planned(item, visits[number], sequence)
+                planned = _planned(item, visits[number], sequences[at])
                 self._orders[memo.stations[at].index].append(planned)
         for orders in self._orders:
             orders.sort(key=lambda one: one.sequence)
 
     def call(self, station: int) -> Call | None:
-        """Return the call that the plan of a station comes from; None: the rule."""
+        """Return the call that produced the plan of a station; None: the rule."""
         return self._call[station]
 
     def keys_of(self, stations: Sequence[int]) -> set[tuple[int, int]]:
-        """Return keys of the orders, or lines, that are planned for some stations."""
+        """Return the keys of the orders, or lines, planned for some stations."""
         return {one.item.key for station in stations for one in self._orders[station]}
 
     def splitting(self, stations: Iterable[int]) -> Splitting:
-        """Return which orders may be split, with those of which lines are planned for stations."""
+        """Return which orders may be split, including those with lines planned for stations."""
         planned = [one.item for station in stations for one in self._orders[station]]
         orders = [item.order for item in planned if item.line is not None]
         return Splitting(self._view, self._split_orders, orders)
@@ -118,10 +126,10 @@ class Plan:
         return pods[0] if pods else -1
 
     def due(self, station: PickStation) -> Iterator[AssignOrder | AssignLines]:
-        """Yield what is to have a slot now; each is given it before the next is asked for.
+        """Yield items that should get a slot now; each gets it before the next is requested.
 
-        These are orders whose first pod is under way. One slot is left for orders that the pod at
-        the head serves alone.
+        These are orders whose first pod is under way. One slot is reserved for orders that the pod
+        at the head serves alone.
         """
         waiting = self._orders[station.index]
         if not waiting or not station.active:
@@ -145,7 +153,7 @@ class Plan:
         return any(list(planned.units) == [pod] for planned in self._orders[station])
 
     def units(self, station: PickStation) -> int:
-        """Units that pods under way have to give: bound, wanted, or of orders without slot yet."""
+        """Return the units that pods under way will supply to orders, with or without a slot."""
         view, index = self._view, station.index
         coming = under_way(view, station)
         units = sum(len(task.picks) for task in station.tasks.values())
@@ -160,6 +168,32 @@ class Plan:
         call = self._call[station]
         if call is not None:
             call.stale += 1
+
+
+def _only_hoped_for(
+    visits: Mapping[int, Sequence[tuple[int, int]]], stations: Sequence[int], expected: int
+) -> set[tuple[int, int]]:
+    """Return the visits that serve nothing but orders still to come, as station and number.
+
+    Parameters
+    ----------
+    visits
+        By number of an order, the visits that serve it, with units.
+    stations
+        Station of each order.
+    expected
+        Number of the first order that is still to come.
+    """
+    needed, hoped = (
+        {
+            (stations[number], visit)
+            for number, served in visits.items()
+            if (number >= expected) == to_come
+            for visit, _ in served
+        }
+        for to_come in (False, True)
+    )
+    return hoped - needed
 
 
 def _planned(item: Item, visits: list[tuple[int, int]], sequence: list[int]) -> Planned:

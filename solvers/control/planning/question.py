@@ -1,4 +1,4 @@
-"""The question for the worker: what there is to plan, who plans, and for how long."""
+"""The question for the optimiser: the planning problem, the method, and its limits."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Question:
-    """What is to be planned.
+    """The planning problem at one instant.
 
     Attributes
     ----------
     data
         The snapshot.
     start
-        New visits per station of the last plan that are still possible.
+        New visits per station from the last plan that are still possible.
     method, limits, seed
-        Of the search.
+        Method of the search, its limits and its seed.
     bound_steps
         Steps of the search for a bound.
     """
@@ -43,12 +43,12 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Plan.
+    """Solve the problem.
 
     Returns
     -------
     Answer
-        `pods`: new visits per station, filled up with -1, shape (S, V); `order_station` and
+        `pods`: new visits per station, padded with -1, shape (S, V); `order_station` and
         `line_visit` as in the model.
     """
     data = question.data
@@ -73,7 +73,7 @@ def solve(question: Question) -> Answer:
 
 
 def by_rule(question: Question) -> Mapping[str, Any]:
-    """Plan by the start rule, when the optimiser has failed; as `Answer.solution`."""
+    """Plan by the start rule, if the optimiser has failed; as `Answer.solution`."""
     found = solve(replace(question, method="greedy", bound_steps=0)).solution
     assert found is not None
     return found

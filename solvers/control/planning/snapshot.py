@@ -1,4 +1,4 @@
-"""From the world to the arrays of the planning model."""
+"""Converts the state of the world to arrays of the planning model."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from rmfs.control.view import View
     from rmfs.solvers.control.items import Item
+    from rmfs.solvers.control.planning.expected import ExpectedLine, ExpectedOrder
     from rmfs.solvers.control.planning.parameters import PlanningParameters
     from rmfs.solvers.control.planning.plan import Plan
     from rmfs.world.orders import Order, OrderLine
@@ -31,61 +32,79 @@ NONE = -1
 
 @dataclass(frozen=True)
 class Memo:
-    """What the numbers of a question mean.
+    """The objects behind the indices of a question.
 
     Attributes
     ----------
     stations
-        The pick stations that are planned for.
+        The pick stations that are planned.
     items
-        The waiting order, or line of an order that may be split, of each number of an order; None
-        for orders that are open.
+        The waiting order, or line of an order that may be split, behind each order index; None for
+        open orders, and for future ones.
+    expected
+        Index of the first future order.
     lines, order_of
-        The line of each number, and the number of its order.
+        The line behind each line index, and the index of its order.
     under_way
-        Pods under way to each of the stations, in the order in which they come.
+        Pods under way to each of the stations, in order of arrival.
     """
 
     stations: Sequence[PickStation]
     items: Sequence[Item | None]
-    lines: Sequence[OrderLine]
+    expected: int
+    lines: Sequence[OrderLine | ExpectedLine]
     order_of: Sequence[int]
     under_way: Sequence[Sequence[int]]
 
 
 @dataclass
 class _Rows:
-    """Orders and lines as they are collected."""
+    """Orders and lines while they are collected."""
 
     items: list[Item | None] = field(default_factory=list)
-    orders: list[Order] = field(default_factory=list)
+    orders: list[Order | ExpectedOrder] = field(default_factory=list)
+    share: list[float] = field(default_factory=list)
     station: list[int] = field(default_factory=list)
     until: list[int] = field(default_factory=list)
-    lines: list[OrderLine] = field(default_factory=list)
+    lines: list[OrderLine | ExpectedLine] = field(default_factory=list)
     order_of: list[int] = field(default_factory=list)
 
     def open(self, order: Order, station: int, until: int) -> None:
-        """Add an order that a station has."""
+        """Add an order that is open at a station."""
         self._add(order, order.lines, station, until)
         self.items.append(None)
 
     def waiting(self, item: Item) -> None:
-        """Add what waits."""
+        """Add a waiting item."""
         self._add(item.order, item.lines, NONE, NONE)
         self.items.append(item)
 
-    def _add(self, order: Order, lines: Sequence[OrderLine], station: int, until: int) -> None:
+    def expect(self, order: ExpectedOrder, split: bool, share: float) -> None:
+        """Add what may come, worth a share of what waits."""
+        for lines in [(line,) for line in order.lines] if split else [order.lines]:
+            self._add(order, lines, NONE, NONE, share)
+            self.items.append(None)
+
+    def _add(
+        self,
+        order: Order | ExpectedOrder,
+        lines: Sequence[OrderLine | ExpectedLine],
+        station: int,
+        until: int,
+        share: float = 1.0,
+    ) -> None:
         for line in lines:
             if line.open_units:
                 self.lines.append(line)
                 self.order_of.append(len(self.station))
         self.orders.append(order)
+        self.share.append(share)
         self.station.append(station)
         self.until.append(until)
 
 
 def under_way(view: View, station: PickStation) -> list[int]:
-    """Pods at, or on their way to, a pick station, in the order in which they should come."""
+    """Return pods at, or on their way to, a pick station, in expected order of arrival."""
     head = view.robots[station.robot].pod if station.robot >= 0 else NONE
     bring_s = view.travel.to(station.waypoint, loaded=True)
     coming = []
@@ -110,19 +129,22 @@ def ask(
     stations: Sequence[PickStation],
     plan: Plan,
     seed: int,
+    expected: Sequence[Sequence[ExpectedOrder]] = (),
 ) -> Ask[Question] | None:
-    """Ask for a plan; None if there is nothing to plan.
+    """Return a question about the next plan; None if there is nothing to plan.
 
-    Waiting orders that the stock cannot serve are left out, and what is planned for other stations.
+    Waiting orders that stock cannot serve, and items planned for other stations, are omitted.
 
     Parameters
     ----------
     stations
-        Those that are planned for.
+        The stations to plan.
     plan
-        The last plan, from which this one goes on.
+        The previous plan, from which the new one starts.
     seed
         Seed of the search.
+    expected
+        Orders still to come, per scenario.
     """
     coming = [under_way(view, station) for station in stations]
     others = [station.index for station in view.pick_stations if station not in stations]
@@ -133,13 +155,17 @@ def ask(
     splitting = plan.splitting(others)
     items = servable(view, given.split, splitting)
     if given.late_s:
-        # of orders that visits serve alike the first takes them
+        # of orders that visits serve equally well, the first takes them
         items.sort(key=lambda item: item.order.due_s)
     for item in items:
         if item.key not in taken and (item.order.index, -1) not in taken:
             rows.waiting(item)
     if not rows.lines:
         return None
+    known = len(rows.orders)
+    for orders in expected:
+        for order in orders:
+            rows.expect(order, given.split, given.expected_worth / len(expected))
     may_come = view.storage.is_at_hand.copy()
     kept = tuple(tuple(pod for pod in plan.pods[s.index] if may_come[pod]) for s in stations)
     may_come[[pod for station in others for pod in plan.pods[station]]] = False
@@ -153,9 +179,8 @@ def ask(
         "lines": data.lines,
         "pods": int(may_come.sum()),
     }
-    return Ask(
-        solve, question, sizes, Memo(stations, rows.items, rows.lines, rows.order_of, coming)
-    )
+    memo = Memo(stations, rows.items, known, rows.lines, rows.order_of, coming)
+    return Ask(solve, question, sizes, memo)
 
 
 def _add_open(rows: _Rows, station: PickStation, number: int, coming: Sequence[int]) -> None:
@@ -182,18 +207,18 @@ def _planning(
     order_of = np.array(rows.order_of, np.int64)
     units = np.array([line.open_units for line in rows.lines], np.int64)
     wanted, sku = np.unique([line.sku for line in rows.lines], return_inverse=True)
-    is_open = station >= 0
+    is_open, share = station >= 0, np.array(rows.share)
     return Planning(
         slots=np.array([one.slots for one in stations], np.int64),
         coming=np.array([pod for pods in coming for pod in pods], np.int64),
         coming_to=np.repeat(np.arange(len(coming)), [len(pods) for pods in coming]),
         order_station=station,
         order_until=np.array(rows.until, np.int64),
-        order_worth=_order_worth(view, given, rows.orders, is_open),
+        order_worth=share * _order_worth(view, given, rows.orders, is_open),
         line_order=order_of,
         line_sku=sku,
         line_units=units,
-        line_worth=given.unit_s * units + given.open_s * is_open[order_of],
+        line_worth=share[order_of] * given.unit_s * units + given.open_s * is_open[order_of],
         stock=np.ascontiguousarray(view.inventory.available[wanted].T, np.int64),
         cost=_cost(view, given, stations, may_come),
         visits=given.visits,
@@ -204,10 +229,10 @@ def _planning(
 def _order_worth(
     view: View,
     given: PlanningParameters,
-    orders: Sequence[Order],
+    orders: Sequence[Order | ExpectedOrder],
     is_open: NDArray[np.bool_],
 ) -> NDArray[np.float64]:
-    """Worth of closing orders, shape (O,), s: by the time they have waited, and by due times."""
+    """Return the value of closing orders, shape (O,), s: by waiting times and due times."""
     waited_s = view.now_s - np.array([order.created_s for order in orders])
     worth: NDArray[np.float64] = (
         given.order_s + given.age_reward * np.maximum(waited_s, 0.0) * ~is_open
@@ -226,7 +251,7 @@ def _cost(
     stations: Sequence[PickStation],
     may_come: NDArray[np.bool_],
 ) -> NDArray[np.float64]:
-    """Time of a robot for a visit, the way there and back, less its worth, shape (P, S), s."""
+    """Return the robot time of a visit, there and back, minus its value, shape (P, S), s."""
     at = view.storage.pod_waypoint
     cost = np.full((len(at), len(stations)), np.inf)
     uneven = given.balance * excess_s(view, stations) if given.balance else np.zeros(len(stations))

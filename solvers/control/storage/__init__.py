@@ -1,1 +1,1 @@
-"""PSA by models: places for a batch of pods, by prices of places, or by intervals of stay."""
+"""PSA by models: assignment of a batch of pods, prices of places, or intervals of stay."""

@@ -1,4 +1,4 @@
-"""What the PSA controllers share: a place for every pod that will return, found ahead."""
+"""Base of PSA controllers with models: places for all pods that will return are chosen ahead."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ P = TypeVar("P", bound=StorageParameters)
 
 
 class Ahead(PodStorageAssignment[P]):
-    """Plans places for pods that robots carry, before they have to be stored.
+    """Plans places for pods that robots carry before they have to be stored.
 
     When a pod reaches a station, and at most once per `buffer_s`, the optimiser is asked for the
-    places of all pods that robots carry to stations, or have to store now. Its plan replaces the
-    one before. A pod without plan, or whose place is taken, goes to the nearest empty place.
+    places of all pods that robots carry to stations or have to store now. Its plan replaces the
+    previous one. Pods without a plan, or whose place is taken, go to the nearest empty place.
     """
 
     subscriptions = frozenset({Trigger.POD_AT_STATION})
@@ -46,18 +46,18 @@ class Ahead(PodStorageAssignment[P]):
 
     @abstractmethod
     def question(self, robots: Sequence[Robot]) -> Ask[Any]:
-        """Ask for the places of the pods that robots carry; the memo is these pods."""
+        """Ask for the places of the pods that robots carry; the memo contains these pods."""
 
     @abstractmethod
     def places(self, call: Call) -> Sequence[int]:
-        """Read the place (waypoint) of each pod off an answer; -1 for none."""
+        """Return the place (waypoint) of each pod in an answer; -1 for none."""
 
     def next_event_s(self) -> float:
-        """When the optimiser may be asked again, if it is to be asked."""
+        """Return when the optimiser may be asked again, if there is something to ask."""
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Ask[Any]]:
-        """Ask, unless it was done a moment ago or the answer is still out."""
+        """Ask, unless the buffer time is not over or an answer is pending."""
         if not self._buffer.is_over(not self.in_flight):
             return
         robots = [robot for robot in self.view.robots if _will_store(robot)]
@@ -66,7 +66,7 @@ class Ahead(PodStorageAssignment[P]):
             yield self.question(robots)
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Take the places that are empty into the plan."""
+        """Store the places that are still empty in the plan."""
         self._plan.clear()
         if call.solution is not None:
             carried = {robot.pod for robot in self.view.robots}
@@ -78,7 +78,7 @@ class Ahead(PodStorageAssignment[P]):
         return iter(())
 
     def place(self, robot: Robot) -> int | By[int]:
-        """Store the pod where the plan says, or at the nearest place."""
+        """Store the pod at its planned place, or at the nearest one."""
         planned = self._plan.pop(robot.pod, None)
         if planned is not None:
             place, call = planned
@@ -93,5 +93,5 @@ class Ahead(PodStorageAssignment[P]):
 
 
 def _will_store(robot: Robot) -> bool:
-    """Whether a robot carries a pod to a station, or waits to be told where to put it."""
+    """Whether a robot carries a pod to a station, or waits for a storage place."""
     return robot.pod >= 0 and (robot.task is None or robot.task.station >= 0)

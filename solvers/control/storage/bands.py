@@ -1,4 +1,4 @@
-"""Places cut into zones by their distance from the pick stations, pods into classes by visits."""
+"""Divides places into zones by distance from pick stations, and pods into classes by visits."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from numpy.typing import NDArray
 
 
 def bands(values: NDArray[np.float64], count: int) -> NDArray[np.int64]:
-    """Cut things into bands of about the same number, the lowest values first.
+    """Divide things into bands of about equal size, the lowest values first.
 
     Parameters
     ----------
     values
         Shape (N,).
     count
-        How many bands at most, positive.
+        Maximum number of bands, positive.
 
     Returns
     -------
-    The band of each thing, shape (N,), from 0 and without gaps; ties go by index.
+    The band of each thing, shape (N,), from 0 without gaps; ties by index.
     """
     band = np.empty(len(values), np.int64)
     order = np.argsort(values, kind="stable")

@@ -1,4 +1,4 @@
-"""What can be set of the PSA controllers that ask optimisers."""
+"""Parameters shared by PSA controllers with models."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ Positive = Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)]
 
 
 class StorageParameters(BufferParameters):
-    """How visits to pods are foreseen."""
+    """Parameters of the forecast of visits."""
 
     horizon_s: Positive = 3600.0
-    """How far ahead visits to a pod are expected: about as long as pods stay where they are put."""
+    """Horizon of the forecast of visits: about as long as pods stay where they are stored."""
     refresh_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 60.0
-    """How long expected visits are used before they are worked out anew."""
+    """Seconds after which the forecast is recomputed."""

@@ -1,4 +1,4 @@
-"""PSA placement: the cheapest places for all pods that will return, now and later together."""
+"""PSA placement: the best places for all returning pods, by current and later trips."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Question:
-    """Pods that return and empty places.
+    """Returning pods and empty places.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ def solve(question: Question) -> Answer:
 
 
 def worth_looking_at(cost_s: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Places that the best placement can use: of each of P pods the P cheapest; nothing is lost.
+    """Return places that an optimal placement can use: the P cheapest for each of P pods.
 
     Parameters
     ----------
@@ -65,22 +65,23 @@ class PlacementParameters(StorageParameters):
     """Parameters of PSA placement."""
 
     method: Literal["assignment", "greedy"] = "assignment"
-    """Who decides: the best assignment, or the rule in which the pods most visited choose first."""
+    """Solution method: the optimal assignment, or a rule in which the most visited pods choose
+    first."""
     later_weight: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 1.0
-    """What a second of a robot's time for a later visit counts against one now."""
+    """Weight of a second of robot time for later visits, relative to a second now."""
 
 
 class PlacementControl(Ahead[PlacementParameters]):
-    """Weighs the way of storing each pod against the ways of the visits expected of it.
+    """Weighs the trip of storing each pod against the trips of its expected visits.
 
-    A linear assignment of all pods that robots carry to the empty places.
+    Solves a linear assignment of all pods that robots carry to the empty places.
     """
 
     parameters_model = PlacementParameters
     optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.storage.placement",)
 
     def question(self, robots: Sequence[Robot]) -> Ask[Question]:
-        """State the assignment, with the places that can matter."""
+        """State the assignment, with the places that may matter."""
         empty = self.view.storage.is_empty.nonzero()[0]
         pods = [robot.pod for robot in robots]
         travel_s = self.ways.storing_s(robots)[:, empty]
@@ -93,6 +94,6 @@ class PlacementControl(Ahead[PlacementParameters]):
         return Ask(solve, Question(data, self.parameters.method, waypoint), sizes, pods)
 
     def places(self, call: Call) -> Sequence[int]:
-        """Read the places."""
+        """Return the places of the answer."""
         assert call.solution is not None
         return [int(place) for place in call.solution["place"]]

@@ -1,4 +1,4 @@
-"""PSA prices: travel, plus the price of the place while the pod stays."""
+"""PSA prices: travel time plus the price of the place for the duration of the stay."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ Count = Annotated[int, pydantic.Field(ge=1)]
 
 @dataclass(frozen=True)
 class Question:
-    """The steady state whose prices are wanted."""
+    """The steady state for which prices are computed."""
 
     data: Zones
     method: str
 
 
 def solve(question: Question) -> Answer:
-    """Find the prices of zones (`place_per_h`, `delay_s`) and the worth of classes."""
+    """Compute prices of zones (`place_per_h`, `delay_s`) and values of classes."""
     found = zones.solve(question.data, question.method)
     if found.values is None:
         return answer(found, None)
@@ -53,25 +53,25 @@ class PricesParameters(StorageParameters):
     """Parameters of PSA prices."""
 
     method: Literal["clarabel", "greedy"] = "clarabel"
-    """Who finds the steady state: the convex programme, or storage by turnover."""
+    """Computation of the steady state: the convex programme, or storage by turnover."""
     classes: Count = 8
-    """Classes of pods, by the visits expected of them."""
+    """Number of classes of pods, by expected visits."""
     zones: Count = 8
-    """Zones of places, by their distance from the pick stations."""
+    """Number of zones of places, by distance from the pick stations."""
     period_s: Positive = 300.0
-    """Seconds after which prices are worked out anew."""
+    """Seconds after which prices are recomputed."""
     congestion_s_h: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.02
-    """Seconds that a visit is delayed per visit per hour to the same zone."""
+    """Seconds of delay per visit, for each visit per hour to the same zone."""
 
 
 class PricesControl(PodStorageAssignment[PricesParameters]):
-    """Values places by the dual prices of the best steady state, and takes the best bargain.
+    """Values places by the dual prices of an optimal steady state, and chooses the cheapest place.
 
-    Every `period_s` pods are classed by the visits expected of them, and a convex programme finds
-    how many of each class should stand in each zone, congestion counted; the price of a place is
-    what one more place of its zone would save per hour. A pod goes to the empty place where the way
-    there and away, the delay, and the price for as long as it is expected to stay add up to least.
-    Until the first answer, and after a failure, it goes to the nearest empty place.
+    Every `period_s`, pods are classified by expected visits, and a convex programme determines how
+    many of each class should be stored in each zone, including congestion. The price of a place is
+    what one more place of its zone would save per hour. A pod goes to the empty place with the
+    least sum of the trips there and away, the delay, and the price for the expected duration of its
+    stay. Until the first answer, and after a failure, it goes to the nearest empty place.
     """
 
     parameters_model = PricesParameters
@@ -88,11 +88,11 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
         self._asked_s = -inf
 
     def next_event_s(self) -> float:
-        """When prices are to be worked out anew."""
+        """Time at which prices are recomputed."""
         return max(self._asked_s, 0.0) + self.parameters.period_s
 
     def decide(self) -> Iterator[Ask[Question]]:
-        """Ask for prices, unless they are new or the answer is still out."""
+        """Ask for prices, unless they are recent or an answer is pending."""
         if self.in_flight or self.view.now_s < self._asked_s + self.parameters.period_s:
             return
         self._asked_s = self.view.now_s
@@ -103,7 +103,7 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
         yield Ask(solve, Question(data, self.parameters.method), sizes, pod_class)
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Keep the prices; without new ones the old ones are forgotten."""
+        """Store the prices; if there are none, the old ones are discarded."""
         self._prices = None
         if call.solution is not None:
             prices = Prices(**{name: np.asarray(value) for name, value in call.solution.items()})
@@ -111,7 +111,7 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
         return iter(())
 
     def place(self, robot: Robot) -> int | By[int]:
-        """Take the best bargain among the empty places."""
+        """Choose the cheapest empty place."""
         if self._prices is None:
             return self._heuristic.place(robot)
         prices, pod_class, call = self._prices
@@ -126,7 +126,7 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
         return By(self.least(values[0], self.view.storage.is_empty), call)
 
     def _steady_state(self, rate: NDArray[np.float64], pod_class: NDArray[np.int64]) -> Zones:
-        """State the problem: mean ways of the zones, mean visits of the classes."""
+        """State the problem: mean trips of the zones, mean visits of the classes."""
         each_s = means(self._ways.home_s + self._ways.fetch_s, self._zone)
         classes, count = int(pod_class.max()) + 1, len(each_s)
         return Zones(

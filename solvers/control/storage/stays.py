@@ -1,4 +1,4 @@
-"""PSA stays: zones for the pods that will return, as others leave theirs."""
+"""PSA stays: zones for returning pods, given when other pods leave theirs."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 _SERVICE_S = 30.0
-"""Time from question to storing taken for pods whose service has not begun."""
+"""Assumed time from question to storing for pods whose service has not started."""
 
 
 @dataclass(frozen=True)
 class Question:
-    """Stays, those of the pods that return first.
+    """Stays, with those of the returning pods first.
 
     Attributes
     ----------
     returning
-        How many stays are of pods that return.
+        Number of stays of returning pods.
     """
 
     data: Stays
@@ -47,7 +47,7 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Find the zone of each pod that returns: `zone`, shape (returning,)."""
+    """Find the zone of each returning pod: `zone`, shape (returning,)."""
     found = stays.solve(question.data, "greedy")
     if question.method != "greedy":
         found = stays.solve(question.data, question.method, question.limits, start=found.values)
@@ -59,25 +59,25 @@ class StaysParameters(StorageParameters, SearchParameters):
     """Parameters of PSA stays."""
 
     method: Literal["cp_sat", "highs", "greedy"] = "cp_sat"
-    """Who decides: CP-SAT, or HiGHS to optimality, each from the rule in which the stays with most
-    at stake choose first; or that rule alone."""
+    """Solution method: CP-SAT, or HiGHS to optimality, each starting from a rule in which the stays
+    with most at stake choose first; or that rule alone."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.02
-    """Limit of the search in deterministic seconds of CP-SAT: about the same in wall time."""
+    """Limit of the search in deterministic seconds of CP-SAT, which are close to wall time."""
     gap: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.001
     """Relative gap between value and bound at which the search ends."""
     horizon_s: Positive = 900.0
-    """How far ahead pods are followed; those that stay longer only take a place away."""
+    """Horizon in seconds; pods that stay longer only reduce the number of places."""
     zones: Annotated[int, pydantic.Field(ge=1)] = 8
-    """Zones of places, by their distance from the pick stations."""
+    """Number of zones of places, by distance from the pick stations."""
 
 
 class StaysControl(Ahead[StaysParameters]):
-    """Gives pods zones by when they will be fetched again, and when others will leave.
+    """Assigns zones to pods by the times at which they and others will be fetched.
 
-    Every pod is taken to be fetched when the visits expected of it say (at the latest after the
-    horizon): pods in stock leave their zone then, and those that return need a place until then.
-    An integer programme finds the zones of least robot time in which there is always room. In its
-    zone a pod takes the empty place nearest to its station.
+    Every pod is assumed to be fetched after its expected stay, at the latest after the horizon:
+    pods in stock then leave their zone, and returning pods need a place until then. An integer
+    programme finds the zones of least robot time in which there is always room. Within its zone a
+    pod takes the empty place nearest to its station.
     """
 
     parameters_model = StaysParameters
@@ -96,7 +96,7 @@ class StaysControl(Ahead[StaysParameters]):
         return Ask(solve, question, sizes, [robot.pod for robot in robots])
 
     def places(self, call: Call) -> Sequence[int]:
-        """Give each pod the nearest empty place of its zone, one after the other."""
+        """Assign each pod the nearest empty place of its zone, one after another."""
         assert call.solution is not None
         storage = self.view.storage
         carriers = {robot.pod: robot for robot in self.view.robots if robot.pod >= 0}
@@ -113,9 +113,9 @@ class StaysControl(Ahead[StaysParameters]):
         return places
 
     def _stays(self, robots: Sequence[Robot]) -> Stays:
-        """Pods that return, then pods in stock that leave within the horizon.
+        """Return the stays of returning pods, then of pods in stock that leave within the horizon.
 
-        Those that stay longer take their place away from the zone, as do robots on their way.
+        Pods that stay longer reduce the places of their zone, as do robots on their way.
         """
         view, horizon_s = self.view, self.parameters.horizon_s
         stay_s = expected_stay_h(self.foresight.visits_per_h, horizon_s / 3600.0) * 3600.0

@@ -1,4 +1,4 @@
-"""How long robots take between places and stations."""
+"""Travel times between storage places and stations."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 UNREACHABLE_S = 1e5
-"""Time that stands for no way at all."""
+"""Time used where there is no path."""
 
 
 class Ways:
-    """Times of storing pods and of fetching them again, from and to every storage place.
+    """Times of storing and fetching pods, for every storage place.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class Ways:
 
     @cached_property
     def fetch_s(self) -> NDArray[np.float64]:
-        """Drive from each place to a pick station, loaded, mean over stations, shape (L,), s."""
+        """Times from each place to a pick station, loaded, mean over stations, shape (L,), s."""
         view = self._view
         places = view.storage.places
         times = [view.travel.to(s.waypoint, loaded=True)[places] for s in view.pick_stations]
@@ -43,13 +43,13 @@ class Ways:
 
     @cached_property
     def home_s(self) -> NDArray[np.float64]:
-        """Drive from a pick station to each place, loaded, mean over stations, shape (L,), s."""
+        """Times from a pick station to each place, loaded, mean over stations, shape (L,), s."""
         stations = [self.store_s(s.waypoint) for s in self._view.pick_stations]
         mean_s: NDArray[np.float64] = np.mean(stations, axis=0)
         return np.minimum(mean_s, UNREACHABLE_S)
 
     def store_s(self, waypoint: int) -> NDArray[np.float64]:
-        """Drive from a waypoint to each place, loaded, shape (L,), s; inf if unreachable."""
+        """Return times from a waypoint to each place, loaded, shape (L,), s; inf if unreachable."""
         times = self._stored.get(waypoint)
         if times is None:
             view = self._view
@@ -58,5 +58,5 @@ class Ways:
         return times
 
     def storing_s(self, robots: Sequence[Robot]) -> NDArray[np.float64]:
-        """Drive of each robot from where it is served to each place, shape (R, L), s."""
+        """Return times of each robot from where it is served to each place, shape (R, L), s."""
         return np.stack([self.store_s(robot.waypoint) for robot in robots])

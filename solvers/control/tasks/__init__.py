@@ -1,1 +1,1 @@
-"""TA by models: robots to stations by travel, queues and due times, or whole routes of robots."""
+"""TA by models: assignment by travel, queues and due times, or whole routes of robots."""

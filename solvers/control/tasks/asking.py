@@ -1,4 +1,4 @@
-"""What the TA controllers share: when the optimiser is asked, and what is done without it."""
+"""Base of TA controllers with models: when to ask, and the rule that replaces an answer."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 
 
 class TaskParameters(BufferParameters):
-    """When robots are told, and how many go to a station."""
+    """Parameters shared by these controllers."""
 
     robots_per_station: Annotated[int, pydantic.Field(ge=1)] = 9
-    """How many robots may be at, or on their way to, one station."""
+    """Maximum number of robots at, or on their way to, one station."""
     rule_meanwhile: bool = True
-    """Whether robots with a pod are told by the rule while an answer is out: they may stand in the
-    way of others. Robots without wait for it."""
+    """Whether the rule decides for robots with a pod while an answer is pending, since they may
+    block others. Robots without a pod wait for the answer."""
     rest: RestRule = "nearest"
     """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
     `random`."""
@@ -51,8 +51,8 @@ class Asking(TaskAllocation[P]):
     """Asks the optimiser what the robots that need a task, and those at rest, should do.
 
     It is asked as soon as a robot needs a task, and for robots at rest when there is new work, at
-    most once per `buffer_s`. The rule, for when the optimiser has failed or is still thinking: a
-    pod goes on at a station that it can serve, or is parked; an empty robot works for the station
+    most once per `buffer_s`. If the optimiser has failed or has not answered yet, a rule decides: a
+    pod continues at a station that it can serve, or is parked; an empty robot works for the station
     with work that has the fewest pods under way, ties by distance.
     """
 
@@ -66,18 +66,18 @@ class Asking(TaskAllocation[P]):
 
     @abstractmethod
     def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Any]:
-        """Ask what robots, each without task or at rest, should do."""
+        """Ask what robots should do, each of which is without a task or at rest."""
 
     @abstractmethod
     def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield what still holds of a solution; goes through its parts by `call.left`."""
+        """Yield the valid decisions of a solution, using `call.left` to go through its parts."""
 
     def next_event_s(self) -> float:
-        """When the optimiser may be asked again, if it is to be asked."""
+        """Return when the optimiser may be asked again, if there is something to ask."""
         return self._buffer.next_event_s
 
     def decide(self, consult: Consult) -> Iterator[Told]:
-        """Ask if there is something to ask, or let the rule decide while the answer is out."""
+        """Ask if there is something to ask, or decide by the rule while an answer is pending."""
         self._consult = consult
         if self._buffer.is_over(not self.in_flight and self._has_news()):
             yield self._ask(consult)
@@ -87,7 +87,7 @@ class Asking(TaskAllocation[P]):
                     yield from self._by_rule(robot, consult)
 
     def answered(self, call: Call) -> Iterator[Told]:
-        """Carry the answer out, and decide by the rule where there is none."""
+        """Carry out the answer, and decide by the rule where there is none."""
         consult = self._consult
         if call.solution is not None:
             yield from self.carry_out(call, consult)
@@ -97,7 +97,8 @@ class Asking(TaskAllocation[P]):
                 yield from own(self._by_rule(robot, consult))
         waiting = (robot for robot in self.view.asking.values() if robot.task is None)
         if any(robot.index not in told for robot in waiting):
-            # they have come to need a task meanwhile; who was told nothing would be told it again
+            # these robots have come to need a task meanwhile; those without an answer would get
+            # none again
             yield from own(self.decide(consult))
 
     def rest_place(self, robot: Robot) -> int:
@@ -105,20 +106,20 @@ class Asking(TaskAllocation[P]):
         return self._rest.choose(robot)
 
     def to_rest(self, robot: Robot) -> Rest:
-        """Let a robot rest where the rule says, or where it is."""
+        """Return a rest where the rule says, or where the robot is."""
         place = self._rest.choose(robot)
         return Rest(robot, place if place >= 0 else robot.waypoint)
 
     def place_for(self, robot: Robot, consult: Consult) -> int:
-        """Find a place for the pod of a robot, or -1."""
+        """Return a place for the pod of a robot, or -1."""
         return consult.place_for(robot)
 
     def pod_for(self, robot: Robot, station: int, consult: Consult) -> int:
-        """Find a pod that a robot should bring to a station, or -1."""
+        """Return a pod that a robot should bring to a station, or -1."""
         return consult.pod_for(robot, station)
 
     def may_come(self, station: int) -> int:
-        """How many more robots may go to a station."""
+        """Return how many more robots may go to a station."""
         target = self.view.stations[station]
         return max(0, self.parameters.robots_per_station - len(target.tasks))
 

@@ -1,4 +1,4 @@
-"""TA dispatch: robots to stations by travel time, or by queues and due times as well."""
+"""TA dispatch: assigns robots to stations by travel time, or by queues and due times as well."""
 
 from __future__ import annotations
 
@@ -49,14 +49,14 @@ def solve(question: Question) -> Answer:
 
 @dataclass(frozen=True)
 class Memo:
-    """What the numbers of a question mean.
+    """The objects behind the indices of a question.
 
     Attributes
     ----------
     station
-        Of each task.
+        Station of each task.
     own
-        Whether a task is to go on with the pod carried.
+        Whether a task continues with the pod already carried.
     """
 
     robots: list[Robot]
@@ -68,39 +68,40 @@ class DispatchParameters(TaskParameters):
     """Parameters of TA dispatch."""
 
     method: Method = "balance"
-    """`matching` looks at travel times only, `balance` at queues and due times too; `greedy` gives
-    the tasks of `balance` one after another to the robot that is there first."""
+    """Solution method: `matching` considers travel times only, `balance` also queues and due times;
+    `greedy` assigns the tasks of `balance` one after another to the robot that arrives first."""
     pick_value_s: NotNegative = 300.0
-    """Seconds of a robot that a pod at a pick station is worth: so long may the way and the queue
-    be."""
+    """Value of bringing a pod to a pick station, in seconds of a robot's time: the trip and the
+    wait in the queue may take this long."""
     bundle_value_s: NotNegative = 300.0
     """The same for a pod at a replenishment station."""
     service_s: NotNegative = 60.0
-    """Seconds that a pod at, or on its way to, a station lets the next one wait."""
+    """Estimated service time of each pod at, or on its way to, a station; the next pod waits as
+    long."""
     late_weight: NotNegative = 0.02
-    """Seconds of travel that a second of lateness of an order counts as."""
+    """Weight of a second of lateness of an order, in seconds of travel."""
     empty_battery_s: NotNegative = 0.0
-    """Seconds that the way of a robot with an empty battery counts as longer, less in proportion to
-    its level: those with more energy are sent first."""
+    """Additional travel time, in seconds, attributed to a robot with an empty battery, and in
+    proportion for others, so that robots with more energy are sent first."""
 
 
 class DispatchControl(Asking[DispatchParameters]):
-    """Sends robots to stations; which pod they bring, PPS says.
+    """Assigns robots to stations; PPS chooses the pods that they bring.
 
-    The tasks are: for each station with work, pods that could be brought, as many as there are
-    robots; and for each pod carried, each station it can serve. By `matching` they are given to
-    robots so that travel is least (linear assignment), at most as many as may come to a station;
-    by `balance` the wait behind other pods and the lateness of orders count as well (minimum-cost
-    flow). What is not worth its way is left: pods are parked, robots rest.
+    The tasks are, for each station with work, pods that could be brought, as many as there are
+    robots; and for each carried pod, every station that it can serve. With `matching`, they are
+    assigned for least travel (linear assignment), within the limit of robots per station. With
+    `balance`, waiting behind other pods and lateness of orders count as well (minimum-cost flow).
+    Tasks that are not worth the trip are left out: pods are parked, and robots rest.
 
-    The way to a pod is the mean over the pods with work, as PPS chooses later.
+    The trip to a pod is the mean over the pods with work, since PPS chooses later.
     """
 
     parameters_model = DispatchParameters
     optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.tasks.dispatch",)
 
     def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Question]:
-        """State the flow."""
+        """State the assignment as a flow problem."""
         empty = [row for row, robot in enumerate(robots) if robot.pod < 0]
         station: list[int] = []
         own: list[bool] = []
@@ -126,7 +127,7 @@ class DispatchControl(Asking[DispatchParameters]):
         return Ask(solve, Question(data, self.parameters.method), sizes, memo)
 
     def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Bring pods, park those that are not needed, and let the others rest."""
+        """Bring pods, park those that are not needed, and let the other robots rest."""
         assert call.solution is not None
         memo: Memo = call.ask.memo
         view = self.view
@@ -153,7 +154,7 @@ class DispatchControl(Asking[DispatchParameters]):
                     yield self.to_rest(robot)
 
     def _goes_on(self, robot: Robot, consult: Consult) -> Iterator[tuple[int, float]]:
-        """Yield the stations that a carried pod can serve, and the way there."""
+        """Yield the stations that a carried pod can serve, with the trip time."""
         away_s = self.view.travel.away(robot.waypoint, loaded=True)
         for station in self.view.stations:
             here = station.index == robot.station
@@ -163,7 +164,7 @@ class DispatchControl(Asking[DispatchParameters]):
     def _to_station(
         self, robots: Sequence[Robot], empty: list[int], number: int
     ) -> NDArray[np.float64]:
-        """Return the time until each robot has brought a pod, mean over pods; inf if it cannot."""
+        """Return the time until each robot has brought a pod, mean over pods; inf if impossible."""
         view, column = self.view, np.full(len(robots), np.inf)
         if not empty or not view.has_open_work(number):
             return column
@@ -181,21 +182,21 @@ class DispatchControl(Asking[DispatchParameters]):
         return column
 
     def _low_s(self, robot: Robot) -> float:
-        """Return what a way counts as longer because of the robot's battery."""
+        """Return the additional travel time attributed to a robot because of its battery."""
         batteries, empty_s = self.view.batteries, self.parameters.empty_battery_s
         if batteries is None or not empty_s:
             return 0.0
         return empty_s * (1 - batteries.share(robot.index))
 
     def _wanted(self, number: int) -> int:
-        """How many pods a station could use at most."""
+        """Return the maximum number of pods that a station could use."""
         target = self.view.stations[number]
         if isinstance(target, PickStation):
             return target.requests.units + target.queued_requests.units
         return len(target.waiting)
 
     def _pace(self, station: int) -> float:
-        """Return what the time of a pod is multiplied by: a picker may be slow, or tired."""
+        """Return the factor on the service time of a pod: a picker may be slow, or tired."""
         stations = self.view.layout.pick_stations
         if self.view.staff is None or station >= len(stations):
             return 1.0

@@ -1,4 +1,4 @@
-"""Pods that stations could use next: the tasks that routes are made of."""
+"""Jobs: pods that stations could use next, from which routes are made."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Worth:
-    """What the work of a pod is worth, in seconds of a robot.
+    """Value of the work of a pod, in seconds of a robot.
 
     Attributes
     ----------
@@ -41,12 +41,12 @@ class Job:
 
     Attributes
     ----------
-    bring_s
-        Way of the pod to the station, loaded.
+    Time of the loaded trip to the station. bring_s
+        Service time at the station.
     service_s
-        How long it will keep the station.
-    due_s
         When the station will have run out of work, from now.
+    due_s
+        Value of its work.
     worth_s
         What its work is worth.
     """
@@ -60,22 +60,23 @@ class Job:
 
 
 def jobs(view: View, worth: Worth, robots_per_station: int, per_station: int) -> list[Job]:
-    """Choose pods for every station, one after the other.
+    """Choose pods for every station, one after another.
 
-    The next pod of a pick station is the one whose units, of requests that those before it leave
-    open, and completed orders are worth most over its way; ties: the lowest number. The next pod of
-    a replenishment station is the one with the most bundles over its way. A pod is chosen once.
+    The next pod of a pick station is the one with the highest value per trip time, counting
+    completed orders and units of requests that earlier pods leave open; ties: the lowest number.
+    The next pod of a replenishment station is the one with the most bundles per trip time. Each pod
+    is chosen only once.
 
     Parameters
     ----------
     view
-        The world; a robot at least.
+        The world, with at least one robot.
     worth
-        What work is worth.
+        Values of work.
     robots_per_station
-        How many robots may be at, or on their way to, a station.
+        Maximum number of robots at, or on their way to, a station.
     per_station
-        How many pods are chosen for each station at most.
+        Maximum number of pods chosen for each station.
     """
     taken: set[int] = set()
     found: list[Job] = []
@@ -127,7 +128,7 @@ def _completes(pods: PickCandidates) -> NDArray[np.bool_]:
 def _bundles(
     view: View, station: ReplenishmentStation, worth: Worth, count: int, taken: set[int]
 ) -> Iterator[Job]:
-    """Bring the pods with the most bundles."""
+    """Choose the pods with the most bundles."""
     pods = replenishment_candidates(view, view.robots[0], station).pods
     each_s = view.layout.replenishment_stations[station.number].bundle_transfer_s
     busy_s = each_s * sum(len(task.bundles) for task in station.tasks.values())

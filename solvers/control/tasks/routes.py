@@ -1,4 +1,4 @@
-"""TA routes: the return of one pod combined with the fetch of the next, for all robots at once."""
+"""TA routes: combines storing one pod with fetching the next, for all robots at once."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Question:
     method
         `cp_sat` or `greedy`.
     tasks, places
-        How many tasks after each pod, and places between them, CP-SAT looks at.
+        Number of tasks after each pod, and of places between them, considered by CP-SAT.
     """
 
     data: TaskSequence
@@ -57,9 +57,9 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Find what each robot does first: `place` for its pod, then `task`; -1 for none, shape (R,).
+    """Find the first step of each robot: `place` for its pod, then `task`; -1 for none, shape (R,).
 
-    Insertion first, then CP-SAT from there over the shortest ways.
+    Insertion first, then CP-SAT from its solution over the shortest arcs.
     """
     data = question.data
     found = sequence.solve(data, "greedy")
@@ -75,16 +75,16 @@ def solve(question: Question) -> Answer:
 
 @dataclass(frozen=True)
 class Memo:
-    """What the numbers of a question mean.
+    """The objects behind the indices of a question.
 
     Attributes
     ----------
     robots
-        Those of the routes.
+        The robots of the routes.
     again
         Robots whose pod is served again where it stands.
     jobs
-        Of each task.
+        The job behind each task.
     places
         Waypoint of each place, shape (L,).
     """
@@ -99,27 +99,27 @@ class RoutesParameters(TaskParameters, SearchParameters):
     """Parameters of TA routes."""
 
     method: Literal["cp_sat", "greedy"] = "cp_sat"
-    """Who decides: CP-SAT, beginning with cheapest insertion, or insertion alone."""
+    """Solution method: CP-SAT, starting from cheapest insertion, or insertion alone."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.01
-    """Limit of the search in deterministic seconds of CP-SAT: about the same in wall time."""
+    """Limit of the search in deterministic seconds of CP-SAT, which are close to wall time."""
     gap: NotNegative = 0.01
     """Relative gap between value and bound at which the search ends."""
     unit_value_s: NotNegative = 100.0
-    """Seconds of a robot that a unit picked is worth."""
+    """Value of a unit picked, in seconds of a robot."""
     order_value_s: NotNegative = 100.0
-    """The same for an order completed."""
+    """Value of an order completed, in seconds of a robot."""
     bundle_value_s: NotNegative = 150.0
-    """The same for a bundle stored."""
+    """Value of a bundle stored, in seconds of a robot."""
     late_weight: Annotated[int, pydantic.Field(ge=0)] = 3
-    """Seconds of driving that a second counts as in which a station has no work."""
+    """Weight of a second in which a station has no work, in seconds of driving."""
     pods_per_station: Count = 2
-    """Pods that are looked at for each station."""
+    """Number of pods considered for each station."""
     places_per_robot: Count = 6
-    """Empty places that are looked at for each pod to be stored, the nearest to its station."""
+    """Number of empty places considered for each pod to be stored, the nearest to its station."""
     places_per_task: Count = 3
-    """Empty places that are looked at for each pod to be fetched, the nearest to it."""
+    """Number of empty places considered for each pod to be fetched, the nearest to it."""
     ways_per_pod: Count = 2
-    """Tasks after each pod that CP-SAT looks at."""
+    """Number of next tasks after each pod considered by CP-SAT."""
 
 
 class RoutesControl(Asking[RoutesParameters]):
@@ -127,12 +127,12 @@ class RoutesControl(Asking[RoutesParameters]):
 
     The robots are those that need a task or rest, those that are storing a pod, and those at the
     head of a queue. The tasks are the best next pods of every station, each due when its station
-    runs out of work. Driving, lateness and the worth of tasks left undone are weighed: a pod is
-    stored where the way there and on to the next pod is short, not at the place nearest to it. The
-    plan is made anew whenever a robot needs a task.
+    runs out of work. The objective combines driving, lateness and the value of tasks left undone: a
+    pod is stored where the trip there and on to the next pod is short, not at the nearest place.
+    The plan is renewed whenever a robot needs a task.
 
-    A pod that can serve more where it stands is served. The routes choose pods and places, so PPS
-    and PSA must be dummies. Without an answer pods go to the nearest empty place.
+    A pod that can serve more where it stands is served. The routes include pods and places, so PPS
+    and PSA must be dummies. Without an answer, pods go to the nearest empty place.
     """
 
     parameters_model = RoutesParameters
@@ -147,15 +147,15 @@ class RoutesControl(Asking[RoutesParameters]):
         self._worth = Worth(given.unit_value_s, given.order_value_s, given.bundle_value_s)
 
     def place_for(self, robot: Robot, consult: Consult) -> int:
-        """Find the nearest empty place."""
+        """Return the nearest empty place."""
         return self._nearest.place(robot)
 
     def pod_for(self, robot: Robot, station: int, consult: Consult) -> int:
-        """Find the best next pod of a station."""
+        """Return the best next pod of a station."""
         return next((job.pod for job in self._jobs() if job.station == station), NONE)
 
     def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Question]:
-        """State the routes."""
+        """State the routing problem."""
         given, view = self.parameters, self.view
         again = [
             r for r in robots if r.pod >= 0 and r.station >= 0 and consult.serves(r.pod, r.station)
@@ -206,7 +206,7 @@ class RoutesControl(Asking[RoutesParameters]):
         return bool(storage.is_empty[storage.place_index[place]])
 
     def _places(self, robots: Sequence[Robot], tasks: Sequence[Job]) -> NDArray[np.int32]:
-        """Choose empty places near the stations of pods to be stored, and near those to fetch."""
+        """Choose empty places near the stations of pods to store, and near pods to fetch."""
         given, storage, travel = self.parameters, self.view.storage, self.view.travel
         empty = storage.places[storage.is_empty]
         if not len(empty):
@@ -259,7 +259,7 @@ class RoutesControl(Asking[RoutesParameters]):
         )
 
     def _ready_s(self, robot: Robot) -> float:
-        """When a robot can begin, from now."""
+        """Return when a robot can start, from now."""
         view = self.view
         if _is_parking(robot):
             at = view.travel.robot_waypoint(robot.index)
@@ -283,5 +283,5 @@ def _is_parking(robot: Robot) -> bool:
 
 
 def _is_soon_free(robot: Robot) -> bool:
-    """Whether a robot has a task that will be done soon: storing a pod, or being served."""
+    """Whether a robot has a task that will end soon: storing a pod, or being served."""
     return robot.task is not None and (_is_parking(robot) or robot.station >= 0)

@@ -1,4 +1,4 @@
-"""What a run can do at most: the inequalities of the linear programme."""
+"""Check of the run bound: the inequalities of the linear programme."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong with an answer."""
+"""Errors found in an answer."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def within(name: str, values: Iterable[int], low: int, end: int) -> None:
 
 
 def once(name: str, values: Iterable[int]) -> None:
-    """Require that no number comes twice."""
+    """Require that no number occurs twice."""
     seen: set[int] = set()
     for value in values:
-        require(value not in seen, f"{name}: {value} comes twice")
+        require(value not in seen, f"{name}: {value} occurs twice")
         seen.add(value)

@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.schema import Plain
 
 TOLERANCE = 1e-9
-"""Relative to all pods: how far counts of pods may be off."""
+"""How far counts of pods may be off, as a share of all pods."""
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Work out robot seconds per hour: ways, and delays that grow with the traffic of a zone."""
+    """Compute robot seconds per hour: travel, and delays that grow with the traffic of a zone."""
     standing = values["standing"].tolist()
     pods, places = data["pods"].tolist(), data["places"].tolist()
     rate = data["rate_per_h"].tolist()

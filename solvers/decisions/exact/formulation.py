@@ -30,15 +30,15 @@ class Exact:
     Attributes
     ----------
     program
-        The programme: to be minimised.
+        The programme, which is to be minimised.
     names
-        Of its columns.
+        Names of its columns.
     answer
-        Makes an answer's fields of column values.
+        Turns column values into the fields of an answer.
     factor
-        What the programme's objective is to be multiplied by for the value of the question.
+        Factor by which the programme's objective is multiplied to give the question's value.
     square
-        Cost of the square of each column besides, shape (n,); empty for none.
+        Additional cost of the square of each column, shape (n,); empty if there is none.
     """
 
     program: LinearProgram

@@ -57,7 +57,7 @@ class Effort:
     work
         Deterministic seconds of a search in the first round; four times as many in each further.
     rounds
-        How many.
+        Their number.
     seconds
         Wall time in all.
     guard_s
@@ -91,7 +91,7 @@ def improve(
     families, sizes
         Which questions. Default: all.
     tell
-        Told what got better.
+        Called with each improvement.
 
     Returns
     -------

@@ -14,7 +14,7 @@ LOADS = ("backlog", "arrivals")
 
 @dataclass(frozen=True)
 class Site:
-    """A size of site.
+    """A site of a given size, with the runs from which questions are drawn.
 
     Attributes
     ----------
@@ -23,9 +23,9 @@ class Site:
     scenarios
         Shipped scenario per kind of demand.
     set
-        Changes.
+        Overridden parameters.
     duration_s
-        Time that is simulated.
+        Simulated time.
     seeds
         Seeds of its runs.
     """

@@ -1,4 +1,4 @@
-"""From a model to a solver of integer programmes and back, the same way for every model."""
+"""Common interface between models and solvers of integer programmes."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ _LARGEST_COST = 2.0**40
 """Largest whole cost handed to OR-Tools, which multiplies costs by the number of nodes."""
 
 _FINEST = 1e6
-"""Parts of a unit of cost that are told apart at most."""
+"""Maximum resolution of costs, in parts of a unit."""
 
 _TINY = 2.0**-50
 

@@ -1,4 +1,4 @@
-"""What an adapter returns, before a model makes its own values of it: columns, bounds, work."""
+"""The raw result of a back end, before a model interprets it: columns, bounds and work."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class PileOn:
-    """Orders to station slots and pods to stations (POA + PPS), with robots also TA.
+    """Orders to station slots and pods to stations (POA + PPS); with robots, TA as well.
 
     Parameters
     ----------
@@ -57,8 +57,8 @@ class PileOn:
     worth
         Extra reward for giving an order its (first) slot, shape (O,): age, due time. Default: none.
     may_call
-        Whether pods may be called to each station, shape (S,); to the others comes what comes
-        anyway. Default: to all.
+        Whether pods may be called to each station, shape (S,); the others receive only pods
+        that are on their way already. Default: to all.
     variant
         How orders may be covered. Default: whole.
     weights

@@ -1,4 +1,4 @@
-"""Large inputs: decide a few stations anew at a time, exactly, while the others stand still.
+"""Large inputs: re-optimises a few stations at a time exactly, with all others fixed.
 
 Starting from a decision, the stations are taken in pairs, neighbours by travel, again and again;
 each pair is solved with CP-SAT over its own orders, the waiting orders, and the pods and robots

@@ -1,4 +1,4 @@
-"""How an order may be covered, and what each part of the objective weighs."""
+"""Variants of the pile-on models: coverage of orders, and weights of the objective."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ class Found(NamedTuple):
 
 
 def visits(data: Planning) -> Visits:
-    """Hand an input over; SKUs that no line wants are left out."""
+    """Pass an input to the compiled search, without SKUs that no line wants."""
     wanted, sku = np.unique(data.line_sku, return_inverse=True)
     stock = data.stock if len(wanted) == data.stock.shape[1] else data.stock[:, wanted]
     return Visits(

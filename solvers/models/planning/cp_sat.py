@@ -1,4 +1,4 @@
-"""Exactly, by CP-SAT from the plan of the start rule."""
+"""Exact planning by CP-SAT, starting from the plan of the start rule."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The input: what waits, what is under way, and what pods hold."""
+"""Input of the planning model: waiting orders, pods under way, and the contents of pods."""
 
 from __future__ import annotations
 

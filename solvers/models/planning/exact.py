@@ -1,4 +1,4 @@
-"""What the exact methods share: the programme, solved from the plan of the start rule."""
+"""Shared parts of the exact methods: the programme, solved from the plan of the start rule."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Exactly, by HiGHS from the plan of the start rule; its relaxation is nearly whole."""
+"""Exact planning by HiGHS, starting from the plan of the start rule; its relaxation is tight."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the rule and the search return."""
+"""Results of the start rule and the search."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a plan begins: at a feasible one, or at the visits of an earlier one."""
+"""Initial plans: a feasible one, or one with the visits of an earlier plan."""
 
 from __future__ import annotations
 

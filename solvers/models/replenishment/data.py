@@ -26,7 +26,7 @@ LEFT = -1
 """The pod of a bundle that is left for later, and the station of a pod that is not brought."""
 
 PARTS = 16
-"""Parts of a space unit that are told apart."""
+"""Resolution of space, in parts of a space unit."""
 
 
 @dataclass(frozen=True)

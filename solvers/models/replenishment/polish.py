@@ -1,4 +1,4 @@
-"""Better a stocking by single moves: a bundle to a pod that is brought anyway, a pod left alone."""
+"""Improve a stocking by single moves: shift a bundle to a pod already brought, or drop a trip."""
 
 from __future__ import annotations
 

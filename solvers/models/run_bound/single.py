@@ -1,4 +1,4 @@
-"""What each resource alone would allow: weaker than the linear programme, but seen at a glance."""
+"""Bounds from single resources: weaker than the linear programme, but easy to interpret."""
 
 from __future__ import annotations
 

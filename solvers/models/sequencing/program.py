@@ -69,7 +69,7 @@ class Columns:
     take: Integers
 
     def decode(self, x: NDArray[np.float64]) -> VisitSequence:
-        """Make a plan of column values."""
+        """Turn column values into a plan."""
         taken = x > 0.5
         visits = taken[self.visit]
         used = int(visits.any(axis=1).sum())

@@ -191,7 +191,7 @@ def test_pods_are_called_by_work_on_its_way() -> None:
 
 
 def test_split_orders_are_not_also_covered_later() -> None:
-    with pytest.raises(InputError, match="later: not with split"):
+    with pytest.raises(InputError, match="later: invalid with split"):
         choose(Problem.POA, {"name": "pile-on", "later": True, "split": True}, "test")
 
 

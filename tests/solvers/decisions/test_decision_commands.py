@@ -156,7 +156,7 @@ def test_programmes_are_written_and_solutions_read_back(
     assert main(["decisions", "convert", str(one), "--solution", "x.sol", "--out", "e"]) == 0
     assert main(["decisions", "check", str(one), f"e/{stem}.solution.json"]) == 0
     assert main(["decisions", "convert", str(folder), "--solution", "x.sol"]) == 2
-    assert "--solution: belongs to one question" in capsys.readouterr().err
+    assert "--solution: requires exactly one question" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("family", SCHEMAS)

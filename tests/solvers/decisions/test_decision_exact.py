@@ -191,5 +191,5 @@ def test_solution_files_that_are_none_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="names no column"):
         answer_of(question, exact(question), tmp_path / "a.sol", {})
     (tmp_path / "a.sol").write_text("send_r0_t0 1\nsend_r0_t1 1\n")
-    with pytest.raises(InputError, match=r"robot: 0 comes twice|is not allowed"):
+    with pytest.raises(InputError, match=r"robot: 0 occurs twice|is not allowed"):
         answer_of(question, exact(question), tmp_path / "a.sol", {})

@@ -82,6 +82,7 @@ def served(server: Server) -> Iterator[str]:
 
 
 def show(page: Page, url: str) -> None:
-    """Go to an address of the viewer and wait for its first frame."""
+    """Go to an address of the viewer, wait for its first frame, and let the time stand still."""
     page.goto(url)
     page.wait_for_function("window.rmfs?.frames > 0")
+    page.evaluate("window.rmfs.store.set({ playing: false })")

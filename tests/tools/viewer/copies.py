@@ -33,6 +33,7 @@ EACH = {
     "motion.heading0_rad": "",
     "motion.heading1_rad": "",
     "motion.pod": "pod",
+    "motion.top_speed_m_s": "",
 }
 """Arrays that every copy adds to, and what their numbers name."""
 

@@ -13,10 +13,13 @@ import rmfs
 from rmfs.files import replacing
 from rmfs.measure import load_run, write_run
 from rmfs.view.answers import replay_server
+from rmfs.view.starting import Starter
 from tests.tools.viewer.chromium import chromium, open_page, served, show
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from playwright.sync_api import Browser
 
     from rmfs.measure import RunFolder
 
@@ -25,6 +28,7 @@ RUNS = {
     "psa-nearest": ("default", "default", "nearest"),
     "psa-random": ("default", "default", "random"),
     "three-tiers": ("study-tiers", "pp-minimal", "nearest"),
+    "letters": ("default", "letters", "nearest"),
 }
 """Layout, scenario, and where pods go after a visit."""
 
@@ -44,6 +48,26 @@ PICTURES: dict[str, tuple[tuple[str, ...], str]] = {
     "viewer-compare": (
         ("psa-nearest", "psa-random"),
         "mode: '2d', theme: 'light', pods: 'age'",
+    ),
+    "viewer-overlay": (
+        ("psa-nearest", "psa-random"),
+        "mode: '2d', theme: 'light', heat: 'visits', overlay: true, from_s: 600, to_s: 2400",
+    ),
+    "viewer-orders": (
+        ("psa-nearest",),
+        "mode: '2d', theme: 'light', selection: { run: 0, what: 'station', index: 1 }",
+    ),
+    "viewer-pods": (
+        ("psa-nearest",),
+        "mode: '2d', theme: 'dark', board: 'orders', grouping: 'pod'",
+    ),
+    "viewer-pod": (
+        ("psa-nearest",),
+        "mode: '2d', theme: 'dark', selection: { run: 0, what: 'pod', index: 150 }",
+    ),
+    "viewer-letters": (
+        ("letters",),
+        "mode: '2d', theme: 'light', board: 'orders', grouping: 'order'",
     ),
 }
 """Runs side by side, and what is shown, as changes of the page's state."""
@@ -69,7 +93,21 @@ def take(folder: Path, tell: Callable[[str], None]) -> list[Path]:
                     paths.append(_saved(page.screenshot(), folder / f"{name}.png"))
                 page.close()
                 tell(str(paths[-1]))
+            paths.append(_form(browser, folder / "viewer-form.png"))
+            tell(str(paths[-1]))
     return paths
+
+
+def _form(browser: Browser, path: Path) -> Path:
+    """Take a picture of the form that starts a run."""
+    page = open_page(browser, viewport={"width": WIDTH, "height": HEIGHT})
+    with served(replay_server([], starter=Starter())) as url:
+        page.goto(url)
+        page.click("summary:has-text('Layout')")
+        page.wait_for_selector("#preview .counts:not(:empty)")
+        picture = page.screenshot()
+    page.close()
+    return _saved(picture, path)
 
 
 def _recorded(path: Path, layout: str, scenario: str, rule: str) -> RunFolder:

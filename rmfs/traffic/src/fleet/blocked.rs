@@ -75,7 +75,7 @@ impl Fleet {
         let query = Query {
             start: state.anchor,
             heading: state.heading,
-            ready: self.now.max(state.busy_until),
+            ready: state.rested.max(self.now).max(state.busy_until),
             goal: NONE,
             loaded: state.pod.is_some(),
             stored,

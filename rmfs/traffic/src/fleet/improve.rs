@@ -97,7 +97,7 @@ impl Fleet {
             .iter()
             .map(|(kept, agent)| {
                 let moves = self.robots[agent.robot as usize].moves.range(..*kept);
-                self.occupied(agent.robot, moves, agent.ready)
+                self.occupied(agent.robot, moves, Some(agent.ready))
             })
             .collect();
         for (held, &robot) in begun.iter().zip(members) {
@@ -113,7 +113,7 @@ impl Fleet {
             let state = &self.robots[agent.robot as usize];
             let plan: VecDeque<Move> = state.moves.range(..*kept).cloned().chain(moves).collect();
             after += plan.back().map_or(agent.ready, |last| last.end);
-            reserved[at] = self.occupied(agent.robot, &plan, 0);
+            reserved[at] = self.occupied(agent.robot, &plan, None);
             self.insert(agent.robot, &reserved[at]);
             plans.insert(agent.robot, plan);
         }
@@ -172,14 +172,12 @@ impl Fleet {
         &self,
         robot: u32,
         moves: impl IntoIterator<Item = &'a Move>,
-        until: Us,
+        until: Option<Us>,
     ) -> Vec<Held> {
         let state = &self.robots[robot as usize];
         let kind = &self.kinds[state.kind as usize];
         let mut held = occupation(&self.network, kind, state.anchor, state.anchored, moves);
-        if until > 0
-            && let Some(last) = held.last_mut()
-        {
+        if let (Some(until), Some(last)) = (until, held.last_mut()) {
             last.end = until;
         }
         held.retain(|held| held.end > self.now.max(held.start));

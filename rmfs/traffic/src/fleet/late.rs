@@ -4,18 +4,25 @@
 //! waypoint its users in order. If a robot leaves one later than planned, the next user enters it
 //! later, and so on. Whoever keeps the order meets nobody. The order itself has no cycle (it comes
 //! from times), but a run is shifted as a whole: four runs around a block may each have to wait for
-//! the next one's end. Who would have to wait for himself cannot be late; that is told.
+//! the next one's end. Who would have to wait for himself cannot be late; that is told. As every
+//! shift has a chain of others as its cause, in which no move occurs twice, there is an end; it is
+//! also counted, as a chain can take many ways.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap, HashMap, VecDeque};
 
 use crate::network::NONE;
+use crate::patience::look_up;
 use crate::robot::{Held, Robot};
 use crate::search::Move;
 use crate::units::{FOREVER, Us};
 
 use super::disturbed::stretched;
 use super::{Due, Fleet};
+
+/// How often the moves of all plans are shifted at most, each on average, because of one delay.
+/// Most are shifted once.
+const SHIFTS: usize = 100;
 
 /// What may be shifted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +49,8 @@ pub(super) struct Delays<'a> {
     plans: BTreeMap<u32, VecDeque<Move>>,
     /// What has been shifted, each with what made it necessary.
     causes: Vec<Cause>,
+    /// How many there may be.
+    most: usize,
     /// The last of them, per robot and move.
     cause_of: HashMap<(u32, usize), usize>,
 }
@@ -155,6 +164,7 @@ impl<'a> Delays<'a> {
             next,
             plans: BTreeMap::new(),
             causes: Vec::new(),
+            most: SHIFTS * fleet.robots.iter().map(|state| state.moves.len() + 1).sum::<usize>(),
             cause_of: HashMap::new(),
         }
     }
@@ -205,8 +215,12 @@ impl<'a> Delays<'a> {
         true
     }
 
-    /// Takes note of why a move is shifted; none if its own shift is the reason.
+    /// Takes note of why a move is shifted; none if its own shift is the reason, or if shifting
+    /// does not come to an end.
     fn cause(&mut self, robot: u32, step: usize, before: Option<usize>) -> Option<usize> {
+        if self.causes.len() >= self.most {
+            return None;
+        }
         let mut earlier = before;
         while let Some(number) = earlier {
             let one = &self.causes[number];
@@ -225,6 +239,7 @@ impl<'a> Delays<'a> {
     fn spread(&mut self, robot: u32) -> bool {
         let mut changed = BinaryHeap::from([Reverse((Us::MIN, robot))]);
         while let Some(Reverse((_, robot))) = changed.pop() {
+            look_up();
             for index in 0..self.next[robot as usize].len() {
                 let Some((follower, at)) = self.next[robot as usize][index] else { continue };
                 let (one, entry) = (self.uses(robot)[index], self.uses(follower)[at]);

@@ -35,6 +35,7 @@ use crate::costs::Cache;
 use crate::kinematics::Kind;
 use crate::log::Log;
 use crate::network::Network;
+use crate::patience::look_up;
 use crate::planner::{Planner, TimeWindows};
 use crate::record::Record;
 use crate::reservations::Table;
@@ -43,6 +44,9 @@ use crate::search::Pathfinder;
 use crate::units::Us;
 
 use rolling::Rolling;
+
+/// What may happen at one instant, per robot: far more than ever does.
+const AT_ONCE: usize = 10_000;
 
 /// What happened to a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -283,11 +287,15 @@ impl Fleet {
     /// Handles everything due at one time.
     fn instant(&mut self, time: Us) {
         self.now = time;
+        let mut left = AT_ONCE * (self.robots.len() + 1);
         while let Some(&Reverse((at, robot, due, version))) = self.agenda.peek() {
             if at > time {
                 break;
             }
             self.agenda.pop();
+            look_up();
+            left -= 1;
+            assert!(left > 0, "what happens at {time} has no end");
             match due {
                 Due::TransferEnd => self.transfer_ended(robot),
                 Due::LegEnd if self.robots[robot as usize].version == version => {

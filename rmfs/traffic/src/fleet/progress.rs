@@ -170,6 +170,7 @@ impl Fleet {
                         heading_before: state.heading,
                         heading: state.heading,
                         pod: pod as i32,
+                        top_speed: 0.0,
                     });
                 }
                 _ if state.committed(&self.network, kind, self.now) > 0 => {

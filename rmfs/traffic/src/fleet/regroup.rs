@@ -93,8 +93,16 @@ impl Fleet {
     fn begin_again(&mut self) {
         self.blocked.clear();
         for robot in 0..self.robots.len() as u32 {
-            let phase = self.robots[robot as usize].phase;
+            let state = &self.robots[robot as usize];
+            let phase = state.phase;
             if phase == Phase::Idle {
+                // who was served and is elsewhere now holds no place that it would be moved from
+                if let Some((station, place)) = state.place
+                    && state.anchor != self.network.stations[station as usize][place]
+                {
+                    self.robots[robot as usize].place = None;
+                    self.queues[station as usize].retain(|&other| other != robot);
+                }
                 continue;
             }
             // who lifts may have planned its way to a place

@@ -23,7 +23,7 @@ use super::{Counters, Due, Event, Fleet, Lateness, Leg};
 const MAGIC: &[u8] = b"rmfs-traffic";
 
 /// Changes whenever the bytes mean something else.
-const VERSION: u8 = 4;
+const VERSION: u8 = 5;
 
 type Agenda = BinaryHeap<Reverse<(Us, u32, Due, u32)>>;
 

@@ -11,6 +11,7 @@ use std::rc::Rc;
 use serde::{Deserialize, Serialize};
 
 use crate::network::NONE;
+use crate::patience::look_up;
 use crate::reservations::Table;
 use crate::robot::Held;
 use crate::search::{End, Move};
@@ -112,6 +113,7 @@ impl Cbs {
         open.push(Reverse((tree[0].as_ref().map_or(0, Node::cost), 0)));
         let mut latest = (0, 0);
         for _ in 0..self.nodes {
+            look_up();
             let Some(Reverse((_, index))) = open.pop() else { break };
             let node = tree[index].as_ref().expect("kept");
             let Some(conflict) = node.conflict.clone() else {

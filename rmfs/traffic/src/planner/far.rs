@@ -188,6 +188,8 @@ fn first_hop(scene: &Scene, agent: &Agent, way: &[Move]) -> Result<Vec<Move>, Cl
         let hop = vec![run(scene, agent, way[0].heading, to, length)];
         match rolling::clash(scene, scene.table, agent, &hop) {
             None => return Ok(hop),
+            // what no shorter run would keep clear of
+            Some(clash) if line[..stops].iter().all(|at| at.0 != clash.node) => return Err(clash),
             Some(clash) => obstacle = clash,
         }
     }

@@ -9,6 +9,7 @@ use std::collections::{BTreeSet, BinaryHeap};
 
 use serde::{Deserialize, Serialize};
 
+use crate::patience::look_up;
 use crate::reservations::Table;
 use crate::robot::Held;
 use crate::search::End;
@@ -161,6 +162,7 @@ impl OdId {
         let mut nearest = (Us::MAX, 0);
         let mut used = 0;
         while let Some(Reverse((_, to_go, index))) = open.pop() {
+            look_up();
             used += 1;
             nearest = nearest.min((to_go, index));
             let next = self.next_member(scene, agents, members, &states[index]);

@@ -8,6 +8,7 @@ use std::rc::Rc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::patience::look_up;
 use crate::reservations::Table;
 use crate::robot::Held;
 use crate::search::{End, Move};
@@ -132,6 +133,7 @@ impl Pbs {
         let mut latest = root.clone();
         let mut stack = vec![root];
         for _ in 0..self.nodes {
+            look_up();
             let Some(node) = stack.pop() else { break };
             if node.is_free_until() > latest.is_free_until() {
                 latest = node.clone();

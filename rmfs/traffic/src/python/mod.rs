@@ -65,7 +65,7 @@ struct Core {
     /// How often a planner written in Python is asked, if there is one, and what it has raised.
     in_python: Option<Rhythm>,
     fault: Fault,
-    /// The defect met before, if there was one: since then the fleet may be anything.
+    /// The defect or interrupt met before, if any: since then the fleet may be anything.
     defect: Option<String>,
 }
 
@@ -79,10 +79,9 @@ impl Core {
         if let Some(said) = &self.defect {
             return Err(internal_error(said));
         }
-        guarded(|| work(&mut self.fleet)).map_err(|said| {
-            let error = internal_error(&said);
-            self.defect = Some(said);
-            error
+        guarded(|| work(&mut self.fleet)).map_err(|failure| {
+            self.defect = Some(failure.said());
+            failure.into()
         })
     }
 
@@ -176,8 +175,7 @@ impl Core {
             fleet.put_pods(&pods)?;
             Ok(fleet)
         });
-        let fleet = fleet.map_err(|said| internal_error(&said))?;
-        Ok(Self::over(fleet.map_err(PyValueError::new_err)?, in_python, fault))
+        Ok(Self::over(fleet?.map_err(PyValueError::new_err)?, in_python, fault))
     }
 
     /// An independent copy; a planner written in Python comes as a copy of its own.

@@ -129,6 +129,7 @@ pub(super) fn trace<'py>(py: Python<'py>, network: &Network, rows: &[Row]) -> Ta
         .column("to_wp", |row| row.to as i32)?
         .column("heading0_rad", |row| heading(row.heading_before))?
         .column("heading1_rad", |row| heading(row.heading))?
-        .column("pod", |row| row.pod)?;
+        .column("pod", |row| row.pod)?
+        .column("top_speed_m_s", |row| row.top_speed)?;
     Ok(columns.dict)
 }

@@ -3,7 +3,7 @@
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use super::guard::{guarded, internal_error};
+use super::guard::guarded;
 use crate::visits::{Appeal, Draft, Filling, Given, Line, Problem, extended, improved};
 
 /// New visits per station, station of each order, visit of each line, the objective with the other
@@ -55,7 +55,7 @@ impl Visits {
             visits,
             decay,
         };
-        let problem = guarded(|| Problem::new(given)).map_err(|said| internal_error(&said))?;
+        let problem = guarded(|| Problem::new(given))?;
         Ok(Self { problem })
     }
 
@@ -82,8 +82,7 @@ impl Visits {
     fn with(&self, work: impl FnOnce(&mut Filling, &mut Appeal) -> Draft) -> PyResult<Plan> {
         let mut filling = Filling::new(&self.problem);
         let mut appeal = Appeal::new(&self.problem);
-        let draft = guarded(|| work(&mut filling, &mut appeal));
-        let draft = draft.map_err(|said| internal_error(&said))?;
+        let draft = guarded(|| work(&mut filling, &mut appeal))?;
         Ok(told(&draft, filling.work))
     }
 }

@@ -26,6 +26,7 @@ use std::collections::BinaryHeap;
 use crate::backward::Backward;
 use crate::costs::{UNREACHABLE, time};
 use crate::network::{NONE, Network};
+use crate::patience::look_up;
 use crate::reservations::{Table, Windows};
 use crate::units::{FOREVER, Us};
 
@@ -233,6 +234,7 @@ impl<'a> Search<'a> {
             scans: 0,
         });
         for _ in 0..budget {
+            look_up();
             match self.next_label() {
                 None => return Outcome::NoWay,
                 Some((_, index)) if index & STAY != 0 || self.is_end(index) => {

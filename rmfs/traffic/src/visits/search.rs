@@ -9,6 +9,7 @@ use super::draft::{Draft, Saved};
 use super::filling::Filling;
 use super::guess::Guess;
 use super::problem::Problem;
+use crate::patience::look_up;
 use crate::random::Random;
 
 /// Of a hundred steps, those that replace a visit, that move one, that add one, and that let visits
@@ -35,6 +36,7 @@ pub fn improved(filling: &mut Filling, draft: Draft, steps: u64, seed: u64) -> D
     let (mut saved, mut changed) = (Saved::default(), Vec::new());
     let worse = WORSE * guess.mean_worth();
     for step in 0..steps {
+        look_up();
         let kind = random.below(100);
         choose_stations(problem, kind, &mut changed, &mut random);
         draft.save(&changed, &mut saved);

@@ -1,6 +1,9 @@
 /** Starts the page. */
 
 import "./style.css";
+import "./panel.css";
+import "./orders.css";
+import "./start.css";
 import { Run } from "./data/run";
 import { App } from "./page/app";
 import { fail } from "./page/messages";

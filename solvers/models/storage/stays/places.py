@@ -1,4 +1,4 @@
-"""From zones to places: every stay gets a place that nobody else has meanwhile."""
+"""Assigns each stay a place within its zone that no other stay occupies meanwhile."""
 
 from __future__ import annotations
 

@@ -29,7 +29,8 @@ def program(data: Stays, *, whole: bool) -> LinearProgram:
     data
         The problem.
     whole
-        Whether y must be whole. It is, if x is; CP-SAT wants to be told, branch and bound not.
+        Whether y is declared integer. It is whole if x is; CP-SAT requires the declaration, branch
+        and bound does not.
 
     Returns
     -------

@@ -19,10 +19,10 @@ _PORTIONS = 16
 def solve(
     data: Zones, limits: Limits = NO_LIMITS, *, seed: int = 0, start: ZonePlan | None = None
 ) -> Solution[ZonePlan]:
-    """Put portions of the classes, most visited first, where a visit takes least time then.
+    """Place classes in portions, the most visited first, each where a visit then takes least time.
 
-    The time includes the delay that its traffic causes. The price of a zone is what a pod there
-    saves, at least, against the best zone with room left over; 0 if there is no such zone.
+    The time includes the delay that the added traffic causes. The price of a zone is the least
+    that a pod there saves compared with the best zone that still has room; 0 if none has.
 
     Returns
     -------

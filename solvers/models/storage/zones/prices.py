@@ -54,14 +54,14 @@ class Prices:
 
     @classmethod
     def of(cls, data: Zones, plan: ZonePlan) -> Prices:
-        """Read the prices off a plan.
+        """Compute the prices of a plan.
 
         Parameters
         ----------
         data
             The problem.
         plan
-            A plan, the best one for the best prices.
+            A plan; an optimal one yields optimal prices.
         """
         delay_s = 2.0 * data.congestion_s_h * traffic_per_h(data, plan.standing)
         place = np.maximum(plan.price_per_h, 0.0)

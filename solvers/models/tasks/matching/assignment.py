@@ -1,4 +1,4 @@
-"""The best matching by linear assignment: a task is given a robot, or its own 'later'."""
+"""Optimal matching by linear assignment: each task gets a robot or is postponed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which ways a search looks at: all of them, or the shortest and those of a plan at hand."""
+"""Arcs considered by a search: all of them, or the shortest and those of a given plan."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rmfs.solvers.models.tasks.sequence.data import NONE, Routes, TaskSequence
 
 @dataclass(frozen=True)
 class Ways:
-    """Ways that routes may take. An *owner* of a pod is robot r, or task R + t.
+    """Arcs that routes may use. An *owner* of a pod is robot r, or task R + t.
 
     Attributes
     ----------
@@ -23,7 +23,7 @@ class Ways:
     last
         From a station to the place where a route ends, shape (C, 2): owner, place.
     complete
-        Whether these are all ways of the problem.
+        Whether all arcs of the problem are included.
     """
 
     first: NDArray[np.int64]
@@ -33,7 +33,7 @@ class Ways:
 
 
 def every_way(data: TaskSequence) -> Ways:
-    """Return all ways of a problem.
+    """Return all arcs of a problem.
 
     Parameters
     ----------
@@ -50,11 +50,10 @@ def every_way(data: TaskSequence) -> Ways:
 
 
 def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> Ways:
-    """Return the shortest ways, and those of a plan, so that it stays possible.
+    """Return the shortest arcs, together with those of a plan, which thus remains feasible.
 
-    Of all tasks, those that are nearest over the best place are looked at after each owner, and
-    the nearest owners before each task; each time over the best places. A route may end at the
-    nearest places.
+    For each owner, the nearest tasks over the best place are included, and for each task the
+    nearest owners, each over the best places. A route may end at the nearest places.
 
     Parameters
     ----------
@@ -63,9 +62,9 @@ def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> 
     keep
         A plan.
     tasks
-        How many tasks after each owner and robot, and how many before each task.
+        Number of tasks after each owner and robot, and of owners before each task.
     places
-        Over how many places each time.
+        Number of places considered for each.
 
     Returns
     -------

@@ -6,7 +6,7 @@ beginning stores that first. Where a pod is stored decides how far it is to the 
 are chosen together with the order of the tasks: the generalised travelling-salesman view of
 Gharehgozli and Zaerpour 2020, with several robots and time windows.
 
-Places that fetched pods leave behind are not offered within the same plan: the plan is made anew
+Places that fetched pods leave behind are not offered within the same plan: the plan is remade
 before they matter (rolling horizon). Stations have no queue here; their rhythm is in the windows.
 """
 
@@ -33,7 +33,7 @@ SLACK_S = 1e-7
 class TaskSequence:
     """Robots, tasks and free places.
 
-    Times are rounded to milliseconds; +inf forbids a way.
+    Times are rounded to milliseconds; +inf forbids a trip.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class TaskSequence:
     due_s
         When the pod should be there, shape (T,), in s; +inf without a due time.
     skip_s
-        What it costs to leave each task for later, shape (T,), in s; +inf where it must be done.
+        Cost of postponing each task, shape (T,), in s; +inf where it must be done.
     late_weight
         Seconds of driving that a second of lateness is worth, whole. Default 1.
 

@@ -18,6 +18,13 @@ export const Kind = {
   STATION_SWITCHED: 11,
   CONTROLLER_EXCHANGED: 12,
   BATTERY_LEVEL: 13,
+  ORDER_LINE: 14,
+  ORDER_DUE: 15,
+  ORDER_CUT: 16,
+  ORDER_CANCELLED: 17,
+  PART_COMPLETED: 18,
+  UNITS_BOUND: 19,
+  UNITS_UNBOUND: 20,
 } as const;
 
 export interface Happening {
@@ -32,12 +39,22 @@ export interface Happening {
   detail: string;
 }
 
-export type Subject = "robot" | "pod" | "station";
+export type Subject = "robot" | "pod" | "station" | "order";
 
-/** All events of a run, with the numbers of those that concern each robot, pod and station. */
+/** What happens to bundles, whose numbers stand in the column of the orders. */
+const OF_BUNDLES: ReadonlySet<number> = new Set([
+  Kind.BUNDLE_CREATED,
+  Kind.BUNDLE_ASSIGNED,
+  Kind.BUNDLE_STORED,
+]);
+
+/** What belongs to an order from the start, and is no event of its history. */
+const STATED: ReadonlySet<number> = new Set([Kind.ORDER_LINE, Kind.ORDER_DUE]);
+
+/** All events of a run, with the numbers of those that concern each robot, pod, station and order. */
 export class Events {
   readonly all: Happening[] = [];
-  private readonly of: Record<Subject, number[][]> = { robot: [], pod: [], station: [] };
+  private readonly of: Record<Subject, number[][]> = { robot: [], pod: [], station: [], order: [] };
   private readonly listeners: ((happening: Happening) => void)[] = [];
 
   /** Calls back for every event there is and every one that comes. */
@@ -73,8 +90,10 @@ export class Events {
     const number = this.all.push(happening) - 1;
     for (const listener of this.listeners) listener(happening);
     // a course, and nothing that happens to a robot
-    if (happening.kind === Kind.BATTERY_LEVEL) return;
+    if (happening.kind === Kind.BATTERY_LEVEL || STATED.has(happening.kind)) return;
+    const bundle = OF_BUNDLES.has(happening.kind);
     for (const subject of SUBJECTS) {
+      if (bundle && subject === "order") continue;
       const index = happening[subject];
       if (index >= 0) {
         const lists = this.of[subject];
@@ -105,7 +124,7 @@ export class Events {
   }
 }
 
-const SUBJECTS: Subject[] = ["robot", "pod", "station"];
+const SUBJECTS: Subject[] = ["robot", "pod", "station", "order"];
 const NUMBERS = ["robot", "pod", "station", "order", "sku", "units", "detail"] as const;
 
 const WORDS = [
@@ -123,6 +142,13 @@ const WORDS = [
   "station switched",
   "controller exchanged",
   "battery",
+  "order line",
+  "order due",
+  "order cut",
+  "order cancelled",
+  "part completed",
+  "pod brought for",
+  "pod no longer brought for",
 ];
 
 /** Says in a few words what happened to a subject, which is not named again. */
@@ -134,7 +160,9 @@ export function tell(happening: Happening, subject: Subject): string {
   const named = [
     detail,
     ...others.map((name) => `${name} ${happening[name]}`),
-    order >= 0 ? `${kind >= Kind.BUNDLE_CREATED ? "bundle" : "order"} ${order}` : "",
+    order >= 0 && subject !== "order"
+      ? `${OF_BUNDLES.has(kind) ? "bundle" : "order"} ${order}`
+      : "",
     sku >= 0 ? `SKU ${sku}` : "",
     units > 1 ? `${units} units` : "",
   ];

@@ -14,10 +14,15 @@ export interface RobotKind {
 }
 
 /** Returns how far a robot has come (m) at `time_s` after the start of a run of `length_m`. */
-export function wayAt(kind: RobotKind, length_m: number, time_s: number): number {
+export function wayAt(
+  kind: RobotKind,
+  top_speed_m_s: number,
+  length_m: number,
+  time_s: number,
+): number {
   const a = kind.acceleration_m_s2;
   const d = kind.deceleration_m_s2;
-  const speed = Math.min(kind.top_speed_m_s, Math.sqrt((2 * length_m * a * d) / (a + d)));
+  const speed = Math.min(top_speed_m_s, Math.sqrt((2 * length_m * a * d) / (a + d)));
   if (!(speed > 0)) return 0;
   const speeding_s = speed / a;
   if (time_s < speeding_s) return (a / 2) * time_s * time_s;

@@ -14,7 +14,6 @@ export interface Station {
   kind: string;
   /** What stands before its number where there is little room. */
   letter: string;
-  colour: string;
   /** What is counted there, in words. */
   handles: string;
   waypoint: number;
@@ -60,10 +59,26 @@ export interface Header {
   robot_kinds: RobotKind[];
   pod_radius_m: number;
   details: string[];
+  /** Names of the SKUs, where they have other ones than their numbers. */
+  sku_names: string[];
   colours: Record<string, string>;
   /** Of robots, by the words for their tasks, states and loads. */
   robot_colours: Record<"task" | "state" | "load", Record<string, string>>;
+  /** Colours on a light and on a dark floor. */
+  themes: Record<"light" | "dark", Colours>;
   live?: Live;
+}
+
+/** Colours on one floor. */
+export interface Colours {
+  pod: string;
+  elevator: string;
+  /** In the order of the stations. */
+  stations: string[];
+  /** Of robots, by the words for their tasks. */
+  task: Record<string, string>;
+  /** From none to much. */
+  delay: string[];
 }
 
 export interface Layout {

@@ -5,7 +5,18 @@ import { turn, wayAt } from "./kinematics";
 import type { Layout } from "./layout";
 import { countUpTo } from "./search";
 
-export const Piece = { HOLD: 0, TURN: 1, RUN: 2, RIDE: 3, LIFT: 4, SET_DOWN: 5 } as const;
+export const Piece = {
+  HOLD: 0,
+  TURN: 1,
+  RUN: 2,
+  RIDE: 3,
+  LIFT: 4,
+  SET_DOWN: 5,
+  GUIDED: 6,
+} as const;
+
+/** Pieces in which a robot drives over waypoints. */
+export const DRIVES: ReadonlySet<number> = new Set([Piece.RUN, Piece.GUIDED]);
 
 export interface Pose {
   x: number;
@@ -39,6 +50,7 @@ export class Track {
     public heading0: Float32Array,
     public heading1: Float32Array,
     public pod: Int32Array,
+    public topSpeed: Float32Array,
   ) {
     this.count = start.length;
   }
@@ -56,6 +68,7 @@ export class Track {
     this.heading0 = joined(this.heading0, kept, rows.heading0);
     this.heading1 = joined(this.heading1, kept, rows.heading1);
     this.pod = joined(this.pod, kept, rows.pod);
+    this.topSpeed = joined(this.topSpeed, kept, rows.topSpeed);
     this.count = count;
     this.end = rows.end;
     this.cursor = Math.min(this.cursor, count - 1);
@@ -104,6 +117,7 @@ export function readTracks(container: Container<unknown>): Track[] {
   const heading0 = container.singles("motion.heading0_rad");
   const heading1 = container.singles("motion.heading1_rad");
   const pod = container.integers("motion.pod");
+  const topSpeed = container.singles("motion.top_speed_m_s");
   return Array.from(ends, (end, robot) => {
     const [a, b] = [first[robot], first[robot + 1]];
     const track = new Track(
@@ -114,6 +128,7 @@ export function readTracks(container: Container<unknown>): Track[] {
       heading0.subarray(a, b),
       heading1.subarray(a, b),
       pod.subarray(a, b),
+      topSpeed.subarray(a, b),
     );
     track.end = end;
     return track;
@@ -153,10 +168,11 @@ export class Motion {
     if (kind === Piece.RUN) {
       const length = Math.hypot(x[to] - x[from], y[to] - y[from]);
       const own = this.layout.header.robot_kinds[this.layout.robotKind[robot]];
-      const share = length > 0 ? wayAt(own, length, passed_us / 1e6) / length : 0;
+      const way = length > 0 ? wayAt(own, track.topSpeed[row], length, passed_us / 1e6) : 0;
+      const share = length > 0 ? way / length : 0;
       pose.x += share * (x[to] - x[from]);
       pose.y += share * (y[to] - y[from]);
-    } else if (kind === Piece.TURN || kind === Piece.RIDE) {
+    } else if (kind === Piece.TURN || kind === Piece.RIDE || kind === Piece.GUIDED) {
       const whole_us = track.endOf(row) - track.start[row];
       const share = whole_us > 0 ? Math.min(passed_us / whole_us, 1) : 1;
       if (kind === Piece.TURN) {
@@ -165,8 +181,10 @@ export class Motion {
       } else {
         pose.x += share * (x[to] - x[from]);
         pose.y += share * (y[to] - y[from]);
-        pose.tierTo = tier[to];
-        pose.ride = share;
+        if (kind === Piece.RIDE) {
+          pose.tierTo = tier[to];
+          pose.ride = share;
+        }
       }
     }
     return pose;

@@ -1,7 +1,7 @@
 /** Where robots drive and wait within a window of time: what heat maps show. */
 
 import { type Layout, straight } from "./layout";
-import { type Motion, Piece } from "./motion";
+import { DRIVES, type Motion, Piece } from "./motion";
 import type { Robots } from "./robots";
 
 export type Count = "visits" | "waiting";
@@ -38,7 +38,7 @@ export class Passages {
     const track = this.motion.tracks[robot];
     const done = track.endOf(row);
     const kind = track.kind[row];
-    if (done < begin || done >= end || (kind !== Piece.RUN && kind !== Piece.RIDE)) return;
+    if (done < begin || done >= end || (!DRIVES.has(kind) && kind !== Piece.RIDE)) return;
     const to = track.to[row];
     if (kind === Piece.RIDE) counts[to]++;
     else for (const waypoint of this.way(track.from[row], to)) counts[waypoint]++;

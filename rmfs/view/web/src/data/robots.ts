@@ -2,7 +2,7 @@
 
 import { type Events, Kind } from "./events";
 import type { Header, Layout } from "./layout";
-import { type Motion, Piece, type Pose } from "./motion";
+import { DRIVES, type Motion, Piece, type Pose } from "./motion";
 import { Steps } from "./steps";
 
 /** Returns the words for tasks in the order in which they are numbered. */
@@ -66,7 +66,7 @@ export class Robots {
 
   /** Returns an index into `STATES`. */
   state(robot: number, time_us: number, pose: Pose): number {
-    if (pose.kind === Piece.RUN) return DRIVING;
+    if (DRIVES.has(pose.kind)) return DRIVING;
     if (pose.kind === Piece.TURN) return TURNING;
     if (pose.kind === Piece.RIDE) return RIDING;
     if (pose.kind !== Piece.HOLD) return TRANSFER;

@@ -5,6 +5,7 @@ import { Events } from "./events";
 import { type Course, course } from "./figures";
 import { type Header, type Layout, type Live, type News, readLayout } from "./layout";
 import { Motion, readTracks } from "./motion";
+import { Orders } from "./orders";
 import { Passages } from "./passages";
 import { PodPlaces } from "./places";
 import { Robots } from "./robots";
@@ -19,6 +20,7 @@ export class Run {
   readonly robots: Robots;
   readonly stock: Stock;
   readonly stations: Stations;
+  readonly orders: Orders;
   readonly passages: Passages;
   /** Until when the run is known, in microseconds. */
   known_us: number;
@@ -40,6 +42,7 @@ export class Run {
     this.robots = new Robots(this.layout, this.motion, this.events);
     this.stock = new Stock(this.layout, this.events);
     this.stations = new Stations(this.layout, this.events);
+    this.orders = new Orders(this.events);
     this.passages = new Passages(this.layout, this.motion, this.robots);
     this.known_us = Math.min(known_s, header.end_s) * 1e6;
   }

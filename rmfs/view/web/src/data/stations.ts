@@ -1,4 +1,4 @@
-/** Stations over time: open orders, units handled, visits, whether they are switched on. */
+/** Stations over time: units handled, visits, whether they are switched on. */
 
 import { type Events, Kind } from "./events";
 import type { Layout } from "./layout";
@@ -6,7 +6,6 @@ import type { Track } from "./motion";
 import { Steps } from "./steps";
 
 export interface StationFigures {
-  openOrders: number;
   /** Units picked, bundles stored or, elsewhere, pods that left, per hour within the last hour. */
   perHour: number;
   idleShare: number;
@@ -19,7 +18,6 @@ const HOUR_US = 3600e6;
 const WORK = new Set(["pick", "replenishment"]);
 
 export class Stations {
-  private readonly open: Steps<number>[];
   private readonly handled: Steps<number>[];
   private readonly active: Steps<boolean>[];
   /** By waypoint, the stations in whose queue it is. */
@@ -30,7 +28,6 @@ export class Stations {
     events: Events,
   ) {
     const stations = layout.header.stations;
-    this.open = stations.map(() => new Steps(0));
     this.handled = stations.map(() => new Steps(0));
     this.active = stations.map(() => new Steps(true));
     stations.forEach(({ queue }, station) => {
@@ -40,9 +37,7 @@ export class Stations {
       }
     });
     events.onEach(({ kind, station, units, time_us }) => {
-      if (kind === Kind.ORDER_ASSIGNED) this.change(this.open[station], time_us, 1);
-      else if (kind === Kind.ORDER_COMPLETED) this.change(this.open[station], time_us, -1);
-      else if (kind === Kind.UNIT_PICKED || kind === Kind.BUNDLE_STORED) {
+      if (kind === Kind.UNIT_PICKED || kind === Kind.BUNDLE_STORED) {
         this.change(this.handled[station], time_us, 1);
       } else if (kind === Kind.VISIT_ENDED && !WORK.has(stations[station].kind)) {
         this.change(this.handled[station], time_us, 1);
@@ -57,7 +52,6 @@ export class Stations {
     const count = handled.at(time_us) - handled.at(time_us - window_us);
     const busy_us = count * this.layout.header.stations[station].transfer_s * 1e6;
     return {
-      openOrders: this.open[station].at(time_us),
       perHour: (count * HOUR_US) / window_us,
       idleShare: Math.max(1 - busy_us / window_us, 0),
       active: this.active[station].at(time_us),

@@ -13,7 +13,7 @@ import {
   PlaneGeometry,
   type Sprite,
 } from "three";
-import type { Layout } from "../data/layout";
+import type { Colours, Layout } from "../data/layout";
 import { type Bodies, bodies } from "./bodies";
 import { label, resize } from "./labels";
 import { faint, GROUND, type Theme } from "./palette";
@@ -40,8 +40,8 @@ export class Floor {
     this.group.add(...this.tiers);
     this.tiers.forEach((tier, number) => {
       tier.add(this.ground(number), this.roads(number));
-      const storage = this.cells(number, layout.isStorage, this.colour("storage"), 0.8);
-      const zone = this.cells(number, layout.isQueue, this.colour("queue_zone"), 1);
+      const storage = this.cells(number, layout.isStorage, this.colours.pod, 0.8);
+      const zone = this.cells(number, layout.isQueue, layout.header.colours.queue_zone, 1);
       this.zones.push(zone);
       tier.add(storage.mesh, zone.mesh);
     });
@@ -69,8 +69,8 @@ export class Floor {
     for (const zone of this.zones) zone.mesh.visible = shown;
   }
 
-  private colour(name: string): string {
-    return this.layout.header.colours[name];
+  private get colours(): Colours {
+    return this.layout.header.themes[this.theme];
   }
 
   private ground(tier: number): Mesh {
@@ -119,11 +119,11 @@ export class Floor {
   private addStations(): void {
     const { x, y, tier, header } = this.layout;
     header.stations.forEach((station, number) => {
-      const { colour, letter, waypoint, radius_m } = station;
+      const { letter, waypoint, radius_m } = station;
       const size_m = 1.6 * radius_m;
       const body = new Mesh(
         shaded(new CylinderGeometry(size_m, size_m, 0.06, 24).rotateX(Math.PI / 2)),
-        shadedMaterial(colour),
+        shadedMaterial(this.colours.stations[number]),
       );
       body.position.set(x[waypoint], y[waypoint], 0.02);
       this.stations.push(body);
@@ -156,7 +156,7 @@ export class Floor {
     for (const waypoint of header.elevators.flat()) {
       const body = new Mesh(
         shaded(new BoxGeometry(side, side, 0.05)),
-        shadedMaterial(this.colour("elevator")),
+        shadedMaterial(this.colours.elevator),
       );
       body.position.set(x[waypoint], y[waypoint], 0);
       this.tiers[tier[waypoint]].add(body);

@@ -3,7 +3,7 @@
 import { Color, MeshBasicMaterial, PlaneGeometry } from "three";
 import type { Run } from "../data/run";
 import { type Bodies, bodies } from "./bodies";
-import { amount, logShare, type Theme } from "./palette";
+import { amount, logShare, signed, type Theme } from "./palette";
 import type { Placement } from "./placement";
 
 const DECADES = 4;
@@ -26,19 +26,41 @@ export class HeatSquares {
 
   /** Draws counts per waypoint on a scale; waypoints without any stay empty. */
   draw(counts: Float64Array, range: Range, placement: Placement, theme: Theme): void {
+    this.lay(counts, placement, (count) =>
+      amount(logShare(count, range.least, range.most), theme, this.colour),
+    );
+  }
+
+  /** Draws differences per waypoint: more in run A in its colour, more in run B in that of B. */
+  drawDifference(
+    differences: Float64Array,
+    most: number,
+    placement: Placement,
+    theme: Theme,
+  ): void {
+    this.lay(differences, placement, (difference) =>
+      signed(differenceShare(difference, most), theme, this.colour),
+    );
+  }
+
+  private lay(values: Float64Array, placement: Placement, colour: (value: number) => Color): void {
     const { x, y, tier } = this.run.layout;
     const size = { x: 1, y: 1, z: 1 };
-    counts.forEach((count, v) => {
-      if (!(count > 0) || !placement.shown[tier[v]]) {
+    values.forEach((value, v) => {
+      if (value === 0 || !placement.shown[tier[v]]) {
         this.squares.hide(v);
         return;
       }
       const at = { x: x[v] + placement.x[tier[v]], y: y[v], z: placement.z[tier[v]] + 0.005 };
       this.squares.place(v, at, size);
-      const share = logShare(count, range.least, range.most);
-      this.squares.paint(v, amount(share, theme, this.colour));
+      this.squares.paint(v, colour(value));
     });
   }
+}
+
+/** Returns where a difference is on a scale that is logarithmic to both sides, -1 to 1. */
+export function differenceShare(difference: number, most: number): number {
+  return (Math.sign(difference) * Math.log1p(Math.abs(difference))) / Math.log1p(most);
 }
 
 /** Returns the least and the greatest of all counts above zero, not more than `DECADES` apart. */

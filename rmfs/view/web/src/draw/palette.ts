@@ -19,9 +19,16 @@ function words(header: Header, kinds: Kinds): readonly string[] {
 }
 
 /** Returns the colours of robots, in the order in which tasks, states and loads are numbered. */
-export function robotColours(header: Header, kinds: Kinds): string[] {
-  return words(header, kinds).map((word) => header.robot_colours[kinds][word]);
+export function robotColours(header: Header, kinds: Kinds, theme: Theme): string[] {
+  const colours = kinds === "task" ? header.themes[theme].task : header.robot_colours[kinds];
+  return words(header, kinds).map((word) => colours[word]);
 }
+
+/** Lines of runs in charts, in the order of the runs. */
+export const LINES: Record<Theme, readonly string[]> = {
+  light: ["#0072B2", "#C24E00"],
+  dark: ["#56B4E9", "#FF9A4D"],
+};
 
 export const GROUND: Record<Theme, { back: string; floor: string; line: string; text: string }> = {
   light: { back: "#F4F5F7", floor: "#FFFFFF", line: "#D0D0D0", text: "#1B1F24" },
@@ -52,10 +59,14 @@ const MAGMA = [
  */
 export function amount(share: number, theme: Theme, into: Color): Color {
   const clipped = Math.min(Math.max(share, 0), 1);
-  const along = theme === "light" ? 0.92 - 0.82 * clipped : 0.22 + 0.75 * clipped;
-  const place = along * (MAGMA.length - 1);
-  const left = Math.min(Math.floor(place), MAGMA.length - 2);
-  return into.copy(MAGMA[left]).lerp(MAGMA[left + 1], place - left);
+  return between(MAGMA, theme === "light" ? 0.92 - 0.82 * clipped : 0.22 + 0.75 * clipped, into);
+}
+
+/** Writes the colour at a share of the way along some colours into `into`. */
+export function between(colours: readonly Color[], share: number, into: Color): Color {
+  const place = Math.min(Math.max(share, 0), 1) * (colours.length - 1);
+  const left = Math.min(Math.floor(place), colours.length - 2);
+  return into.copy(colours[left]).lerp(colours[left + 1], place - left);
 }
 
 /** Returns the place of a value between two others on a logarithmic scale, 0 to 1. */
@@ -70,7 +81,18 @@ export interface Entry {
 }
 
 /** Returns what the colours of robots mean. */
-export function robotEntries(header: Header, kinds: Kinds): Entry[] {
-  const colours = robotColours(header, kinds);
+export function robotEntries(header: Header, kinds: Kinds, theme: Theme): Entry[] {
+  const colours = robotColours(header, kinds, theme);
   return words(header, kinds).map((label, i) => ({ label, colour: colours[i] }));
 }
+
+/** Writes the colour of a share, -1 (run A) to 1 (run B), into `into`; none has that of the floor. */
+export function signed(share: number, theme: Theme, into: Color): Color {
+  const [a, b] = LINES[theme];
+  const strength = 0.15 + 0.85 * Math.min(Math.abs(share), 1);
+  return into
+    .set(GROUND[theme].floor)
+    .lerp(OTHER.set(share < 0 ? a : b), share === 0 ? 0 : strength);
+}
+
+const OTHER = new Color();

@@ -7,7 +7,7 @@ import {
   LineBasicMaterial,
   LineSegments,
 } from "three";
-import { Piece, type Pose } from "../data/motion";
+import { DRIVES, Piece, type Pose } from "../data/motion";
 import type { Run } from "../data/run";
 import type { Placement } from "./placement";
 
@@ -48,7 +48,7 @@ export class Paths {
       const kind = track.kind[row];
       const transfer = kind === Piece.LIFT || kind === Piece.SET_DOWN;
       if (row > pose.row && (transfer || served.at(track.start[row]) >= 0)) break;
-      if (kind !== Piece.RUN) continue;
+      if (!DRIVES.has(kind)) continue;
       const to = track.to[row];
       const floor = tier[to];
       if (placement.shown[floor] && (row > pose.row || time_us < track.endOf(row))) {

@@ -27,7 +27,7 @@ export class PodBodies {
   private shrink = 1;
   /** The pod that was coloured last. */
   private next = 0;
-  private readonly plain: Color;
+  private readonly plain: Record<Theme, Color>;
   private readonly colour = new Color();
   private readonly shapes = {
     "2d": shaded(new PlaneGeometry(1, 1)),
@@ -40,7 +40,8 @@ export class PodBodies {
     const { layout } = run;
     this.bodies = bodies(this.shapes["2d"], shadedMaterial(), layout.podWaypoint.length);
     this.side = Math.min(2 * layout.header.pod_radius_m, 0.85 * layout.pitch_m);
-    this.plain = new Color(layout.header.colours.storage);
+    const { light, dark } = layout.header.themes;
+    this.plain = { light: new Color(light.pod), dark: new Color(dark.pod) };
   }
 
   /**
@@ -108,7 +109,7 @@ export class PodBodies {
 
   private colourOf(pod: number, time_us: number, mode: PodMode, theme: Theme): Color {
     const { stock } = this.run;
-    if (mode === "plain") return this.plain;
+    if (mode === "plain") return this.plain[theme];
     return amount(share(stock, pod, time_us, mode), theme, this.colour);
   }
 }

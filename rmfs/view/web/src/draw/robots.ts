@@ -13,7 +13,7 @@ import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 import { Piece, type Pose } from "../data/motion";
 import type { Run } from "../data/run";
 import { type Bodies, bodies } from "./bodies";
-import { amount, type Kinds, robotColours, type Theme } from "./palette";
+import { amount, between, type Kinds, robotColours, type Theme } from "./palette";
 import type { Placement } from "./placement";
 import { shaded, shadedMaterial } from "./shapes";
 
@@ -47,7 +47,7 @@ export class RobotBodies {
   private readonly stood: Int32Array;
   private placement: Placement | undefined;
   private readonly colour = new Color();
-  private readonly kinds: Record<Kinds, Color[]>;
+  private readonly colours: Record<Theme, Record<Kinds | "delay", Color[]>>;
 
   constructor(private readonly run: Run) {
     const { robotKind, header } = run.layout;
@@ -57,8 +57,13 @@ export class RobotBodies {
     this.noses = bodies(nose, new MeshBasicMaterial({ color: "#111111" }), robotKind.length);
     this.stood = new Int32Array(robotKind.length).fill(-1);
     this.group.add(this.bodies.mesh, this.noses.mesh);
-    const colours = (kinds: Kinds) => robotColours(header, kinds).map((hex) => new Color(hex));
-    this.kinds = { task: colours("task"), state: colours("state"), load: colours("load") };
+    const colours = (theme: Theme) => {
+      const made = (hexes: string[]) => hexes.map((hex) => new Color(hex));
+      const of = (kinds: Kinds) => made(robotColours(header, kinds, theme));
+      const { delay } = header.themes[theme];
+      return { task: of("task"), state: of("state"), load: of("load"), delay: made(delay) };
+    };
+    this.colours = { light: colours("light"), dark: colours("dark") };
   }
 
   /** Puts all robots where they are; those that stand where they stood are not touched. */
@@ -99,11 +104,12 @@ export class RobotBodies {
 
   private colourOf(robot: number, pose: Pose, time_us: number, mode: RobotMode, theme: Theme) {
     const { robots } = this.run;
-    if (mode === "task") return this.kinds.task[robots.tasks[robot].at(time_us).kind];
-    if (mode === "state") return this.kinds.state[robots.state(robot, time_us, pose)];
-    if (mode === "load") return this.kinds.load[pose.pod >= 0 ? 1 : 0];
+    const colours = this.colours[theme];
+    if (mode === "task") return colours.task[robots.tasks[robot].at(time_us).kind];
+    if (mode === "state") return colours.state[robots.state(robot, time_us, pose)];
+    if (mode === "load") return colours.load[pose.pod >= 0 ? 1 : 0];
     if (mode === "charge") return amount(robots.levels[robot].at(time_us), theme, this.colour);
-    return amount(robots.delay_s(robot, time_us) / LONGEST_DELAY_S, theme, this.colour);
+    return between(colours.delay, robots.delay_s(robot, time_us) / LONGEST_DELAY_S, this.colour);
   }
 }
 

@@ -3,13 +3,15 @@
 import type { Run } from "../data/run";
 import { type Range, rangeOf } from "../draw/heat";
 import { charts } from "./charts";
+import { nextEvent } from "./details";
 import { button, h } from "./dom";
 import { keyList, listen } from "./keys";
 import { legend } from "./legend";
 import { fromFragment, toFragment } from "./link";
 import { LiveLink } from "./live";
 import { Pane } from "./pane";
-import { nextEvent, panel } from "./panel";
+import { panel } from "./panel";
+import { aside, folding } from "./room";
 import type { Session } from "./sources";
 import { startForm } from "./start";
 import { Store, type ViewState } from "./state";
@@ -24,7 +26,24 @@ const CATCHING_UP_S = 0.15;
 const FAR_S = 30;
 /** A frame that took longer counts as so long: a page that was hidden does not jump ahead. */
 const LONGEST_FRAME_S = 0.25;
-const HEAT_PARTS: (keyof ViewState)[] = ["heat", "from_s", "to_s", "theme", "mode", "tier"];
+const HEAT_PARTS: (keyof ViewState)[] = [
+  "heat",
+  "overlay",
+  "from_s",
+  "to_s",
+  "theme",
+  "mode",
+  "tier",
+];
+
+/** Returns when the warm-up of a run is over: what is measured, and shown first, begins there. */
+function measuredFrom({ header, known_us }: Run): number {
+  return header.warmup_s < known_us / 1e6 ? header.warmup_s : 0;
+}
+
+function greatest(values: Float64Array): number {
+  return values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+}
 
 export class App {
   readonly store: Store;
@@ -41,6 +60,8 @@ export class App {
   private readonly side: { update(): void }[];
   private readonly notice = h("div", { className: "notice", role: "status" });
 
+  private readonly captions: string[];
+
   /** The run that goes on, if one does. */
   readonly live: LiveLink | undefined;
 
@@ -48,10 +69,11 @@ export class App {
     readonly runs: Run[],
     session: Session,
   ) {
-    const { state, cameras } = fromFragment(location.hash, this.end_s);
+    const begin_s = session.live ? this.end_s : Math.max(...runs.map(measuredFrom));
+    const { state, cameras } = fromFragment(location.hash, begin_s, this.end_s);
     state.selection = this.existing(state.selection);
     this.store = new Store(state);
-    const captions = runs.map(({ header }, n) => {
+    this.captions = runs.map(({ header }, n) => {
       const { layout, scenario, controllers } = header.names;
       const letter = runs.length > 1 ? `${"AB"[n] ?? n}: ` : "";
       return `${letter}${header.title} · ${layout}, ${scenario}, ${controllers}, seed ${header.seed}`;
@@ -59,7 +81,7 @@ export class App {
     const changed = () => {
       this.dirty = true;
     };
-    this.panes = runs.map((run, n) => new Pane(run, n, this.store, captions[n], changed));
+    this.panes = runs.map((run, n) => new Pane(run, n, this.store, this.captions[n], changed));
     if (session.live) {
       const come = () => {
         this.dirty = true;
@@ -113,7 +135,9 @@ export class App {
 
   private existing(selection: ViewState["selection"]): ViewState["selection"] {
     if (selection === null) return null;
-    const layout = this.runs[selection.run]?.layout;
+    const run = this.runs[selection.run];
+    if (selection.what === "order") return run?.orders.exists(selection.index) ? selection : null;
+    const layout = run?.layout;
     const counts = {
       robot: layout?.robotWaypoint.length,
       pod: layout?.podWaypoint.length,
@@ -134,15 +158,30 @@ export class App {
       fit: () => this.fit(),
       next: () => nextEvent(store, panes),
       help: () => keys.showModal(),
+      time: () => document.querySelector<HTMLInputElement>("#time")?.select(),
     };
     listen(store, commands, tiers, end_s);
     const details = panel(store, panes);
-    const course = charts(store, runs, end_s);
-    const colours = legend(store, runs[0].header, () => this.range);
+    const course = folding("charts", "Charts", charts(store, runs, end_s));
+    const colours = folding(
+      "legend",
+      "Legend",
+      legend(store, runs[0].header, () => this.range),
+    );
     document.body.replaceChildren(
-      toolbar(store, tiers, session.form ? { ...commands, start: () => this.start() } : commands),
-      h("main", {}, ...panes.map(({ root }) => root)),
-      h("aside", {}, details.root, course.root, colours.root),
+      toolbar(
+        store,
+        tiers,
+        this.comparable,
+        session.form ? { ...commands, start: () => this.start() } : commands,
+      ),
+      h(
+        "main",
+        {},
+        h("div", { className: "panes" }, ...panes.map(({ root }) => root)),
+        colours.root,
+      ),
+      aside(details.root, course.root),
       timeline(store, runs[0].header.warmup_s, end_s, this.live?.root),
       this.notice,
       keys,
@@ -153,13 +192,16 @@ export class App {
   private react(names: ReadonlySet<keyof ViewState>): void {
     this.dirty = true;
     if (names.has("theme")) document.documentElement.dataset.theme = this.store.state.theme;
+    const { overlay, heat } = this.store.state;
+    if (names.has("overlay") && overlay && heat === "off") this.store.set({ heat: "visits" });
     if (HEAT_PARTS.some((name) => names.has(name))) this.heatStale = true;
     const seeking = names.has("time_s") && !this.store.state.playing && !this.following;
     if (this.live && !this.following && (seeking || this.store.state.playing)) {
       this.live.following = false;
       this.live.update();
     }
-    if (names.has("selection") || seeking) this.figures_ms = Number.NEGATIVE_INFINITY;
+    if (names.has("selection") || names.has("board") || names.has("grouping") || seeking)
+      this.figures_ms = Number.NEGATIVE_INFINITY;
     if (seeking) for (const pane of this.panes) pane.repaint();
   }
 
@@ -201,7 +243,7 @@ export class App {
 
   private countHeat(): void {
     this.heatStale = false;
-    const { heat, from_s, to_s } = this.store.state;
+    const { heat, overlay, from_s, to_s } = this.store.state;
     if (heat !== "off") {
       for (const pane of this.panes) {
         pane.counts = pane.run.passages.count(heat, from_s * 1e6, to_s * 1e6);
@@ -209,6 +251,30 @@ export class App {
       this.range = rangeOf(this.panes.flatMap(({ counts }) => (counts ? [counts] : [])));
     }
     for (const pane of this.panes) pane.showHeat(this.range);
+    if (this.comparable) this.compare(overlay && heat !== "off");
+  }
+
+  /** Shows the difference of the heat maps of two runs in one picture, or the runs side by side. */
+  private compare(overlaid: boolean): void {
+    const [a, b] = this.panes;
+    b.root.hidden = overlaid;
+    const differences = overlaid
+      ? b.counts?.map((count, v) => count - (a.counts?.[v] ?? 0))
+      : undefined;
+    this.range = differences === undefined ? this.range : { least: 0, most: greatest(differences) };
+    a.showDifference(differences, this.range.most);
+    a.caption = overlaid ? `${this.captions[1]}, less ${this.captions[0]}` : this.captions[0];
+  }
+
+  /** Whether there are two runs on one floor. */
+  private get comparable(): boolean {
+    const [a, b] = this.runs.map(({ layout }) => layout);
+    return (
+      b !== undefined &&
+      a.x.length === b.x.length &&
+      a.x.every((x, v) => x === b.x[v]) &&
+      a.y.every((y, v) => y === b.y[v])
+    );
   }
 
   private fit(): void {
@@ -235,6 +301,11 @@ export class App {
   }
 
   private copyLink(): void {
+    // a page in a frame of a notebook has no address of its own
+    if (location.protocol === "about:") {
+      this.say("this page has no address: open its file for links");
+      return;
+    }
     const link = this.link();
     history.replaceState(null, "", link);
     navigator.clipboard?.writeText(link).then(

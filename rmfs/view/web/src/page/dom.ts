@@ -51,3 +51,29 @@ export function clock(time_s: number): string {
   const two = (value: number) => String(value).padStart(2, "0");
   return `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)}`;
 }
+
+/**
+ * Makes what is inside an element look as inside another one. What is the same stays, so that a
+ * button which is being pressed is still there when it is let go.
+ */
+export function renew(old: Element, made: Element): void {
+  const before = [...old.children];
+  const after = [...made.children];
+  after.forEach((child, n) => {
+    const present = before[n];
+    if (present === undefined) old.append(child);
+    else if (present.isEqualNode(child)) return;
+    else if (isFrame(present) && isFrame(child) && sameTag(present, child)) renew(present, child);
+    else present.replaceWith(child);
+  });
+  for (const child of before.slice(after.length)) child.remove();
+}
+
+/** Whether an element holds other elements and no text of its own. */
+function isFrame(element: Element): boolean {
+  return [...element.childNodes].every((node) => node.nodeType === Node.ELEMENT_NODE);
+}
+
+function sameTag(one: Element, other: Element): boolean {
+  return one.cloneNode(false).isEqualNode(other.cloneNode(false));
+}

@@ -11,6 +11,8 @@ export interface Commands {
   fit(): void;
   next(): void;
   help(): void;
+  /** Lets a time be typed. */
+  time(): void;
 }
 
 export const KEYS: [string, string][] = [
@@ -19,6 +21,8 @@ export const KEYS: [string, string][] = [
   [", .", "0.1 s back, forward"],
   ["+ −", "faster, slower"],
   ["Home End", "start, end"],
+  ["g", "type a time: 10:35 (h:mm), 0:10:35 (h:mm:ss) or seconds"],
+  ["o", "orders or stations"],
   ["2 3", "plan, space"],
   ["t", "next tier"],
   ["r p h", "robots by, pods by, heat map"],
@@ -77,6 +81,11 @@ export function listen(store: Store, commands: Commands, tiers: number, end_s: (
     s: commands.screenshot,
     l: commands.copyLink,
     "?": commands.help,
+    g: commands.time,
+    o: () => {
+      const board = store.state.board === "orders" ? "stations" : "orders";
+      store.set({ board, selection: null });
+    },
   };
   window.addEventListener("keydown", (event) => {
     const { target, ctrlKey, metaKey, altKey } = event;

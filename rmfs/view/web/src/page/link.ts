@@ -2,9 +2,10 @@
 
 import { initialState, type Selection, type ViewState } from "./state";
 
-const TEXTS = ["mode", "robots", "pods", "heat", "theme"] as const;
+const TEXTS = ["mode", "robots", "pods", "heat", "theme", "board", "grouping"] as const;
 const NUMBERS = ["time_s", "speed", "tier", "from_s", "to_s"] as const;
-const FLAGS = ["paths", "zones", "follow"] as const;
+const CHOSEN = ["robot", "pod", "station", "order"] as const;
+const FLAGS = ["paths", "zones", "follow", "overlay"] as const;
 
 const ALLOWED: Record<(typeof TEXTS)[number], readonly string[]> = {
   mode: ["2d", "3d"],
@@ -12,6 +13,8 @@ const ALLOWED: Record<(typeof TEXTS)[number], readonly string[]> = {
   pods: ["plain", "fill", "popularity", "age"],
   heat: ["off", "visits", "waiting"],
   theme: ["light", "dark"],
+  board: ["stations", "orders"],
+  grouping: ["order", "pod"],
 };
 
 /** Writes a state, and the cameras beside it, as the fragment of an address. */
@@ -32,10 +35,13 @@ export function toFragment(state: ViewState, cameras: number[][]): string {
 /** Reads a fragment; what it does not say, or says wrongly, is as at the beginning. */
 export function fromFragment(
   fragment: string,
+  begin_s: number,
   end_s: number,
 ): { state: ViewState; cameras: number[][] } {
   const words = new URLSearchParams(fragment.replace(/^#/, ""));
-  const state = initialState(end_s);
+  const state = initialState(begin_s, end_s);
+  // who was sent a link is to see what the sender saw
+  if (words.has("time_s")) state.playing = false;
   for (const name of TEXTS) {
     const value = words.get(name);
     if (value !== null && ALLOWED[name].includes(value)) Object.assign(state, { [name]: value });
@@ -57,6 +63,6 @@ export function fromFragment(
 
 function chosen(text: string | null): Selection | null {
   const [run, what, index] = (text ?? "").split(".");
-  if (what !== "robot" && what !== "pod" && what !== "station") return null;
-  return { run: Number(run), what, index: Number(index) };
+  const chosen = CHOSEN.find((one) => one === what);
+  return chosen === undefined ? null : { run: Number(run), what: chosen, index: Number(index) };
 }

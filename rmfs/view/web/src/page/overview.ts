@@ -51,7 +51,7 @@ function stationTable(store: Store, pane: Pane, run: number) {
       const now = pane.run.stations.figures(index, store.state.time_s * 1e6);
       const slots = stations[index].order_slots;
       const texts = [
-        slots > 0 ? `${now.openOrders}/${slots}` : "",
+        slots > 0 ? `${pane.run.orders.countOpen(index, store.state.time_s * 1e6)}/${slots}` : "",
         now.perHour.toFixed(0),
         stations[index].transfer_s > 0 ? `${(100 * now.idleShare).toFixed(0)} %` : "",
         String(waiting[index].length),

@@ -1,6 +1,6 @@
 /** One run on its canvas: brings the drawn bodies to the state and time that are asked for. */
 
-import { Mesh, MeshBasicMaterial, RingGeometry } from "three";
+import type { Mesh } from "three";
 import { newPose, type Pose } from "../data/motion";
 import type { Run } from "../data/run";
 import { Floor } from "../draw/floor";
@@ -8,9 +8,11 @@ import { HeatSquares, type Range } from "../draw/heat";
 import { Paths } from "../draw/paths";
 import { Placement } from "../draw/placement";
 import { PodBodies } from "../draw/pods";
+import { Rings } from "../draw/rings";
 import { RobotBodies } from "../draw/robots";
 import { Stage } from "../draw/stage";
 import { h } from "./dom";
+import { Hint, hintOf, hintOfWaypoint, waypointUnder } from "./hints";
 import type { Chosen, Selection, Store, ViewState } from "./state";
 
 /** Robots change colour seldom: it is looked up anew after so much wall time, or a jump. */
@@ -18,6 +20,8 @@ const REPAINT_MS = 200;
 const HIT_M = 1.5;
 /** A click that moved further was a drag of the camera. */
 const DRAGGED_PX = 4;
+
+type Place = { what: Exclude<Chosen, "order">; index: number };
 
 export class Pane {
   readonly root: HTMLElement;
@@ -31,8 +35,10 @@ export class Pane {
   private readonly pods: PodBodies;
   private readonly heat: HeatSquares;
   private readonly paths: Paths;
-  private readonly ring: Mesh;
+  private readonly rings = new Rings();
+  private readonly title: HTMLElement;
   private pressed = [0, 0];
+  private readonly hint: Hint;
   private painted_ms = Number.NEGATIVE_INFINITY;
 
   constructor(
@@ -42,28 +48,26 @@ export class Pane {
     caption: string,
     private readonly changed: () => void,
   ) {
+    this.title = h("div", { className: "caption" }, caption);
     const canvas = h("canvas", { tabIndex: 0, ariaLabel: `warehouse of ${caption}` });
-    this.root = h(
-      "div",
-      { className: "pane" },
-      canvas,
-      h("div", { className: "caption" }, caption),
-    );
+    this.root = h("div", { className: "pane" }, canvas, this.title);
     this.stage = new Stage(canvas, changed);
+    this.hint = new Hint(canvas, (x, y) => this.told(x, y));
+    this.root.append(this.hint.root);
     this.poses = Array.from({ length: run.motion.robots }, newPose);
     this.robots = new RobotBodies(run);
     this.pods = new PodBodies(run);
     this.heat = new HeatSquares(run);
     this.paths = new Paths(run, "#D55E00");
-    this.ring = new Mesh(
-      new RingGeometry(0.62, 0.8, 40),
-      new MeshBasicMaterial({ color: "#E6007E", depthTest: false, transparent: true }),
-    );
-    this.ring.renderOrder = 9;
     const { mode, tier, theme } = store.state;
     this.placement = new Placement(run.layout, mode, tier);
     this.floor = new Floor(run.layout, theme);
-    this.stage.scene.add(this.robots.group, this.pods.bodies.mesh, this.paths.lines, this.ring);
+    this.stage.scene.add(
+      this.robots.group,
+      this.pods.bodies.mesh,
+      this.paths.lines,
+      this.rings.group,
+    );
     this.dress();
     this.arrange();
     store.listen((names) => this.react(names));
@@ -77,11 +81,27 @@ export class Pane {
     }).observe(this.root);
   }
 
+  /** Says what the picture shows. */
+  set caption(text: string) {
+    this.title.textContent = text;
+  }
+
   /** Draws the heat map of counts on a scale that runs side by side share. */
   showHeat(range: Range): void {
     const { heat, theme } = this.store.state;
     this.heat.squares.mesh.visible = heat !== "off";
     if (this.counts !== undefined) this.heat.draw(this.counts, range, this.placement, theme);
+    this.stage.relay();
+  }
+
+  /** Draws how much more there is in run B than in run A, and nothing that moves. */
+  showDifference(differences: Float64Array | undefined, most: number): void {
+    const shown = differences !== undefined;
+    this.robots.group.visible = this.pods.bodies.mesh.visible = this.paths.lines.visible = !shown;
+    this.counts = differences ?? this.counts;
+    if (differences === undefined) return;
+    this.heat.squares.mesh.visible = true;
+    this.heat.drawDifference(differences, most, this.placement, this.store.state.theme);
     this.stage.relay();
   }
 
@@ -111,6 +131,17 @@ export class Pane {
     this.floor.scaleLabels(this.stage.pixel_m);
     this.mark(state.selection, time_us);
     this.stage.render();
+    this.hint.update(now_ms);
+  }
+
+  /** Says what is at a point of the page, the waypoint if nothing stands there. */
+  private told(clientX: number, clientY: number): string {
+    const { overlay, heat } = this.store.state;
+    const hit = overlay && heat !== "off" ? null : this.pick(clientX, clientY);
+    if (hit !== null) return hintOf(this, hit, this.store.state.time_s * 1e6);
+    const ray = this.stage.ray(clientX, clientY).ray;
+    const waypoint = waypointUnder(this.run.layout, this.placement, ray);
+    return waypoint < 0 ? "" : hintOfWaypoint(this, waypoint, this.store.state);
   }
 
   private react(names: ReadonlySet<keyof ViewState>): void {
@@ -160,19 +191,40 @@ export class Pane {
   }
 
   private mark(selection: Selection | null, time_us: number): void {
-    this.ring.visible = selection !== null && this.isHere(selection);
-    if (selection === null || !this.ring.visible) return;
-    const { x, y, z, shown } = this.whereIs(selection, time_us);
-    this.ring.visible = shown;
-    this.ring.position.set(x, y, z + (this.placement.mode === "2d" ? 1 : 0.05));
-    if (this.store.state.follow && selection.what !== "station") this.stage.follow(x, y, z);
+    const marked =
+      selection !== null && this.isHere(selection) ? this.marked(selection, time_us) : [];
+    const places = marked.map((one) => this.whereIs(one, time_us));
+    this.rings.show(places, this.placement.mode === "2d" ? 1 : 0.05);
+    const movable = selection?.what === "robot" || selection?.what === "pod";
+    if (this.store.state.follow && movable && places.length > 0) {
+      const [{ x, y, z }] = places;
+      this.stage.follow(x, y, z);
+    }
+  }
+
+  /** Returns what is to be marked: of an order its stations, and the pods and robots under way. */
+  private marked(selection: Selection, time_us: number): Place[] {
+    const { what, index } = selection;
+    if (what !== "order") return [{ what, index }];
+    const { orders } = this.run;
+    if (!orders.exists(index, time_us)) return [];
+    const stays = orders.course(index)?.stays ?? [];
+    const here = stays.filter(({ from_us, to_us }) => from_us <= time_us && time_us < to_us);
+    const brought = orders.lines(index, time_us).flatMap(({ bringing }) => bringing);
+    return [
+      ...here.map(({ station }) => ({ what: "station" as const, index: station })),
+      ...brought.flatMap(({ pod, robot }) => [
+        { what: "pod" as const, index: pod },
+        { what: "robot" as const, index: robot },
+      ]),
+    ];
   }
 
   private isHere(selection: Selection | null): boolean {
     return selection?.run === this.number;
   }
 
-  private whereIs(selection: Selection, time_us: number) {
+  private whereIs(selection: Place, time_us: number) {
     const { layout, places } = this.run;
     if (selection.what === "robot") return this.placement.of(this.poses[selection.index]);
     let waypoint: number;

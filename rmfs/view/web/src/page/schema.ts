@@ -1,6 +1,7 @@
 /** Fields of a form, made from the declaration of parameters (JSON Schema). */
 
 import { h } from "./dom";
+import { inWords, spoken, withoutUnit } from "./words";
 
 export interface Schema {
   $ref?: string;
@@ -99,12 +100,21 @@ function read(name: string, inner: Field): unknown {
 }
 
 function row(name: string, description: string, root: HTMLElement): HTMLElement {
-  const about = h("small", {}, description);
+  const about = h("small", {}, withoutUnit(description, inWords(name).unit));
   if (root.matches(".fields, .alternatives")) {
-    return h("details", {}, h("summary", {}, name, " ", about), root);
+    const summary = h("summary", { title: name }, inWords(name).words, " ", about);
+    return h("details", {}, summary, root);
   }
-  const label = h("label", { title: description }, h("span", {}, name), root, about);
-  return label;
+  const { words, unit } = inWords(name);
+  const after = h("output", { className: "unit" }, unit);
+  if (unit === "s" && root instanceof HTMLInputElement) {
+    const say = () => {
+      after.textContent = `${unit} ${spoken(root.valueAsNumber)}`;
+    };
+    root.addEventListener("input", say);
+    say();
+  }
+  return h("label", { title: `${name}: ${description}` }, h("span", {}, words), root, after, about);
 }
 
 function field(schema: Schema, value: unknown, known: Definitions): Field {

@@ -2,6 +2,7 @@
 
 import type { Rule } from "../data/layout";
 import { button, choice, h } from "./dom";
+import { Preview } from "./preview";
 import { type Problems, ruleField } from "./rules";
 import { changes, type Field, form, type Schema } from "./schema";
 import { ask } from "./sources";
@@ -24,6 +25,8 @@ type Read = () => Record<string, unknown>;
 
 /** Fills an element with the form. */
 export async function startForm(root: HTMLElement, chosen: Record<string, string> = {}) {
+  const dark = window.matchMedia("(prefers-color-scheme: dark)").matches;
+  document.documentElement.dataset.theme ??= dark ? "dark" : "light";
   const query = new URLSearchParams(chosen);
   const offer = (await (await ask(`form?${query}`)).json()) as Offer;
   const files = Object.entries(offer.names).map(([part, names]) => {
@@ -47,10 +50,18 @@ export async function startForm(root: HTMLElement, chosen: Record<string, string
   const message = h("p", { className: "wrong", role: "alert" });
   const reads: Read[] = [];
   const sections = [
-    section("Layout", part("layout", offer.layout, reads)),
-    section("Scenario", part("scenario", offer.scenario, reads)),
-    section("Controllers", controllers(offer, reads)),
+    section("Layout: the warehouse", part("layout", offer.layout, reads)),
+    section("Scenario: orders, stock and time", part("scenario", offer.scenario, reads)),
+    section("Controllers: the rules that decide", controllers(offer, reads)),
   ];
+  const preview = new Preview();
+  const changed = () => {
+    try {
+      preview.show(offer.chosen.layout, said(reads.slice(0, 1)));
+    } catch (reason) {
+      preview.refuse(reason);
+    }
+  };
   const start = button("start the run", "Starts it and goes to its page", () => {
     message.textContent = "";
     begin().catch((reason: unknown) => {
@@ -60,7 +71,7 @@ export async function startForm(root: HTMLElement, chosen: Record<string, string
   });
   start.id = "start-run";
   const begin = async () => {
-    const set = Object.assign({}, ...reads.map((read) => read())) as Record<string, unknown>;
+    const set = said(reads);
     start.disabled = true;
     const answer = await ask("start", {
       ...offer.chosen,
@@ -76,18 +87,31 @@ export async function startForm(root: HTMLElement, chosen: Record<string, string
   root.replaceChildren(
     h("h1", {}, "A new run"),
     h("div", { className: "files" }, ...files),
-    ...sections,
     h(
       "div",
-      { className: "files" },
-      labelled("seed", seed),
-      labelled("simulated seconds per second", speed),
-      labelled("folder below results/", out),
-      labelled("write its trace", trace),
-      start,
+      { className: "built" },
+      h("div", {}, ...sections),
+      h(
+        "div",
+        { className: "begin" },
+        preview.root,
+        labelled("seed", seed),
+        labelled("simulated seconds per second", speed),
+        labelled("folder below results/", out),
+        labelled("write its trace", trace),
+        start,
+        message,
+      ),
     ),
-    message,
   );
+  sections[0].addEventListener("input", changed);
+  sections[0].addEventListener("change", changed);
+  changed();
+}
+
+/** Returns what the parts of the form say, by key. */
+function said(reads: Read[]): Record<string, unknown> {
+  return Object.assign({}, ...reads.map((read) => read())) as Record<string, unknown>;
 }
 
 function labelled(text: string, input: HTMLElement): HTMLElement {

@@ -6,7 +6,11 @@ import type { PodMode } from "../draw/pods";
 import type { RobotMode } from "../draw/robots";
 
 export type HeatMode = "off" | "visits" | "waiting";
-export type Chosen = "robot" | "pod" | "station";
+export type Chosen = "robot" | "pod" | "station" | "order";
+/** What the panel lists while nothing is chosen. */
+export type Board = "stations" | "orders";
+/** By what orders at stations are listed. */
+export type Grouping = "order" | "pod";
 
 export interface Selection {
   run: number;
@@ -23,6 +27,8 @@ export interface ViewState {
   robots: RobotMode;
   pods: PodMode;
   heat: HeatMode;
+  /** Of two runs, whether the heat map shows the difference. */
+  overlay: boolean;
   /** Window of the heat map in seconds. */
   from_s: number;
   to_s: number;
@@ -31,21 +37,26 @@ export interface ViewState {
   follow: boolean;
   theme: Theme;
   selection: Selection | null;
+  board: Board;
+  grouping: Grouping;
 }
 
 export const SPEEDS = [0.5, 1, 2, 5, 10, 30, 60, 300, 1000];
 
-export function initialState(end_s: number): ViewState {
+/** Begins at a time: playing, unless somebody would rather have nothing move of its own accord. */
+export function initialState(begin_s: number, end_s: number): ViewState {
+  const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   const dark = window.matchMedia("(prefers-color-scheme: dark)").matches;
   return {
-    time_s: 0,
+    time_s: begin_s,
     speed: 10,
-    playing: false,
+    playing: !calm && begin_s < end_s,
     mode: "2d",
     tier: ALL_TIERS,
     robots: "task",
     pods: "plain",
     heat: "off",
+    overlay: false,
     from_s: 0,
     to_s: end_s,
     paths: false,
@@ -53,6 +64,8 @@ export function initialState(end_s: number): ViewState {
     follow: false,
     theme: dark ? "dark" : "light",
     selection: null,
+    board: "stations",
+    grouping: "order",
   };
 }
 

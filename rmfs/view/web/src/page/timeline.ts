@@ -15,12 +15,22 @@ export function timeline(
   const slider = h("input", { type: "range", min: "0", step: "any", id: "seek" });
   slider.ariaLabel = "time";
   slider.addEventListener("input", () => store.set({ time_s: Number(slider.value) }));
-  const now = h("output", { id: "now" });
+  const now = timeField(store, end_s);
+  const whole = h("output", { id: "now" });
   const speeds = SPEEDS.map((speed) => [String(speed), `${speed}×`] as const);
   const speed = choice("speed", speeds, (value) => store.set({ speed: Number(value) }));
   speed.select.id = "speed";
   const span = heatWindow(store, warmup_s, end_s);
-  const root = h("footer", { className: "timeline" }, play, slider, now, speed.root, span);
+  const root = h(
+    "footer",
+    { className: "timeline" },
+    play,
+    slider,
+    now.root,
+    whole,
+    speed.root,
+    span,
+  );
   if (live) root.prepend(live);
   const update = () => {
     const { state } = store;
@@ -28,13 +38,49 @@ export function timeline(
     play.textContent = state.playing ? "❚❚" : "▶";
     slider.max = String(end);
     slider.value = String(state.time_s);
-    now.textContent = `${clock(state.time_s)} / ${clock(end)} h${state.time_s < warmup_s ? " (warm-up)" : ""}`;
+    now.update();
+    whole.textContent = `/ ${clock(end)} h${state.time_s < warmup_s ? " (warm-up)" : ""}`;
     speed.select.value = String(state.speed);
     span.hidden = state.heat === "off";
   };
   store.listen(update);
   update();
   return root;
+}
+
+/** Makes the field that shows the time, and goes to the one that is typed. */
+function timeField(store: Store, end_s: () => number) {
+  const root = h("input", { type: "text", id: "time", size: 8, title: "Type a time (g)" });
+  root.ariaLabel = "time to go to";
+  const update = () => {
+    if (document.activeElement !== root) root.value = clock(store.state.time_s);
+  };
+  root.addEventListener("focus", () => root.select());
+  root.addEventListener("blur", update);
+  root.addEventListener("keydown", ({ key }) => {
+    if (key === "Escape") root.value = "";
+    if (key === "Escape" || key === "Enter") root.blur();
+  });
+  root.addEventListener("change", () => {
+    const time_s = readTime(root.value, end_s());
+    if (time_s !== undefined) store.set({ time_s, playing: false });
+  });
+  return { root, update };
+}
+
+/**
+ * Reads a time: h:mm:ss, seconds, or h:mm; the latter is taken as m:ss where the run does not last
+ * so long. Returns nothing if it is no time of the run.
+ */
+export function readTime(text: string, end_s: number): number | undefined {
+  const parts = text.trim().split(":");
+  if (!parts.every((part) => /^\d+(\.\d+)?$/.test(part)) || parts.length > 3) return undefined;
+  const [first, second = 0, third = 0] = parts.map(Number);
+  if (parts.length === 1) return Math.min(first, end_s);
+  const hours_s = 3600 * first + 60 * second + third;
+  const minutes_s = 60 * first + second;
+  const time_s = parts.length === 2 && hours_s > end_s ? minutes_s : hours_s;
+  return Math.min(time_s, end_s);
 }
 
 /** Plays or pauses; at the end it begins again. */

@@ -56,8 +56,13 @@ const CHOICES: [Key, string, [string, string][]][] = [
   ],
 ];
 
-/** Makes the toolbar; it follows the state. */
-export function toolbar(store: Store, tiers: number, actions: Actions): HTMLElement {
+/** Makes the toolbar; it follows the state. `comparable`: there are two runs on one floor. */
+export function toolbar(
+  store: Store,
+  tiers: number,
+  comparable: boolean,
+  actions: Actions,
+): HTMLElement {
   const follow: (() => void)[] = [];
   const root = h("header", { className: "toolbar" });
   for (const [key, label, options] of CHOICES) {
@@ -78,10 +83,12 @@ export function toolbar(store: Store, tiers: number, actions: Actions): HTMLElem
     });
     root.append(made.root);
   }
-  for (const [key, label] of [
+  const ticks: ["paths" | "zones" | "overlay", string][] = [
     ["paths", "paths ahead"],
     ["zones", "queue zones"],
-  ] as const) {
+    ...(comparable ? ([["overlay", "overlay: B − A"]] as ["overlay", string][]) : []),
+  ];
+  for (const [key, label] of ticks) {
     const made = tick(label, (on) => store.set({ [key]: on }));
     made.box.id = `tick-${key}`;
     follow.push(() => {

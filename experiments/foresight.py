@@ -1,0 +1,191 @@
+"""What perfect foresight would save: the storage places and the robots of a run, chosen afterwards.
+
+A run is taken as it was: which pod visits which station, and when each pod is lifted and set down.
+Whoever had known all this could have chosen other storage places (PSA) for less loaded driving, or
+other robots (TA) for less empty driving. Both are problems with a proven bound; what the run drove
+beyond it is all that a better PSA, or TA, could have saved without changing anything else.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from rmfs.measure.base import Measure
+from rmfs.measure.columns import INTEGER, REAL, Column
+from rmfs.solvers.models.storage.stays import Stays
+from rmfs.solvers.models.storage.stays import solve as solve_stays
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    from rmfs.control.travel import TravelTimes
+    from rmfs.measure.ended import EndedRun
+
+    Floats = NDArray[np.float64]
+
+TOLERANCE_S = 0.001
+"""Travel times are rounded to microseconds."""
+
+
+class Foresight(Measure):
+    """What better storage places, or a better choice of robots, could have saved in a run.
+
+    For runs on one tier without repositioning. Shares are of the time of all robots; each is an
+    upper limit of what the decision could free if nothing else changed.
+    """
+
+    columns = (
+        Column("stays", INTEGER, "stays", "Storage places chosen anew"),
+        Column(
+            "foresight_storage_s",
+            REAL,
+            "s",
+            "Unhindered loaded driving that perfect foresight of the next visits could have saved "
+            "by other storage places (PSA), at most",
+        ),
+        Column(
+            "foresight_storage_share",
+            REAL,
+            "share",
+            "foresight_storage_s / (robots x duration)",
+        ),
+        Column("lifts", INTEGER, "lifts", "Trips to pods chosen anew"),
+        Column(
+            "foresight_tasks_s",
+            REAL,
+            "s",
+            "Unhindered empty driving that perfect foresight of the next lifts could have saved by "
+            "other robots (TA), at most",
+        ),
+        Column(
+            "foresight_tasks_share",
+            REAL,
+            "share",
+            "foresight_tasks_s / (robots x duration)",
+        ),
+    )
+
+    def footprint(self, run: EndedRun) -> dict[str, Any]:
+        """Solve both problems; the stays to proven optimality."""
+        trips, times = run.tables["trips"], run.recorder.traffic
+        data, stored_s = stays_of(run, trips, times)
+        saved_s = max(stored_s - solve_stays(data, "highs").bound, 0.0)
+        empty_s, least_s, lifts = lifts_of(trips, times)
+        robot_s = run.layout.robots * run.duration_s
+        return {
+            "stays": len(data.begin_s),
+            "foresight_storage_s": saved_s,
+            "foresight_storage_share": saved_s / robot_s,
+            "lifts": lifts,
+            "foresight_tasks_s": empty_s - least_s,
+            "foresight_tasks_share": (empty_s - least_s) / robot_s,
+        }
+
+
+def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[Stays, float]:
+    """Return the stays of pods at storage places in a run, and what they cost there, s.
+
+    A place is kept for a pod from the start of the way there until a robot begins to lift the pod
+    again. The way from the station and the way to the next one are its cost. A pod that stood at
+    its place before the first trip keeps it, at no cost, until it is lifted; the places of pods
+    that never moved are left out.
+
+    Parameters
+    ----------
+    run
+        For its layout, its end, and where pods stood then.
+    trips
+        Its table of trips.
+    times
+        Unhindered travel times on its layout.
+
+    Returns
+    -------
+    Stays with a zone for every place, and the unhindered time of these ways in the run.
+    """
+    loaded = trips[trips["loaded"]]
+    lifts = {
+        place: loaded[loaded["from_waypoint"] == place]
+        for place in loaded["from_waypoint"].unique().tolist()
+    }
+    stored = loaded[loaded["kind"] == "to_storage"].sort_values("start_s")
+    filled = stored.groupby("to_waypoint")["start_s"].min().to_dict()
+    at_end = run.world.storage.pod_at
+    lift_s = max(kind.pod_transfer_s for kind in run.layout.robot_kinds)
+    moved = [
+        place
+        for place in np.flatnonzero(run.layout.is_storage).tolist()
+        if place in filled or place in lifts or at_end[place] < 0
+    ]
+    column = {place: number for number, place in enumerate(moved)}
+    begin_s, end_s, cost_s = [], [], []
+    for place in moved:
+        left_s = lifts[place]["start_s"].min() if place in lifts else np.inf
+        if left_s < filled.get(place, np.inf):  # its pod was there from the start
+            begin_s.append(0.0)
+            end_s.append(max(float(left_s) - lift_s, TOLERANCE_S))
+            cost_s.append(_only(column[place], len(moved)))
+    spent_s = 0.0
+    for start_s, arrival_s, station, place in stored[
+        ["start_s", "end_s", "from_waypoint", "to_waypoint"]
+    ].itertuples(index=False):
+        ways_s = np.array(times.travel_times_from(int(station), loaded=True))
+        following = lifts.get(int(place))
+        if following is not None:
+            following = following[following["start_s"] >= arrival_s].nsmallest(1, "start_s")
+        if following is not None and len(following):
+            left_s = float(following["start_s"].iloc[0]) - lift_s
+            ways_s += times.travel_times_to(int(following["to_waypoint"].iloc[0]), loaded=True)
+        else:  # lifted for a trip that had not ended, at a moment nobody knows: as early as can be
+            left_s = run.end_s if at_end[int(place)] >= 0 else arrival_s
+        begin_s.append(float(start_s))
+        end_s.append(float(left_s))
+        spent_s += float(ways_s[int(place)])
+        cost_s.append(ways_s[moved])
+    places = np.ones(len(moved), np.int64)
+    return Stays(np.array(begin_s), np.array(end_s), np.array(cost_s), places), spent_s
+
+
+def lifts_of(trips: pd.DataFrame, times: TravelTimes) -> tuple[float, float, int]:
+    """Return the empty driving of a run, and the least that any choice of robots needs, s.
+
+    Every pod is lifted where and no later than it was, by a robot that was free before: robots
+    become free where and when their last trip but those to pods ended.
+
+    Parameters
+    ----------
+    trips
+        Table of trips of a run.
+    times
+        Unhindered travel times on its layout.
+
+    Returns
+    -------
+    Unhindered time of the trips to pods in the run, the least possible, and how many they are.
+    """
+    to_pod = trips[trips["kind"] == "to_pod"].sort_values("start_s")
+    arrival_s = to_pod["end_s"].to_numpy()
+    free_s, free_at = to_pod["start_s"].to_numpy(), to_pod["from_waypoint"].to_numpy()
+    pods_at = to_pod["to_waypoint"].to_numpy()
+    ways_s = {
+        int(place): np.asarray(times.travel_times_to(int(place), loaded=False))[free_at]
+        for place in np.unique(pods_at)
+    }
+    cost_s = np.array([ways_s[int(place)] for place in pods_at])
+    own_s = float(np.trace(cost_s))
+    late = free_s[np.newaxis, :] + cost_s > arrival_s[:, np.newaxis] + TOLERANCE_S
+    np.fill_diagonal(late, val=False)
+    # a matching that is late anywhere costs more than all of the run's
+    row, col = linear_sum_assignment(np.where(late, own_s + 1.0, cost_s))
+    return own_s, float(cost_s[row, col].sum()), len(to_pod)
+
+
+def _only(column: int, columns: int) -> Floats:
+    """Return costs that allow one place alone, at no cost."""
+    cost = np.full(columns, np.inf)
+    cost[column] = 0.0
+    return cost

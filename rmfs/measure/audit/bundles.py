@@ -1,0 +1,68 @@
+"""Bundles from their arrival into their pods, and units that pods are brought for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.layout.model import ReplenishmentStation
+from rmfs.measure.audit.report import Chapter
+from rmfs.measure.audit.rows import running
+from rmfs.measure.events import Happening
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rmfs.layout.model import Layout
+    from rmfs.measure.audit.rows import Rows
+
+STEPS = (Happening.BUNDLE_CREATED, Happening.BUNDLE_ASSIGNED, Happening.BUNDLE_STORED)
+HAIR = 1e-6
+
+
+def check(layout: Layout, rows: Rows, skus: pd.DataFrame) -> Chapter:
+    """Follow every bundle: it comes, is given pod and station, and goes into that pod there."""
+    steps = rows.of_kind(*STEPS)
+    order = np.lexsort((steps.number, steps.order))
+    mine = steps.taken(order)
+    step = np.searchsorted(np.array(STEPS), mine.kind)
+    same = np.append(False, mine.order[1:] == mine.order[:-1])
+    before = np.append(-1, step[:-1])
+    faults = mine.lines(step != np.where(same, before + 1, 0), "out of turn, or twice")
+    changed = np.zeros(len(mine), np.bool_)
+    for name, since in (("sku", 1), ("units", 1), ("pod", 2), ("station", 2)):
+        column = getattr(mine, name)
+        changed |= same & (step >= since) & np.append(False, column[1:] != column[:-1])
+    faults += mine.lines(changed, "is another bundle than before")
+    space = skus["space"].to_numpy(np.float64)[np.maximum(mine.sku, 0)] * mine.units
+    at = np.flatnonzero(step > 0)
+    told = mine.taken(at)
+    here = np.lexsort((told.number, told.station))
+    told, load = (
+        told.taken(here),
+        (space[at] * np.where(step[at] == 1, 1.0, -1.0))[here].astype(np.float64),
+    )
+    order, loads = running((told.station,), load)
+    room = {
+        number: station.capacity
+        for number, station in enumerate(layout.stations)
+        if isinstance(station, ReplenishmentStation)
+    }
+    capacity = np.array([room.get(int(one), -1.0) for one in told.station[order]])
+    faults += told.taken(order).lines(loads > capacity + HAIR, "the station has no room for it")
+    return Chapter(
+        "bundles", f"{int((step == 0).sum())} came, {int((step == 2).sum())} stored", faults
+    )
+
+
+def check_bound(rows: Rows) -> Chapter:
+    """A unit is picked from a pod that was brought for it."""
+    kinds = (Happening.UNITS_BOUND, Happening.UNITS_UNBOUND, Happening.UNIT_PICKED)
+    mine = rows.of_kind(*kinds)
+    units = np.where(mine.kind == Happening.UNITS_BOUND, mine.units, -mine.units).astype(np.float64)
+    keys = (mine.order, mine.sku, mine.pod, mine.robot, mine.station)
+    order, left = running(keys, units)
+    faults = mine.taken(order).lines(left < 0, "the pod was not brought for it")
+    bound = int(mine.units[mine.kind == Happening.UNITS_BOUND].sum())
+    return Chapter("tasks", f"{bound} units bound to pods", faults)

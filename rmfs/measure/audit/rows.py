@@ -1,0 +1,99 @@
+"""Events as arrays, to be examined one kind at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.measure.events import KINDS, Happening
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """Events in the order in which they happened, each array of shape (E,).
+
+    Attributes
+    ----------
+    number
+        Their row numbers in the file.
+    kind
+        `Happening`.
+    """
+
+    number: Integers
+    time_us: Integers
+    kind: Integers
+    robot: Integers
+    pod: Integers
+    station: Integers
+    order: Integers
+    sku: Integers
+    units: Integers
+
+    @classmethod
+    def of(cls, events: pd.DataFrame) -> Rows:
+        """Take the events of a run."""
+        numbers = {name: number for number, name in enumerate(KINDS)}
+        kind = np.asarray(events["kind"].map(numbers), np.int64)
+        names = ("time_us", "robot", "pod", "station", "order", "sku", "units")
+        columns = {name: events[name].to_numpy(np.int64) for name in names}
+        return cls(number=np.arange(len(events)), kind=kind, **columns)
+
+    def __len__(self) -> int:
+        """Return the number of events."""
+        return len(self.number)
+
+    def taken(self, which: NDArray[np.bool_] | Integers) -> Rows:
+        """Return the chosen ones."""
+        return Rows(*(getattr(self, name)[which] for name in self.__slots__))
+
+    def of_kind(self, *kinds: Happening) -> Rows:
+        """Return those of some kinds."""
+        return self.taken(np.isin(self.kind, kinds))
+
+    def tell(self, row: int, what: str) -> str:
+        """Return a line on one of them."""
+        kind = KINDS[int(self.kind[row])]
+        return f"{self.time_us[row] / 1e6:.6f} s, row {self.number[row]} ({kind}): {what}"
+
+    def lines(self, wrong: NDArray[np.bool_], what: str) -> list[str]:
+        """Return a line on each that is wrong, by the row of the file."""
+        rows = np.flatnonzero(wrong)
+        return [
+            self.tell(int(row), what) for row in rows[np.argsort(self.number[rows], kind="stable")]
+        ]
+
+
+def running(
+    groups: tuple[Integers, ...], change: NDArray[np.float64]
+) -> tuple[Integers, NDArray[np.float64]]:
+    """Sum up changes within groups, in the order in which they come.
+
+    Returns
+    -------
+    tuple
+        The order in which groups stand together, and in that order the sum after each change.
+    """
+    order = np.lexsort(groups[::-1])
+    total = np.cumsum(change[order])
+    first = np.zeros(len(order), np.bool_)
+    if len(order):
+        first[0] = True
+    for group in groups:
+        sorted_ = group[order]
+        first[1:] |= sorted_[1:] != sorted_[:-1]
+    begins = np.flatnonzero(first)
+    before = np.zeros(len(order))
+    if len(begins):
+        sizes = np.diff(np.append(begins, len(order)))
+        offset = np.append(0.0, total)[begins]
+        before = np.repeat(offset, sizes)
+    return order, total - before

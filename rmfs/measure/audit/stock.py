@@ -1,0 +1,52 @@
+"""What is on the pods: no unit is picked that is not there, and no pod holds more than it can."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.measure.audit.report import Chapter
+from rmfs.measure.audit.rows import Rows, running
+from rmfs.measure.events import Happening
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rmfs.layout.model import Layout
+
+HAIR = 1e-6
+"""Sums of space in floating point differ by less."""
+
+
+def check(layout: Layout, rows: Rows, skus: pd.DataFrame, pods: pd.DataFrame) -> Chapter:
+    """Follow every unit on every pod.
+
+    Parameters
+    ----------
+    skus, pods
+        The tables of the run, which say what is there at its end.
+    """
+    moved = rows.of_kind(Happening.STOCK, Happening.BUNDLE_STORED, Happening.UNIT_PICKED)
+    named = (moved.pod >= 0) & (moved.sku >= 0) & (moved.units > 0)
+    faults = moved.lines(~named, "names no pod, no SKU or no units")
+    initial = moved.kind == Happening.STOCK
+    faults += moved.lines(initial & (moved.time_us > 0), "stock of time zero, told later")
+    moved = moved.taken(named)
+    sign = np.where(moved.kind == Happening.UNIT_PICKED, -1, 1)
+    units = (sign * moved.units).astype(np.float64)
+    order, there = running((moved.pod, moved.sku), units)
+    faults += moved.taken(order).lines(there < 0, "the pod has no such unit")
+    space = skus["space"].to_numpy(np.float64)[moved.sku] * units
+    order, used = running((moved.pod,), space)
+    full = used > np.asarray(layout.pod_capacity)[moved.pod[order]] + HAIR
+    faults += moved.taken(order).lines(full, "the pod holds more than it can")
+    used_end = np.bincount(moved.pod, weights=space, minlength=layout.pods)
+    off = np.abs(used_end - pods["used_end"].to_numpy(np.float64)) > HAIR
+    faults += [
+        f"pod {pod}: the table pods says another space in use" for pod in np.flatnonzero(off)
+    ]
+    left = np.bincount(moved.sku, weights=units, minlength=len(skus))
+    off = left != skus["units_end"].to_numpy(np.float64)
+    faults += [f"SKU {sku}: the table skus says other units" for sku in np.flatnonzero(off)]
+    return Chapter("stock", f"{len(moved)} movements of {len(skus)} SKUs", faults)

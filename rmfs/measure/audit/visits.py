@@ -1,0 +1,89 @@
+"""Pods at stations: whether the right pod stands there when units are picked or stored."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rmfs.measure.audit.report import Chapter
+from rmfs.measure.audit.rows import Rows
+from rmfs.measure.events import Happening
+from rmfs.traffic import Piece
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    from rmfs.layout.model import Layout
+
+WHERE = "no visit of this pod and robot at this station"
+
+
+def check(layout: Layout, rows: Rows, motion: pd.DataFrame, end_us: int) -> Chapter:
+    """Follow every visit of every station.
+
+    Parameters
+    ----------
+    motion
+        The trace, sorted by robot and time.
+    end_us
+        End of the run, at which visits may go on.
+    """
+    kinds = (Happening.VISIT_STARTED, Happening.VISIT_ENDED)
+    visits = rows.of_kind(*kinds)
+    faults = visits.lines(visits.station < 0, "names no station")
+    visits = visits.taken(visits.station >= 0)
+    order = np.lexsort((visits.number, visits.station))
+    mine = visits.taken(order)
+    starts = mine.kind == Happening.VISIT_STARTED
+    same = np.append(False, mine.station[1:] == mine.station[:-1])
+    again = np.append(False, starts[1:] == starts[:-1]) & same
+    faults += mine.lines(again & starts, "the visit before it has not ended")
+    faults += mine.lines(~starts & (again | ~same), WHERE)
+    pair = np.append(False, ~starts[1:] & starts[:-1]) & same
+    other = np.append(False, (mine.robot[1:] != mine.robot[:-1]) | (mine.pod[1:] != mine.pod[:-1]))
+    faults += mine.lines(pair & other, WHERE)
+    faults += _at_work(rows, mine, starts)
+    until = np.append(np.where(pair[1:], mine.time_us[1:], end_us), end_us)[: len(mine)]
+    begun = np.flatnonzero(starts)
+    faults += _standing(layout, mine.taken(begun), until[begun], motion)
+    return Chapter("visits", f"{len(begun)} at {len(layout.stations)} stations", faults)
+
+
+def _at_work(rows: Rows, visits: Rows, starts: NDArray[np.bool_]) -> list[str]:
+    """Units are picked, and bundles stored, in visits of that station, robot and pod."""
+    done = rows.of_kind(Happening.UNIT_PICKED, Happening.BUNDLE_STORED)
+    if not len(visits):
+        return done.lines(np.ones(len(done), np.bool_), WHERE)
+    width = int(rows.number[-1]) + 1 if len(rows) else 1
+    # the last visit event of the same station before it
+    before = (
+        np.searchsorted(visits.station * width + visits.number, done.station * width + done.number)
+        - 1
+    )
+    known = np.maximum(before, 0)
+    right = (before >= 0) & (visits.station[known] == done.station) & starts[known]
+    right &= (visits.robot[known] == done.robot) & (visits.pod[known] == done.pod)
+    return done.lines(~right, WHERE)
+
+
+def _standing(
+    layout: Layout, visits: Rows, until_us: np.ndarray, motion: pd.DataFrame
+) -> list[str]:
+    """During a visit the robot stands at the station, with the pod if there is one."""
+    waypoints = np.array([station.waypoint for station in layout.stations], np.int64)
+    robot, t0, t1 = (motion[name].to_numpy(np.int64) for name in ("robot", "t0_us", "t1_us"))
+    place, kind, pod = (motion[name].to_numpy(np.int64) for name in ("from_wp", "kind", "pod"))
+    width = int(max(t1.max(initial=0), visits.time_us.max(initial=0), until_us.max(initial=0))) + 2
+    keys = robot * width + t0
+    first = np.searchsorted(keys, visits.robot * width + visits.time_us, "right") - 1
+    last = np.searchsorted(keys, visits.robot * width + until_us, "left") - 1
+    wrong = np.zeros(len(visits), np.bool_)
+    for row in range(len(visits)):
+        span = slice(max(first[row], 0), max(last[row], first[row], 0) + 1)
+        stands = (kind[span] == Piece.HOLD) & (place[span] == waypoints[visits.station[row]])
+        with_pod = (pod[span] == visits.pod[row]) if visits.pod[row] >= 0 else True
+        here = robot[span] == visits.robot[row]
+        wrong[row] = not np.all(stands & with_pod & here)
+    return visits.lines(wrong, "the robot does not stand there with the pod as the trace has it")

@@ -1,0 +1,50 @@
+"""The page with the replay of a run, as a file and as a frame in a notebook."""
+
+from __future__ import annotations
+
+import html
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+FRAME_HEIGHT = 640
+"""Height (pixels) of the frame in a notebook: panel and picture can be read in it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Replay:
+    """A page with the replay of a run; it shows itself in a notebook.
+
+    The frame holds the whole page, not a link to a file: it is still there when the notebook is
+    sent to somebody, and needs no server.
+
+    Attributes
+    ----------
+    path
+        The HTML file, which opens in any browser.
+    height
+        Height (pixels) of the frame in a notebook.
+    """
+
+    path: Path
+    height: int = FRAME_HEIGHT
+
+    def __fspath__(self) -> str:
+        """Return the file, so that it can be opened, copied or removed like any other."""
+        return str(self.path)
+
+    @property
+    def size_mb(self) -> float:
+        """Size of the page in megabytes; a notebook that shows it grows by about as much."""
+        return self.path.stat().st_size / 1e6
+
+    def _repr_html_(self) -> str:
+        page = html.escape(self.path.read_text("utf-8"), quote=True)
+        style = f"width: 100%; height: {self.height}px; border: 1px solid #d5d9de"
+        return f'<iframe title="replay of a run" style="{style}" srcdoc="{page}"></iframe>'
+
+
+def in_notebook() -> bool:
+    """Whether this runs in a notebook, which shows what a cell returns."""
+    shell = sys.modules.get("IPython")
+    return shell is not None and type(shell.get_ipython()).__name__ == "ZMQInteractiveShell"

@@ -1,0 +1,89 @@
+//! Long work can be given up: what may take long looks up now and then.
+//!
+//! Whoever starts work may leave a question here that is asked every tenth of a second while it
+//! goes on; a question that is answered with the wish to stop unwinds the work.
+
+use std::cell::Cell;
+use std::time::{Duration, Instant};
+
+/// How many steps of work lie between two looks at the clock.
+const STEPS: u32 = 1 << 10;
+
+/// Wall time between two questions.
+const BETWEEN: Duration = Duration::from_millis(100);
+
+/// What is asked, and when it was asked last.
+type Question = (fn(), Instant);
+
+thread_local! {
+    static LEFT: Cell<u32> = const { Cell::new(STEPS) };
+    static QUESTION: Cell<Option<Question>> = const { Cell::new(None) };
+}
+
+/// Tells that a step of work is done, which may be one of very many.
+#[inline]
+pub fn look_up() {
+    LEFT.with(|left| match left.get() {
+        0 => {
+            left.set(STEPS);
+            ask();
+        }
+        steps => left.set(steps - 1),
+    });
+}
+
+#[cold]
+fn ask() {
+    QUESTION.with(|kept| {
+        if let Some((question, asked)) = kept.get()
+            && asked.elapsed() >= BETWEEN
+        {
+            question();
+            kept.set(Some((question, Instant::now())));
+        }
+    });
+}
+
+/// Does something, and asks the question while it goes on.
+pub fn asking<T>(question: fn(), work: impl FnOnce() -> T) -> T {
+    /// Puts the former question back, also when the work unwinds.
+    struct Back(Option<Question>);
+    impl Drop for Back {
+        fn drop(&mut self) {
+            QUESTION.set(self.0);
+        }
+    }
+    let _back = Back(QUESTION.replace(Some((question, Instant::now()))));
+    work()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::panic::{catch_unwind, resume_unwind};
+
+    #[test]
+    fn endless_work_is_given_up() {
+        let stopped = catch_unwind(|| {
+            asking(
+                || resume_unwind(Box::new("enough")),
+                || {
+                    loop {
+                        look_up();
+                    }
+                },
+            )
+        });
+        let told: Box<dyn std::any::Any + Send> = match stopped {
+            Ok(()) => unreachable!("it has no end"),
+            Err(told) => told,
+        };
+        assert_eq!(told.downcast_ref::<&str>(), Some(&"enough"));
+        assert!(QUESTION.get().is_none());
+    }
+
+    #[test]
+    fn short_work_is_not_asked() {
+        asking(|| unreachable!("it is done at once"), || (0..10 * STEPS).for_each(|_| look_up()));
+    }
+}

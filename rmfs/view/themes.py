@@ -1,0 +1,110 @@
+"""The colours of the page, on a light floor and on a dark one.
+
+Stations, the tasks of robots and delay are distinguished by hue and lightness: stations are deeper
+than robots in the light and paler in the dark, and delay has a scale of its own. A test holds that
+they stay apart for the common kinds of colour blindness, and stand out from the floor.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rmfs.layout.kinds import TASK_COLOURS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rmfs.layout.model import Layout
+
+
+@dataclass(frozen=True)
+class Theme:
+    """Colours on one floor.
+
+    Attributes
+    ----------
+    floor
+        What all is drawn on.
+    towards, share
+        A station of another kind is drawn in the colour of its kind, moved so far towards this one.
+    stations, tasks
+        By the words for kinds of station and for tasks.
+    delay
+        From none to much.
+    """
+
+    floor: str
+    pod: str
+    elevator: str
+    towards: str
+    share: float
+    stations: Mapping[str, str]
+    tasks: Mapping[str, str]
+    delay: tuple[str, ...]
+
+
+THEMES = {
+    "light": Theme(
+        floor="#FFFFFF",
+        pod="#1F457A",
+        elevator="#460214",
+        towards="#000000",
+        share=0.45,
+        stations={"pick": "#842114", "replenishment": "#5C760B"},
+        tasks={
+            "pick": "#D87B64",
+            "replenish": "#AD9100",
+            "park": "#2C94C6",
+            "reposition": "#FF20B5",
+            "rest": "#595959",
+        },
+        delay=("#B782FE", "#A225E1", "#140736"),
+    ),
+    "dark": Theme(
+        floor="#1B2128",
+        pod="#2873A2",
+        elevator="#FADBF0",
+        towards="#FFFFFF",
+        share=0.55,
+        stations={"pick": "#F1B4A9", "replenishment": "#FDFF92"},
+        tasks={
+            "pick": "#AB512B",
+            "replenish": "#C0BC16",
+            "park": "#59AFEC",
+            "reposition": "#F9006A",
+            "rest": "#838383",
+        },
+        delay=("#3B0BC9", "#9B72FF", "#C2B1F5"),
+    ),
+}
+
+
+def themes_of(layout: Layout, visits: Mapping[str, str]) -> dict[str, Any]:
+    """Return the colours of a layout by theme: for each station, each task, pods and delay.
+
+    Parameters
+    ----------
+    visits
+        Colours of robots on their way to stations of other kinds, by task.
+    """
+    return {
+        name: {
+            "pod": theme.pod,
+            "elevator": theme.elevator,
+            "stations": [
+                theme.stations.get(kind.name) or _mixed(kind.colour, theme.towards, theme.share)
+                for kind in (station.kind for station in layout.stations)
+            ],
+            "task": {task: theme.tasks[task] for task in TASK_COLOURS} | dict(visits),
+            "delay": list(theme.delay),
+        }
+        for name, theme in THEMES.items()
+    }
+
+
+def _mixed(colour: str, towards: str, share: float) -> str:
+    pairs = (
+        (int(colour[i : i + 2], 16), int(towards[i : i + 2], 16)) for i in range(1, len(colour), 2)
+    )
+    return "#" + "".join(f"{round(a + share * (b - a)):02X}" for a, b in pairs)

@@ -1,0 +1,96 @@
+"""Orders still to come, drawn from those that have come so far."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy as np
+
+    from rmfs.control.view import View
+    from rmfs.world.orders import Order
+
+KEPT = 1000
+"""Orders of the past that are kept to draw from."""
+
+
+@dataclass(frozen=True)
+class ExpectedLine:
+    """A line of an order that has not come; attributes as those of an order line."""
+
+    sku: int
+    open_units: int
+
+
+@dataclass(frozen=True)
+class ExpectedOrder:
+    """An order that has not come; attributes as those of an order."""
+
+    lines: tuple[ExpectedLine, ...]
+    created_s: float
+    due_s: float = inf
+    weight: float = 1.0
+
+
+class ExpectedOrders:
+    """Draws orders that may come soon: past orders again, at the rate at which orders came.
+
+    A controller does not know the process by which orders arrive, let alone what it will bring.
+    It knows the past orders of the scenario, the backlog it began with, and what has come since.
+
+    Parameters
+    ----------
+    view
+        The world.
+    rng
+        Draws the orders.
+    """
+
+    def __init__(self, view: View, rng: np.random.Generator) -> None:
+        self._view, self._rng = view, rng
+        self._seen: deque[tuple[ExpectedLine, ...]] = deque(maxlen=KEPT)
+        for content in view.past_orders:
+            pairs = zip(content.skus, content.units, strict=True)
+            self._seen.append(tuple(ExpectedLine(sku, units) for sku, units in pairs))
+        for order in view.orders:
+            self._keep(order)
+        self._begin_s = view.now_s
+        self._come = 0
+
+    def hear(self, order: Order) -> None:
+        """Take note of an order that has come."""
+        self._keep(order)
+        self._come += 1
+
+    def draw(self, horizon_s: float, scenarios: int) -> list[list[ExpectedOrder]]:
+        """Draw the orders of some scenarios; those that the stock cannot serve are left out.
+
+        Parameters
+        ----------
+        horizon_s
+            How far ahead to look; in each scenario a Poisson number of orders comes.
+        scenarios
+            How many to draw.
+        """
+        elapsed_s = self._view.now_s - self._begin_s
+        if not self._come or elapsed_s <= 0:
+            return [[] for _ in range(scenarios)]
+        number = self._rng.poisson(self._come * horizon_s / elapsed_s, scenarios)
+        return [self._orders(count) for count in number.tolist()]
+
+    def _orders(self, count: int) -> list[ExpectedOrder]:
+        chosen = self._rng.integers(0, len(self._seen), count).tolist()
+        drawn = [ExpectedOrder(self._seen[number], self._view.now_s) for number in chosen]
+        return [order for order in drawn if self._servable(order.lines)]
+
+    def _servable(self, lines: Sequence[ExpectedLine]) -> bool:
+        available = self._view.inventory.available
+        return all(available[line.sku].max(initial=0) >= line.open_units for line in lines)
+
+    def _keep(self, order: Order) -> None:
+        self._seen.append(tuple(ExpectedLine(line.sku, line.units) for line in order.lines))
