@@ -1,7 +1,7 @@
 """Pure optimisation models: a frozen dataclass of arrays in, a `Solution` out.
 
-Nothing here knows of a warehouse that moves: a model can be solved, tested and timed without a
-simulation. `rmfs.solvers.control` fills the arrays from a world and applies the solution.
+The models do not depend on the simulation, so each can be solved, tested and timed without one.
+`rmfs.solvers.control` fills the arrays from a world and applies the solution.
 """
 
 from rmfs.solvers.models.checks import ModelError as ModelError

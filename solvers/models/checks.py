@@ -1,4 +1,4 @@
-"""Validation of a model's arrays at the door: every complaint names the field."""
+"""Validation of a model's input arrays; every error names the field."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class ModelError(ValueError):
     field
         The field of the data class, such as ``"stock"``.
     problem
-        What is wrong with it and what would be valid.
+        What is wrong, and what would be valid.
     """
 
     def __init__(self, field: str, problem: str) -> None:
@@ -34,9 +34,9 @@ def require(condition: bool, field: str, problem: str) -> None:
     condition
         What must be true.
     field
-        The field it is about.
+        The field that the condition is about.
     problem
-        What to say if it is not.
+        Message if the condition is false.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def integers(
     value
         The array. Floats are accepted if they are whole; booleans become 0 and 1.
     shape
-        Expected shape; None in a place accepts any length there.
+        Expected shape; None accepts any length of that dimension.
     low, high
         Smallest and largest value allowed (both included). Default: no limit.
 
@@ -75,7 +75,7 @@ def integers(
     Raises
     ------
     ModelError
-        If the shape, the kind or a value is wrong.
+        If the shape, the type or a value is wrong.
     """
     raw = _shaped(field, value, shape)
     if raw.dtype.kind not in "iub":
@@ -105,7 +105,7 @@ def reals(
     value
         The array.
     shape
-        Expected shape; None in a place accepts any length there.
+        Expected shape; None accepts any length of that dimension.
     low, high
         Smallest and largest value allowed (both included). Default: no limit.
 
@@ -116,7 +116,7 @@ def reals(
     Raises
     ------
     ModelError
-        If the shape, the kind or a value is wrong, or a value is not finite.
+        If the shape, the type or a value is wrong, or a value is not finite.
     """
     raw = _shaped(field, value, shape)
     require(raw.dtype.kind in "iufb" or raw.size == 0, field, "must hold numbers")
@@ -144,7 +144,7 @@ def costs(
     value
         The array.
     shape
-        Expected shape; None in a place accepts any length there.
+        Expected shape; None accepts any length of that dimension.
     low
         Smallest value allowed. Default: no limit.
 
@@ -155,7 +155,7 @@ def costs(
     Raises
     ------
     ModelError
-        If the shape, the kind or a value is wrong; -inf and nan are.
+        If the shape, the type or a value is wrong; -inf and nan are not allowed.
     """
     raw = np.asarray(value)
     if raw.dtype.kind != "f":
@@ -178,7 +178,7 @@ def flags(field: str, value: ArrayLike, shape: Sequence[int | None]) -> NDArray[
     value
         The array.
     shape
-        Expected shape; None in a place accepts any length there.
+        Expected shape; None accepts any length of that dimension.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The families of models by name, loaded when they are asked for."""
+"""The families of models by name; each is imported when it is first used."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ FAMILIES = {
     "charging": "charging",
     "run_bound": "run_bound",
 }
-"""Where each family is, below `rmfs.solvers.models`."""
+"""Module path of each family, relative to `rmfs.solvers.models`."""
 
 
 class Family(Protocol):
-    """What every family has."""
+    """The interface that every family of models provides."""
 
     __name__: str
     solve: Methods[Any, Any]
@@ -36,14 +36,14 @@ class Family(Protocol):
         """Return the names of the methods."""
 
     def objective(self, data: Any, values: Any, /) -> float:
-        """Return what values are worth."""
+        """Return the objective of the given values."""
 
     def violations(self, data: Any, values: Any, /) -> list[str]:
-        """Say in words what is wrong with values."""
+        """Return descriptions of the constraints that the given values violate."""
 
 
 def family(name: str) -> Family:
-    """Load a family.
+    """Import a family of models.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def family(name: str) -> Family:
     Raises
     ------
     ModelError
-        If there is none of this name.
+        If there is no family of this name.
     """
     require(name in FAMILIES, "family", f"must be one of {', '.join(FAMILIES)}")
     return cast("Family", import_module(f"rmfs.solvers.models.{FAMILIES[name]}"))

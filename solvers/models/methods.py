@@ -1,4 +1,4 @@
-"""Common interface of all families: one `solve(data, method)` over methods of one signature."""
+"""Common interface of all families: `solve(data, method)` selects a method by name."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ V = TypeVar("V")
 
 
 class Method(Protocol[D_contra, V]):
-    """One way to solve a problem: the signature of `solve` in every file of a method."""
+    """A solution method: the signature of `solve` in every method's module."""
 
     def __call__(
         self, data: D_contra, limits: Limits = ..., *, seed: int = ..., start: V | None = ...
@@ -28,16 +28,16 @@ class Methods(Generic[D, V]):
     Parameters
     ----------
     methods
-        By the name of the file each is in.
+        The methods by name, which is that of their module.
     default
-        Who solves if nobody is named.
+        Name of the method used by default.
     rule
-        The quick heuristic that the others start from; empty if there is none.
+        Name of the fast heuristic that the others start from; empty if there is none.
 
     Attributes
     ----------
     by_name
-        The methods.
+        The methods by name.
     """
 
     def __init__(

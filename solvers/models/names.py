@@ -1,4 +1,4 @@
-"""Names of the columns of a programme, for who solves it elsewhere."""
+"""Names of the columns of a programme, for users who solve it with another tool."""
 
 from __future__ import annotations
 
@@ -7,19 +7,20 @@ from numpy.typing import ArrayLike
 
 
 class Names:
-    """What the columns of a programme are called, and which decision each one takes.
+    """The name of each column of a programme, and the decision it stands for.
 
     Parameters
     ----------
     columns
-        How many columns there are.
+        Number of columns.
 
     Attributes
     ----------
     name
-        Of each column.
+        Name of each column.
     means
-        What it decides where it is 1, such as `pod_station[3] = 1`; empty for auxiliary columns.
+        The decision that each column makes if it is 1, such as `pod_station[3] = 1`; empty for
+        auxiliary columns.
     """
 
     def __init__(self, columns: int) -> None:
@@ -32,14 +33,14 @@ class Names:
         Parameters
         ----------
         name
-            Of the block.
+            Name of the block.
         columns
-            Its columns.
+            The columns of the block.
         means
-            What a column decides, with the letters of the indices in braces:
+            The decision that a column makes if it is 1, with the letters of the indices in braces:
             `pod_station[{p}] = {s}`.
         indices
-            By letter, values that broadcast to the shape of the columns.
+            Index values by letter; they broadcast to the shape of the columns.
         """
         number = np.asarray(columns)
         arrays = [

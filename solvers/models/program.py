@@ -1,7 +1,7 @@
 """Mixed-integer linear programs in matrix form, and a builder that fills them in blocks.
 
-A model states its formulation once, here; `rmfs.solvers.models.backends` passes it to the solvers.
-Building is vectorised: one call per family of columns or rows, never one per row.
+A model is formulated once as a `LinearProgram`, which `rmfs.solvers.models.backends` pass to the
+solvers. Building is vectorised: one call per family of columns or rows.
 """
 
 from __future__ import annotations
@@ -30,21 +30,22 @@ class LinearProgram:
     cost
         Cost per column, shape (n,).
     lower, upper
-        Finite bounds per column, shape (n,).
+        Bounds of each column, finite, shape (n,).
     integer
-        Whether the column must be whole, shape (n,).
+        Whether each column must be an integer, shape (n,).
     row_start, column, coefficient
         The matrix A in compressed rows: row i holds ``coefficient[row_start[i]:row_start[i + 1]]``
         in the columns ``column[...]``, sorted and without duplicates.
     row_lower, row_upper
-        Bounds per row, shape (m,); an infinite one is absent.
+        Bounds of each row, shape (m,); infinite if there is none.
     offset
         Constant part of the objective. Default 0.
 
     Raises
     ------
     ModelError
-        If shapes do not fit, a bound is crossed or a number is not finite where it must be.
+        If shapes do not fit, a lower bound exceeds an upper bound, or a number that must be finite
+        is not.
     """
 
     cost: Floats
@@ -105,7 +106,7 @@ class LinearProgram:
         return float(self.cost @ x) + self.offset
 
     def violation(self, x: Floats) -> float:
-        """Largest amount by which a point breaks a bound, a row or a whole number; 0 if none."""
+        """Largest violation of a bound, a row or integrality at a point; 0 if there is none."""
         activity = np.asarray(self.matrix @ x)
         broken = [
             self.lower - x,
@@ -118,7 +119,7 @@ class LinearProgram:
 
 
 class ProgramBuilder:
-    """Collects columns and rows by blocks and puts them together once."""
+    """Collects blocks of columns and rows and assembles them into a program."""
 
     def __init__(self) -> None:
         self._columns = 0
@@ -149,11 +150,12 @@ class ProgramBuilder:
         cost, lower, upper
             Values of that shape, or that broadcast to it. Defaults: 0, 0 and 1.
         integer
-            Whether the columns must be whole. Default: yes, so that the defaults are binary.
+            Whether the columns must be integers. Default: yes, so that columns are binary by
+            default.
 
         Returns
         -------
-        The index of every new column, in the shape asked for.
+        The index of each new column, in the given shape.
         """
         block = np.zeros(shape, dtype=np.int64)
         new = np.arange(self._columns, self._columns + block.size, dtype=np.int64)
@@ -178,9 +180,9 @@ class ProgramBuilder:
             Number of rows in the block.
         entries
             Triples (row within the block, column, coefficient) that broadcast against each other.
-            Entries of the same place add up.
+            Entries in the same position add up.
         lower, upper
-            Bounds per row, or one for all. Default: none.
+            Bounds of each row, or one for all rows. Default: none.
         """
         for row, column, value in entries:
             r, c, v = np.broadcast_arrays(
@@ -194,7 +196,7 @@ class ProgramBuilder:
         self._rows += count
 
     def build(self, offset: float = 0.0) -> LinearProgram:
-        """Put the blocks together.
+        """Assemble the blocks into a program.
 
         Parameters
         ----------
@@ -203,7 +205,7 @@ class ProgramBuilder:
 
         Returns
         -------
-        The program; rows sorted by column, entries of the same place added up.
+        The program; rows are sorted by column, and entries in the same position are added up.
         """
         row = _joined([entry[0] for entry in self._entries], np.int64)
         column = _joined([entry[1] for entry in self._entries], np.int64)

@@ -1,7 +1,7 @@
 """The result of every model, and the limits of solvers.
 
-All limits are in deterministic work, so that the same input gives the same output on a busy machine
-and on an idle one. A wall-clock guard exists, but it can only raise an error.
+All limits are in deterministic work, so the same input gives the same output however busy the
+machine is. A wall-clock guard exists, but it can only raise an error.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ GAP_FLOOR = 1e-9
 """Smallest denominator of a relative gap, so that an optimum of 0 has gap 0."""
 
 BOUND_TOLERANCE = 1e-6
-"""Tolerance, relative to the objective, by which a bound may exceed it before it is a defect."""
+"""Relative amount by which a bound may exceed the objective before it counts as a defect."""
 
 
 class WallGuardError(RuntimeError):
@@ -73,9 +73,9 @@ class Limits:
         iterations. Default: none.
     gap
         Relative gap at which a solve counts as optimal. Default 0.
-    Wall-clock seconds after which the solve raises `WallGuardError`. It never affects a result.
-    Default: none.
-        result. Default: none.
+    wall_guard_s
+        Wall-clock seconds after which the solve raises `WallGuardError`. It never affects a result.
+        Default: none.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-r"""The linear assignment problem on a table of costs, rows at most as many as columns.
+r"""The linear assignment problem on a cost table with at least as many columns as rows.
 
 .. math::
 
@@ -27,20 +27,20 @@ Solver = Literal["scipy", "min_cost_flow"]
 """Shortest augmenting paths on real costs (SciPy), or cost scaling on whole ones (OR-Tools)."""
 
 _TINY = 2.0**-50
-"""Relative error of a sum of two numbers, with room to spare."""
+"""Upper bound on the relative rounding error of a sum of two numbers, with a safety margin."""
 
 
 class Assigned(NamedTuple):
-    """A column for every row.
+    """An optimal assignment of columns to rows.
 
     Attributes
     ----------
     column
         Column of each row, shape (M,).
     bound
-        No assignment costs less.
+        Proven lower bound on the cost of every assignment.
     work
-        Entries of the table: the unit in which back ends for assignments count their work.
+        Number of entries of the table, the unit of work of the assignment back ends.
     """
 
     column: NDArray[np.int64]
@@ -49,14 +49,14 @@ class Assigned(NamedTuple):
 
 
 def assign(cost: NDArray[np.float64], solver: Solver = "scipy") -> Assigned | None:
-    """Match every row with a column of its own at the least total cost.
+    """Assign each row a different column at minimum total cost.
 
     Parameters
     ----------
     cost
         Shape (M, N); +inf forbids a pair.
     solver
-        Who solves it. Default: SciPy.
+        The solver. Default: SciPy.
 
     Returns
     -------
@@ -84,17 +84,17 @@ def solve_by_assignment(
     Parameters
     ----------
     table
-        Makes the table of costs; its time counts as building.
+        Function that returns the cost table; its time counts as building time.
     read
-        Makes values of the model of the column of each row.
+        Function that turns the column of each row into the model's values.
     objective
-        The model's own.
+        Objective function of the model.
     solver
-        Who solves it.
+        The solver.
 
     Returns
     -------
-    The best values, or that there are none; work in entries of the table.
+    The optimal values, or status INFEASIBLE; work is the number of entries of the table.
     """
     began = perf_counter()
     cost = table()
@@ -112,7 +112,7 @@ def solve_by_assignment(
 
 
 def greedy_assign(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
-    """Take the cheapest pair left until every row has a column; ties go to the lowest indices.
+    """Take the cheapest remaining pair until each row has a column; ties: lowest indices.
 
     Parameters
     ----------
@@ -141,10 +141,10 @@ def greedy_assign(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
 
 
 def assignment_bound(cost: NDArray[np.float64], column: NDArray[np.int64]) -> float:
-    """Bound the cost of every assignment from below, given one that should be the best.
+    """Return a lower bound on the cost of every assignment, given a (presumably optimal) one.
 
     The prices `v` of the columns are the lengths of the shortest alternating paths (Bellman and
-    Ford on the rows); columns without a row have price 0. Whatever the prices are, the bound holds.
+    Ford on the rows); columns without a row have price 0. The bound is valid for any prices.
 
     Parameters
     ----------

@@ -43,13 +43,13 @@ class Formulation(Generic[V]):
     program
         The programme.
     encode
-        Writes values as columns of the programme.
+        Turns the model's values into column values.
     decode
-        Reads values off the columns.
+        Turns column values into the model's values.
     objective, violations
-        The model's own.
+        Functions of the model.
     names
-        Says what each column is called, and what it decides: see `Names`.
+        Function that gives the name and meaning of each column, see `Names`.
     """
 
     program: LinearProgram
@@ -68,22 +68,22 @@ def solve_by(
     seed: int,
     start: V | None,
 ) -> Solution[V]:
-    """State the programme, check the start, hand both over, and read the answer.
+    """Formulate the programme, check the start, run the solver, and decode the result.
 
     Parameters
     ----------
     backend
         The solver.
     formulate
-        States the programme; its time counts as building.
+        Function that formulates the programme; its time counts as building time.
     limits, seed
-        As the back ends say.
+        As for the back end.
     start
-        Values to start from, or None.
+        Feasible values to start from, or None.
 
     Returns
     -------
-    What the solver found; never worse than the start.
+    The solver's solution, or the start if the solver found nothing better.
 
     Raises
     ------
@@ -104,16 +104,16 @@ def solve_by(
 
 
 def at_least(found: Solution[V], start: V, value: float) -> Solution[V]:
-    """Return the start if a search has found nothing, or nothing better, before its limit.
+    """Return the start if the search has not found anything better within its limit.
 
     Parameters
     ----------
     found
-        What the search found; a minimum.
+        Result of the search for a minimum.
     start
         Feasible values.
     value
-        Their objective.
+        Objective of these values.
     """
     if found.found and found.objective <= value:
         return found
@@ -122,14 +122,14 @@ def at_least(found: Solution[V], start: V, value: float) -> Solution[V]:
 
 
 def relax(program: LinearProgram, limits: Limits = NO_LIMITS, *, seed: int = 0) -> Outcome:
-    """Solve a programme without whole numbers by HiGHS; its bound is one for the programme.
+    """Solve the linear relaxation with HiGHS; its bound is valid for the integer programme.
 
     Parameters
     ----------
     program
         The programme.
     limits
-        `iterations` of the simplex. Default: none.
+        `iterations` limits the simplex method. Default: no limit.
     seed
         Seed of the solver. Default 0.
     """
@@ -138,12 +138,12 @@ def relax(program: LinearProgram, limits: Limits = NO_LIMITS, *, seed: int = 0) 
 
 
 def with_relaxed_bound(backend: Backend) -> Backend:
-    """Give searches that their limit ended the bound of the relaxation, if that is better.
+    """Wrap a back end: if a limit ends its search, report the relaxation's bound if it is better.
 
     Parameters
     ----------
     backend
-        The solver. The simplex iterations of the relaxation do not count as work of its search.
+        The solver. The simplex iterations of the relaxation do not count as its work.
     """
 
     def solve(

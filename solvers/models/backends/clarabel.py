@@ -1,9 +1,10 @@
 """Linear relaxations through cvxpy and Clarabel, compiled once and re-solved.
 
-A relaxation is compiled for a *pattern*: the places of the matrix entries and which row bounds
-exist. Every number (costs, coefficients, bounds) is a `cvxpy.Parameter`, so that programs of the
-same pattern are re-solved without compiling (disciplined parametrised programming). Interior-point
-duals are inexact; the bound is made of them by `safe_bound`, which holds for any multipliers.
+A relaxation is compiled for a *pattern*: the positions of the nonzeros of the matrix, and which
+rows have lower and upper bounds. Every number (costs, coefficients, bounds) is a `cvxpy.Parameter`,
+so programs with the same pattern are re-solved without compiling (disciplined parametrised
+programming). Interior-point duals are inexact; `safe_bound` turns them into a bound that is valid
+for any multipliers.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ class LinearRelaxation:
     Parameters
     ----------
     program
-        Any program of the pattern.
+        Any program with the pattern.
     """
 
     def __init__(self, program: LinearProgram) -> None:
@@ -67,13 +68,13 @@ class LinearRelaxation:
         Parameters
         ----------
         program
-            A program of the pattern.
+            A program with the same pattern.
         limits
             ``iterations`` limits the interior-point method. Default: 200 iterations.
 
         Returns
         -------
-        The relaxed point and a safe bound. The bound holds however the solver ended.
+        The relaxed point and a safe bound. The bound is valid whatever the solver's final status.
 
         Raises
         ------

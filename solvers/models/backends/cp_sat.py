@@ -1,12 +1,12 @@
 """CP-SAT: integer programs, limited by deterministic time.
 
-One worker, a fixed seed and a limit in deterministic seconds make a run repeat on any load of the
-machine. The model goes straight into the solver's own protocol structure, row by row from the
-compressed matrix, which costs a few microseconds a row.
+One worker, a fixed seed and a limit in deterministic seconds make results repeatable, whatever the
+load of the machine. The model is written directly into the solver's protocol buffer, row by row
+from the compressed matrix, in a few microseconds per row.
 
-CP-SAT counts in whole numbers: costs are rounded *down* to multiples of 1/1024 (a power of two,
-so that scaling is exact). All columns being non-negative, the minimum of the rounded costs is
-never above the true one, and the bound stays a bound.
+CP-SAT uses integers: costs are rounded *down* to multiples of 1/1024 (a power of two, so that
+scaling is exact). As all columns are non-negative, the minimum with rounded costs never exceeds the
+true minimum, so the solver's bound remains valid.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from rmfs.solvers.models.solution import NO_LIMITS, Limits, Status, WallGuardErr
 
 NAME = "cp_sat"
 RESOLUTION = 1024
-"""Costs are resolved to 1/1024."""
+"""Number of steps per unit into which costs are rounded."""
 
 _FAR = 2**62
 
@@ -53,8 +53,8 @@ def solve(
     start
         A feasible point to start from, shape (n,). Default: none.
     presolve
-        Whether the solver rewrites the program first. A program that is tight already, under a
-        short limit, is better solved as it is. Default: yes.
+        Whether the solver simplifies the program first. Under a short limit, a program with a tight
+        relaxation is better solved without presolve. Default: yes.
 
     Returns
     -------
@@ -63,7 +63,7 @@ def solve(
     Raises
     ------
     ModelError
-        If a number must be whole and is not.
+        If a number that must be whole is not.
     WallGuardError
         If the wall-clock guard ran out.
     """
@@ -83,7 +83,7 @@ def solve(
 
 
 def configure(solver: cp_model.CpSolver, limits: Limits, seed: int) -> None:
-    """Set one worker, the seed and the limits.
+    """Set a solver to one worker, the given seed and the given limits.
 
     Parameters
     ----------
@@ -105,21 +105,21 @@ def configure(solver: cp_model.CpSolver, limits: Limits, seed: int) -> None:
 
 
 def check_guard(solver: cp_model.CpSolver, status: CpSolverStatus, limits: Limits) -> None:
-    """Raise if the wall clock, and not the counted work, ended the search.
+    """Raise an error if the wall-clock guard rather than counted work ended the search.
 
     Parameters
     ----------
     solver
         The solver after its run.
     status
-        What the run returned.
+        Status that the run returned.
     limits
-        The limits it had.
+        Limits of the run.
 
     Raises
     ------
     WallGuardError
-        If the guard ran out before the search was over.
+        If the guard ran out before the search had ended.
     """
     if limits.wall_guard_s is None or status in (cp_model.OPTIMAL, cp_model.INFEASIBLE):
         return

@@ -11,8 +11,8 @@ For any potentials :math:`\pi` (Ahuja, Magnanti, Orlin: Network Flows, section 9
 
     \sum_a q_a \min(0,\; c_a + \pi_{tail(a)} - \pi_{head(a)}) - \sum_v b_v \pi_v
 
-bounds the cost from below, and shortest distances in the residual network of the best flow make
-the bound equal to its cost.
+is a lower bound on the cost. With the shortest distances in the residual network of an optimal flow
+as potentials, the bound equals the cost of that flow.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from ortools.graph.python import min_cost_flow as ortools_flow  # type: ignore[import-untyped]
 
 _LARGEST_COST = 2.0**40
-"""Largest whole cost handed to OR-Tools, which multiplies costs by the number of nodes."""
+"""Largest integer cost passed to OR-Tools, which multiplies costs by the number of nodes."""
 
 _FINEST = 1e6
 """Maximum resolution of costs, in parts of a unit."""
@@ -47,8 +47,8 @@ class Network:
     cost
         Cost per unit, shape (A,); any sign, finite.
     supply
-        Units that enter the network at each node, negative where they leave, shape (V,); they
-        add up to 0.
+        Units that enter the network at each node (negative: that leave it), shape (V,); the sum is
+        0.
     """
 
     tail: NDArray[np.int64]
@@ -59,16 +59,16 @@ class Network:
 
 
 class Flow(NamedTuple):
-    """A cheapest flow.
+    """A minimum-cost flow.
 
     Attributes
     ----------
     units
         Units on each arc, shape (A,).
     bound
-        No flow costs less.
+        Proven lower bound on the cost of every flow.
     work
-        Arcs: the unit in which the back end counts its work.
+        Number of arcs, the unit of work of the back end.
     """
 
     units: NDArray[np.int64]
@@ -77,10 +77,10 @@ class Flow(NamedTuple):
 
 
 def min_cost_flow(network: Network) -> Flow | None:
-    """Find a cheapest flow with OR-Tools' cost-scaling push-relabel algorithm.
+    """Find a minimum-cost flow with OR-Tools' cost-scaling push-relabel algorithm.
 
-    Costs are rounded to whole millionths (coarser if they are huge), on which the solver is exact;
-    the bound is one for the unrounded costs.
+    Costs are rounded to millionths (coarser if they are huge). The solver is exact for the rounded
+    costs; the bound is valid for the unrounded ones.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def min_cost_flow(network: Network) -> Flow | None:
 
     Returns
     -------
-    A cheapest flow, or None if no flow meets all supplies.
+    A minimum-cost flow, or None if no flow meets all supplies.
     """
     if not len(network.tail):
         feasible = not network.supply.any()
@@ -113,14 +113,14 @@ def min_cost_flow(network: Network) -> Flow | None:
 
 
 def flow_bound(network: Network, potential: NDArray[np.float64]) -> float:
-    """Bound the cost of every flow from below by potentials; any will do, the best are tight.
+    """Return a lower bound on the cost of every flow, which is valid for any potentials.
 
     Parameters
     ----------
     network
         The graph, its costs and supplies.
     potential
-        One per node, shape (V,).
+        Potential of each node, shape (V,); optimal dual values make the bound tight.
 
     Returns
     -------

@@ -1,8 +1,8 @@
 """HiGHS: linear and mixed-integer programs, limited by nodes or iterations.
 
-HiGHS repeats itself exactly on one thread. Its limit is the number of nodes; the work of a node
-varies, so `Outcome.work` counts simplex iterations instead. A mixed-integer bound comes from
-floating-point LPs: it is lowered by the solver's own tolerance before it is called a bound.
+On one thread, HiGHS is deterministic. Its limit is the number of nodes; as the work per node
+varies, `Outcome.work` counts simplex iterations instead. The bound of a mixed-integer program comes
+from floating-point LPs, so it is lowered by the solver's own tolerance.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ def solve(
     program
         What to solve.
     limits
-        ``nodes`` limits branch and bound, ``iterations`` the simplex of a pure LP; ``gap`` is
-        relative. Default: to optimality.
+        ``nodes`` limits branch and bound, ``iterations`` the simplex method on a pure LP; ``gap``
+        is relative. Default: to optimality.
     seed
         Seed of the solver's tie-breaks. Default 0.
     start
@@ -47,7 +47,7 @@ def solve(
 
     Returns
     -------
-    The outcome; whole columns are rounded to exact whole numbers.
+    The outcome; integer columns are rounded to exact integers.
 
     Raises
     ------
@@ -81,8 +81,8 @@ def relax(
     limits
         ``iterations`` limits the simplex method. Default: none.
     interior
-        By an interior point instead of the simplex method, which takes a fraction of its time where
-        there are 10 000 columns or more; the bound is as safe. Default: no.
+        Whether to use the interior-point method instead of the simplex method: from 10,000 columns
+        on it takes a fraction of the time, and the bound is equally safe. Default: no.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The raw result of a back end, before a model interprets it: columns, bounds and work."""
+"""The raw result of a back end: column values, bound and work, not yet interpreted by a model."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ from rmfs.solvers.models.solution import Solution, Status
 V = TypeVar("V")
 
 NUMERICAL_TOLERANCE = 1e-6
-"""What a floating-point MIP solver may be off by, relative; its bounds are lowered by this."""
+"""Relative error assumed for a floating-point MIP solver; its bounds are lowered by this."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """The end of one solve of a `LinearProgram`.
+    """The result of solving a `LinearProgram`.
 
     Parameters
     ----------
     x
-        Value per column; None if nothing feasible was found.
+        Value of each column; None if no feasible point was found.
     bound
         Proven lower bound of the objective, offset included; -inf if none.
     status
-        How it ended.
+        Final status.
     backend
         Name of the adapter.
     work
         Deterministic work in the back end's unit.
     build_s, wall_s
-        Wall-clock seconds for handing over, and for the whole call.
+        Wall-clock seconds for passing the program to the solver, and for the whole call.
     built
-        Nonzeros handed over.
+        Number of nonzeros passed to the solver.
     """
 
     x: NDArray[np.float64] | None
@@ -62,11 +62,11 @@ class Outcome:
         Parameters
         ----------
         decode
-            Makes values of the columns.
+            Function that turns column values into the model's values.
         objective
             The model's own objective function.
         build_s
-            Seconds the model spent before the adapter was called; added to both times.
+            Seconds the model spent before the adapter was called; they are added to both times.
 
         Returns
         -------
@@ -88,14 +88,16 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Relaxation:
-    """The end of one relaxed solve.
+    """The result of solving a relaxation.
 
     Parameters
     ----------
     x
-        Value per column, fractional and feasible to the solver's tolerance; None if it found none.
+        Value of each column, possibly fractional, feasible within the solver's tolerance; None if
+        the solver found no point.
     multipliers
-        One per row, positive where a lower bound binds; zeros if the solver gave none.
+        Dual value of each row, positive where a lower bound is binding; zeros if the solver gave
+        none.
     bound
         Lower bound of the program and of its integer version, rounded to the safe side.
     work
@@ -113,14 +115,14 @@ class Relaxation:
 
 
 def trivial(program: LinearProgram, backend: str) -> Outcome | None:
-    """Answer a program without columns, which solvers treat in different ways.
+    """Solve a program without columns here, as solvers treat it in different ways.
 
     Parameters
     ----------
     program
         The program.
     backend
-        Name of the adapter that asks.
+        Name of the calling adapter.
 
     Returns
     -------

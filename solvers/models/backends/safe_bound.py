@@ -1,4 +1,4 @@
-"""A lower bound that holds for any multipliers, however inexact the solver that found them.
+"""A lower bound that is valid for any multipliers, however inexact.
 
 For a program ``min c·x, row_lower <= A x <= row_upper, lower <= x <= upper`` and any row
 multipliers y, weak duality over the box gives
@@ -6,10 +6,10 @@ multipliers y, weak duality over the box gives
     c·x = y·(A x) + (c - A'y)·x >= sum_i min(y_i row_lower_i, y_i row_upper_i)
                                    + sum_j min(r_j lower_j, r_j upper_j),   r = c - A'y
 
-A multiplier whose sign asks for an absent (infinite) row bound is set to 0 first: that repairs
-the dual to feasibility. All that is left is rounding, which the a-priori error of sums and
-products bounds; it is subtracted. (Neumaier and Shcherbina 2004, Safe bounds in linear and
-mixed-integer linear programming, Math. Program. 99.)
+A multiplier whose sign refers to an absent (infinite) row bound is set to 0 first, which makes the
+dual feasible. The remaining error is rounding; an a-priori bound on the rounding error of the sums
+and products is subtracted. (Neumaier and Shcherbina 2004, Safe bounds in linear and mixed-integer
+linear programming, Math. Program. 99.)
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ _UNIT = float(np.finfo(np.float64).eps)
 
 
 def safe_bound(program: LinearProgram, multipliers: NDArray[np.float64]) -> float:
-    """Lower bound of a program (and of its integer version) from row multipliers.
+    """Return a lower bound on a program (and its integer version) from row multipliers.
 
     Parameters
     ----------
     program
         The program; integrality is ignored.
     multipliers
-        One per row, positive where a lower bound binds. Any values give a valid bound; the dual
-        solution gives a tight one.
+        Multiplier of each row, positive where a lower bound is binding. Any values give a valid
+        bound; the dual solution gives a tight one.
 
     Returns
     -------

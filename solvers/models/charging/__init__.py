@@ -1,4 +1,4 @@
-"""Charging (CA): who gets energy when, where and for how long, over a look-ahead."""
+"""Charging (CA): which robot charges where, when and for how long within a planning horizon."""
 
 from rmfs.solvers.models.charging import cp_sat, greedy, highs
 from rmfs.solvers.models.charging.data import AWAY as AWAY

@@ -1,4 +1,4 @@
-"""All stays that each robot may have, one row each."""
+"""All possible stays of each robot, one row per stay."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from rmfs.solvers.models.charging.data import (
 
 @dataclass(frozen=True)
 class Columns:
-    """Every stay that a robot may have, and for every robot that it has none.
+    """All possible stays of all robots, including "no stay" for each robot.
 
     Parameters
     ----------
     robot, group, begin, length
-        The stays, sorted by robot, each robot's own absence of one first, shape (N,).
+        The stays, sorted by robot, shape (N,); the first row of each robot means "no stay".
     cost_s
-        What each costs but for missed work, shape (N,).
+        Cost of each stay without missed work, shape (N,).
     away, used
-        Slots in which the robot is away from work, and at a place, shape (N, T).
+        Slots in which the robot is away from work, and in which it occupies a place, shape (N, T).
     first
-        First row of each robot, and N, shape (R + 1,).
+        First row of each robot, followed by N, shape (R + 1,).
     """
 
     robot: Integers
@@ -45,11 +45,11 @@ class Columns:
     first: Integers
 
     def plan(self, rows: Integers) -> ChargePlan:
-        """Make a plan of one row for each robot, shape (R,)."""
+        """Return the plan in which each robot makes the stay of the given row, shape (R,)."""
         return ChargePlan(self.group[rows], self.begin[rows], self.length[rows])
 
     def rows(self, plan: ChargePlan) -> Integers:
-        """Find the row of each robot's stay, shape (R,); the plan breaks no rule."""
+        """Return the row of each robot's stay in a feasible plan, shape (R,)."""
         found = [
             np.flatnonzero(
                 (self.group[low:high] == plan.group[robot])

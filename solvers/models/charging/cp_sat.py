@@ -1,4 +1,4 @@
-"""The charging model by CP-SAT."""
+"""The charging model, solved by CP-SAT."""
 
 from __future__ import annotations
 

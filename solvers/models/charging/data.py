@@ -1,7 +1,7 @@
-r"""The problem: robots whose batteries run down, places with energy, and work that wants robots.
+r"""The problem: robots with batteries, places that charge or swap them, and demand for robots.
 
-Time is cut into T slots. Every robot has at most one stay at a place: group g, first slot b, n
-slots. Meanwhile it is away from work.
+Time is divided into T slots. Each robot makes at most one stay at a place, given by the group g of
+the place, the first slot b and the number n of slots. During its stay the robot is away from work.
 
 .. math::
 
@@ -9,12 +9,11 @@ slots. Meanwhile it is away from work.
     + idle \cdot slot \cdot slots_r\bigr)
     + (1 - idle) \frac{slot}{Q} \sum_{q,t} \bigl(wanted_{qt} - (R - away_t)\bigr)^+
 
-Robot time that work misses is weighed against energy: :math:`lost(l) = worth\,(1 - l - \kappa (l -
-l^2))` is what it will take to fill a battery that has the level l at the end, and :math:`\kappa`
-makes the energy of an empty battery worth more than that of a full one. Batteries fill with
-constant power up to a bend, and from there on with power that falls evenly to 0; a swap takes one
-slot. Groups are places that are alike. What work wants is given as Q cases, each as likely as the
-others.
+Missing robot time is weighed against energy: :math:`lost(l) = worth\,(1 - l - \kappa (l - l^2))` is
+the robot time needed to fill a battery whose final level is l; :math:`\kappa` makes energy worth
+more in an empty battery than in a full one. Batteries fill with constant power up to a bend, and
+from there on with power that falls linearly to 0; a swap takes one slot. A group consists of
+identical places. The demand for robots is given as Q equally likely cases.
 """
 
 from __future__ import annotations
@@ -36,51 +35,53 @@ AWAY = -1
 
 @dataclass(frozen=True)
 class Charging:
-    r"""Robots, groups of places, and work.
+    r"""Robots, groups of places, and demand for robots.
 
     Parameters
     ----------
     level
-        Level of each battery now, as a share of its capacity, shape (R,).
+        Current level of each battery, as a share of its capacity, shape (R,).
     drain
-        What each robot draws in a slot of work, as such a share, shape (R,).
+        Consumption of each robot per slot of work, as a share of the capacity, shape (R,).
     ready
         First slot in which each robot may leave its work, shape (R,).
     waits
-        Whether a robot is bound for a place already: it is away from work until its stay is over,
-        and does not drain, shape (R,).
+        Whether a robot is already on its way to a place, shape (R,): it is away from work until its
+        stay is over, and its battery does not drain.
     here
         Group of the place where a robot is being charged, or `AWAY`, shape (R,). Its stay begins in
-        slot 0; without one it leaves now.
+        slot 0; if it has no stay, it leaves now.
     way_s
         Time from each robot to a place of each group, shape (R, G), in s; +inf where it may not go.
-        A stay begins with it, unless the robot is there, and the way back is paid besides.
+        A stay begins with this drive, unless the robot is already there; the way back is charged in
+        addition.
     places
-        Robots that may be at each group, shape (G, T).
+        Number of robots that each group can hold in each slot, shape (G, T).
     gain
-        Share of a capacity that each group gives in a slot at constant power, shape (G,).
+        Share of a battery's capacity that each group charges per slot at constant power, shape
+        (G,).
     swapped
-        Level that a robot has after a stay at each group that swaps batteries, which takes one
-        slot; 0 for groups that charge, shape (G,).
+        Battery level after a swap at each group, shape (G,); a swap takes one slot. 0: the group
+        charges instead.
     wanted
-        Robots that work has use for, in Q cases, shape (Q, T).
+        Number of robots needed for work in each of Q cases, shape (Q, T).
     slot_s
         Length of a slot, positive, in s.
     worth_s
-        Robot time that a full battery is worth at the end, in s.
+        Worth of a full battery at the end, in s of robot time.
     longest
-        Slots of a stay, at most. Default 8.
+        Maximum number of slots of a stay. Default 8.
     taper_from
-        Level from which charging slows down; 1: never. Default 0.8.
+        Level above which charging slows down; 1: never. Default 0.8.
     full
         Level that counts as full. Default 0.98.
     least
-        Level below which no robot should be. Default 0.15.
+        Level below which no robot should fall. Default 0.15.
     short_s
-        What it costs to be below, in s per share. Default 36000.
+        Penalty for falling below it, in s per unit of the level. Default 36000.
     idle
-        What time away from work costs that work does not miss, as a share of what it costs where
-        work does, from 0 to 1. Default 0.
+        Cost of time away from work when the robot is not needed, as a share of its cost when the
+        robot is needed, from 0 to 1. Default 0.
     curve
         :math:`\kappa`, from 0 to 1. Default 0.2.
 
@@ -159,12 +160,13 @@ class Charging:
         return int(self.wanted.shape[1])
 
     def charged(self, level: Floats, gain: Floats, slots: Floats) -> Floats:
-        """Return levels after some slots of charging; nothing is charged beyond full.
+        """Return the battery levels after charging, which stops at `full`.
 
         Parameters
         ----------
         level, gain, slots
-            Levels before, shares per slot at constant power, and slots; they broadcast.
+            Levels before, share of the capacity charged per slot at constant power, and number of
+            slots; arrays that broadcast.
         """
         bend = self.taper_from
         steady = level + gain * slots
@@ -180,19 +182,19 @@ class Charging:
         return reached
 
     def lost_s(self, level: Floats) -> Floats:
-        """Return the robot time that it will take to fill batteries with these levels, s."""
+        """Return the robot time needed to fill batteries from these levels, in s."""
         lost: Floats = self.worth_s * (1 - level - self.curve * (level - level**2))
         return lost
 
     def missing_s(self, away: Integers) -> Floats:
-        """Return the time of robots that work misses in the mean of the cases, shape (T,), in s.
+        """Return the missing robot time in each slot, averaged over the cases, shape (T,), in s.
 
-        What time away costs in any case is not counted.
+        The cost of time away from work when no robot is missing is not included.
 
         Parameters
         ----------
         away
-            Robots away from work, shape (T,).
+            Number of robots away from work in each slot, shape (T,).
         """
         missed = np.maximum(self.wanted - (self.robots - away), 0).mean(axis=0)
         time_s: Floats = self.missed_s * missed
@@ -200,20 +202,20 @@ class Charging:
 
     @property
     def missed_s(self) -> float:
-        """What a robot costs besides that work misses for a slot, s."""
+        """Additional cost of one slot in which a needed robot is missing, in s."""
         return self.slot_s * (1 - self.idle)
 
 
 @dataclass(frozen=True)
 class ChargePlan:
-    """Stays of robots.
+    """The stay of each robot.
 
     Parameters
     ----------
     group
         Group of each robot's stay, or `AWAY`, shape (R,).
     begin, length
-        First slot of the stay, and its slots; 0 for robots without, shape (R,).
+        First slot and number of slots of the stay, shape (R,); 0 for robots without a stay.
     """
 
     group: Integers
@@ -222,14 +224,14 @@ class ChargePlan:
 
 
 def costs_s(data: Charging, robot: Integers, plan: ChargePlan) -> Floats:
-    """Return what stays cost, but for the work that misses robots, shape (N,), in s.
+    """Return the costs of stays without missed work, shape (N,), in s.
 
     Parameters
     ----------
     data
         The problem.
     robot
-        Whose stays these are, shape (N,).
+        Robot of each stay, shape (N,).
     plan
         The stays, each of shape (N,).
     """
@@ -256,7 +258,7 @@ def costs_s(data: Charging, robot: Integers, plan: ChargePlan) -> Floats:
 
 
 def away(data: Charging, robot: Integers, plan: ChargePlan) -> NDArray[np.bool_]:
-    """Return in which slots robots are away from work, shape (N, T).
+    """Return for each stay the slots in which its robot is away from work, shape (N, T).
 
     Parameters
     ----------
@@ -271,14 +273,14 @@ def away(data: Charging, robot: Integers, plan: ChargePlan) -> NDArray[np.bool_]
 
 
 def during(first: Integers, end: Integers, slots: int) -> NDArray[np.bool_]:
-    """Return which slots lie within [first, end), shape (N, T)."""
+    """Return for each interval [first, end) which slots it contains, shape (N, T)."""
     slot = np.arange(slots)
     within: NDArray[np.bool_] = (slot >= first[:, np.newaxis]) & (slot < end[:, np.newaxis])
     return within
 
 
 def objective(data: Charging, plan: ChargePlan) -> float:
-    """Return the robot time of energy, ways and missed work, in s.
+    """Return the cost of a plan: energy, drives and missed work, in s of robot time.
 
     Parameters
     ----------
@@ -293,7 +295,7 @@ def objective(data: Charging, plan: ChargePlan) -> float:
 
 
 def violations(data: Charging, plan: ChargePlan) -> list[str]:
-    """Say what is wrong with a plan; empty if nothing is.
+    """Return what is wrong with a plan; empty if it is feasible.
 
     Parameters
     ----------

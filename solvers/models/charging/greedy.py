@@ -1,8 +1,8 @@
-r"""Robots one after another, the emptiest first, and again until nobody would choose otherwise.
+r"""Robots choose stays in turn, lowest battery first, until none would change its choice.
 
-The bound prices absence: with :math:`0 \le \lambda_t \le slot`, work that misses robots costs at
-least :math:`\lambda_t (wanted_t - R + away_t)`, so that every robot may choose for itself. The
-prices are what the last robot away costs in the plan found.
+The bound puts a price on absence: with :math:`0 \le \lambda_t \le slot`, missing robots cost at
+least :math:`\lambda_t (wanted_t - R + away_t)`. This separates the robots: each can choose its stay
+independently. The price of a slot is the marginal cost of absence in the plan found.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from rmfs.solvers.models.checks import require
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_rule
 
 ROUNDS = 10
-"""How often all robots choose, at most."""
+"""Maximum number of rounds in which all robots choose."""
 
 
 def solve(
@@ -35,7 +35,7 @@ def solve(
     seed: int = 0,
     start: ChargePlan | None = None,
 ) -> Solution[ChargePlan]:
-    """Let every robot take the stay that costs least beside those of the others.
+    """Let each robot take the stay that costs least, given the stays of the others.
 
     Parameters
     ----------
@@ -44,13 +44,13 @@ def solve(
     limits
         `iterations` limits the rounds. Default: 10.
     seed
-        Not needed.
+        Not used.
     start
-        A plan to go on from. Default: nobody stays.
+        A plan to start from. Default: no robot has a stay.
 
     Returns
     -------
-    The plan; work in stays looked at.
+    The plan; work is the number of stays evaluated.
     """
     began = perf_counter()
     table = columns(data)

@@ -1,4 +1,4 @@
-"""The charging model by HiGHS."""
+"""The charging model, solved by HiGHS."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
 """Pile-on: orders to station slots (POA) and pods to stations (PPS), with robots also TA.
 
-- `joint`: the decision for a real site, under a deterministic limit; what controllers ask;
+- `joint`: for sites of realistic size, under a deterministic limit; used by controllers;
 - `cp_sat`, `highs`: exact, with M1G (Jiao et al. 2025) as the default weights;
-- `greedy`, `hadgs`: rules, which also start the exact methods;
-- `neighbourhood`: two stations at a time, exactly.
+- `greedy`, `hadgs`: heuristics, whose decisions also start the exact methods;
+- `neighbourhood`: re-optimises two stations at a time exactly.
 
-Besides: `relaxation` and `prices` for lower bounds, `candidates` for pruning.
+`relaxation` and `prices` compute lower bounds, `candidates` prunes pairs.
 """
 
 from rmfs.solvers.models.methods import Methods

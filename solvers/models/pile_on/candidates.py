@@ -1,12 +1,12 @@
-"""Which pairs are worth looking at: pods and stations, orders and stations, robots and pods.
+"""Candidate pairs: of pods and stations, orders and stations, robots and pods.
 
-The *price* of a pod at a station is the cost of the call, shared by the order lines the pod could
-serve alone; the price of an order there is what the cheapest pods for its missing lines ask.
-Pruning keeps, by price, the best few pods per wanted SKU and station, the best few orders per
-station, and the best few stations per order; and the nearest few robots per pod. Versatile pods are
-cheap and appear for many SKUs, so that the union stays small. What pruning loses is measured in
-`tests/benchmarks/test_models_pile_on.py`; a bound of the pruned model is not one of the full model
-(`relaxation.bound` repairs that).
+The *price* of a pod at a station is the cost of calling it, divided by the number of order lines
+that it could serve alone; the price of an order at a station is the total price of the cheapest
+pods for its missing lines. Pruning keeps the cheapest few pods per wanted SKU and station, the
+cheapest few orders per station, the cheapest few stations per order, and the nearest few robots per
+pod. Versatile pods are cheap and appear for many SKUs, so the union stays small. The loss from
+pruning is measured in `tests/benchmarks/test_models_pile_on.py`; a bound of the pruned model is not
+valid for the full model (`relaxation.bound` computes one that is).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from rmfs.solvers.models.pile_on.values import Assignment
 
 @dataclass(frozen=True)
 class Candidates:
-    """The pairs a model may use.
+    """The pairs that a model may use.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Candidates:
             object.__setattr__(self, field, flags(field, getattr(self, field), (None, None)))
 
     def including(self, values: Assignment) -> Candidates:
-        """Add the pairs that a decision uses, so that it can start a solver.
+        """Add the pairs that a decision uses, so that a solver can start from it.
 
         Parameters
         ----------
@@ -67,17 +67,19 @@ class Candidates:
 
 @dataclass(frozen=True)
 class Pruning:
-    """How many of each kind to keep; more keeps more of the optimum and takes longer.
+    """How many candidates of each kind to keep; more candidates lose less and take longer.
 
     Parameters
     ----------
     pods_per_sku
         Pods per wanted SKU and station. Default 4.
     orders_per_slot
-        Orders (or lines, where each is one) per free slot of a station. Default 64: with 16 every
-        second of 150 captured questions lost, 21 s of robots on average; with 64 every twentieth.
+        Orders (or lines, in variants where each line is placed by itself) per free slot of a
+        station. Default 64: it worsened the solution of one in twenty of 150 recorded questions; 16
+        worsened every second one, by 21 s of robot time on average.
     stations_per_order
-        Stations per order, so that none is left out; if more than so many have slots. Default 4.
+        Stations per order, if more stations have free slots; no order is left without a station.
+        Default 4.
     robots_per_pod
         Robots per pod. Default 4.
 
@@ -98,7 +100,7 @@ class Pruning:
 
 
 def everything(data: PileOn) -> Candidates:
-    """All pairs that can be of use: no loss.
+    """Return all pairs that can be useful; nothing is lost.
 
     Parameters
     ----------
@@ -122,14 +124,14 @@ def everything(data: PileOn) -> Candidates:
 
 
 def prune(data: PileOn, pruning: Pruning | None = None) -> Candidates:
-    """Keep the pairs of least price.
+    """Keep the cheapest pairs.
 
     Parameters
     ----------
     data
         The input.
     pruning
-        How many to keep. Default: the defaults of `Pruning`.
+        How many pairs to keep. Default: the defaults of `Pruning`.
     """
     keep = Pruning() if pruning is None else pruning
     if not data.stations:
@@ -183,7 +185,7 @@ def _best_places(data: PileOn, price: Floats, keep: Pruning) -> Flags:
 
 
 def call_price(data: PileOn) -> Floats:
-    """Cost of calling a pod, nearest robot included, per line it could serve alone, shape (P, S).
+    """Cost of calling a pod, with its nearest robot, per line it could serve alone, shape (P, S).
 
     Parameters
     ----------
@@ -194,10 +196,10 @@ def call_price(data: PileOn) -> Floats:
 
 
 def whole_price(data: PileOn) -> Floats:
-    """Least price of the pods that complete each order, all its lines at one station, shape (O,).
+    """Minimum price of the pods that complete each order at a single station, shape (O,).
 
-    What pods on their way have left costs nothing; another line costs as much as the cheapest share
-    of a pod (`call_price`). Infinite where some line finds no pod.
+    Stock left on pods under way costs nothing; any other line costs the lowest `call_price` of a
+    pod for it. Infinite if no pod serves some line.
 
     Parameters
     ----------

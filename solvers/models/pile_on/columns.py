@@ -1,8 +1,8 @@
-"""The columns of the pile-on program: what they cost, and how they become a decision.
+"""The columns of the pile-on program: their costs, and their conversion into a decision.
 
-Columns exist for candidate pairs only, and only where the pods that may come can cover something.
-In `Variant.WHOLE` the columns z of lines *are* those of their orders, so that every row family is
-written once for all variants.
+Columns exist only for candidate pairs for which the pods that may come can cover something. In
+`Variant.WHOLE` the column z of a line *is* that of its order, so each family of rows is written
+once for all variants.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ NONE = np.zeros(0, dtype=np.int64)
 
 @dataclass(frozen=True)
 class Columns:
-    """Index of every column, by family, with what it stands for.
+    """The index of each column and the entities it refers to, by family.
 
     Parameters
     ----------
@@ -33,10 +33,10 @@ class Columns:
         Order, station and columns y and g of each place; `prospect` is empty if prospects are not
         rewarded.
     line, place, cover
-        Line, index of the place of its order, and column z of each line that a place could cover;
-        z is y in `Variant.WHOLE`.
+        Line, index of the place of its order, and column z of each line that a place could cover; z
+        is y in `Variant.WHOLE`.
     complete, started
-        Columns e and w of each order, empty in variants that do without.
+        Columns e and w of each order, empty in variants that do not need them.
     short_station, short_sku, short
         Station, SKU and column v of each shortage.
     robot, fetched, fetch
@@ -125,7 +125,7 @@ def add_columns(builder: ProgramBuilder, data: PileOn, candidates: Candidates) -
 
 
 def decode(data: PileOn, columns: Columns, x: Floats) -> Assignment:
-    """Make a decision of column values.
+    """Turn column values into a decision.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def decode(data: PileOn, columns: Columns, x: Floats) -> Assignment:
     columns
         The columns of the program.
     x
-        One whole value per column.
+        One integer value per column.
     """
     taken = x > 0.5
     slot = np.zeros((data.orders, data.stations), dtype=np.bool_)
@@ -162,7 +162,7 @@ def name_columns(data: PileOn, columns: Columns, names: Names) -> None:
     columns
         The columns of the program.
     names
-        What to fill.
+        The names to fill in.
     """
     c = columns
     if c.cover.size and data.variant is not Variant.WHOLE:
@@ -178,7 +178,7 @@ def name_columns(data: PileOn, columns: Columns, names: Names) -> None:
 
 
 def encode(data: PileOn, columns: Columns, values: Assignment, size: int) -> Floats:
-    """Make column values of a decision.
+    """Turn a decision into column values.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def coverable_lines(data: PileOn, candidates: Candidates) -> Flags:
 
 
 def every(lines: Flags, data: PileOn) -> Flags:
-    """Whether something holds for every line of an order: (L, ...) flags to (O, ...).
+    """Reduce flags of lines, shape (L, ...), to orders: whether all lines have it, shape (O, ...).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The pile-on models with CP-SAT."""
+"""The pile-on models, solved by CP-SAT."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ def solve(
     candidates
         The pairs to use. Default: all. With pruned pairs the bound is -inf.
     strengthen
-        Whether to add the strengthening rows (8). Default: yes.
+        Whether to add the strengthening rows (8) of `program`. Default: yes.
 
     Returns
     -------
-    The solution; always with values.
+    The solution; it always has values.
     """
     # the formulation is tight as it stands: presolving takes longer than it saves
     backend = partial(cp_sat.solve, presolve=False)

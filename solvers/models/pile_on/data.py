@@ -1,8 +1,9 @@
 r"""The input of the pile-on models: one snapshot of orders, pods, stations and robots.
 
 Sets: stations s, orders o with lines l (SKU k(l), units q_l), pods p with stock a_pk, robots r.
-What is already decided comes in as data: orders at stations with open demand, pods on their way,
-robots that carry or fetch a pod. Stock of pods on their way serves the orders already there first:
+Earlier decisions are part of the data: orders at stations with open demand, pods on their way,
+robots that carry or fetch a pod. The stock of pods on their way first serves the orders already at
+the station:
 
 .. math::
 
@@ -28,7 +29,7 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class PileOn:
-    """Orders to station slots and pods to stations (POA + PPS); with robots, TA as well.
+    """Input for assigning orders and pods to stations (POA, PPS) and, if given, robots (TA).
 
     Parameters
     ----------
@@ -182,19 +183,19 @@ class PileOn:
 
     @cached_property
     def surplus(self) -> Integers:
-        """Inbound units beyond the open demand of their station, shape (S, K)."""
+        """Inbound units in excess of the open demand of their station, shape (S, K)."""
         surplus: Integers = np.maximum(self.supply - self.open_units, 0)
         return surplus
 
     @cached_property
     def shortage(self) -> Integers:
-        """Open demand of a station beyond its inbound units, shape (S, K)."""
+        """Open demand of each station in excess of its inbound units, shape (S, K)."""
         shortage: Integers = np.maximum(self.open_units - self.supply, 0)
         return shortage
 
     @cached_property
     def wanted(self) -> Integers:
-        """The SKUs that an order line or a shortage asks for, sorted."""
+        """The SKUs for which there is an order line or a shortage, sorted."""
         asked = np.zeros(self.skus, dtype=np.bool_)
         asked[self.line_sku] = True
         asked |= (self.shortage > 0).any(axis=0)
@@ -202,13 +203,13 @@ class PileOn:
 
     @cached_property
     def call_cost(self) -> Floats:
-        """Weighted cost of calling a pod to a station, robot apart, shape (P, S)."""
+        """Weighted cost of calling a pod to a station, without its robot, shape (P, S)."""
         cost: Floats = self.weights.visit + self.weights.travel * self.travel
         return cost
 
     @cached_property
     def free_robots(self) -> Integers:
-        """Robots that may fetch a pod, in order."""
+        """Robots that may fetch a pod, in ascending order."""
         if self.robot_pod is None:
             return np.zeros(0, dtype=np.int64)
         return np.flatnonzero(self.robot_pod < 0)
@@ -235,10 +236,10 @@ class PileOn:
 
     @cached_property
     def callable_to(self) -> Flags:
-        """`may_call`, true where none is given, shape (S,)."""
+        """`may_call`, or all true if it was not given, shape (S,)."""
         return np.ones(self.stations, np.bool_) if self.may_call is None else self.may_call
 
     @cached_property
     def order_worth(self) -> Floats:
-        """`worth`, zeros where none is given, shape (O,)."""
+        """`worth`, or zeros if it was not given, shape (O,)."""
         return np.zeros(self.orders) if self.worth is None else self.worth

@@ -1,10 +1,11 @@
 """Pod match: the best call first, over all stations at once.
 
-Orders are placed wherever stock already covers them; then, again and again, the pod (or the set of
-pods for one order) with the greatest gain of all stations is called, and its station filled. With
-the slots full, pods whose prospects are worth more than their call follow in the same way. Gains
-shrink while orders and pods go to other stations, so a station is scored again only when it comes
-first (lazy evaluation). Deterministic: ties go to the lower station and pod.
+Orders are placed wherever stock already covers them. Then the pod (or the set of pods for one
+order) with the greatest gain over all stations is called, and its station is filled; this is
+repeated. When the slots are full, pods whose prospects are worth more than their call are called in
+the same way. Gains only decrease as orders and pods go to other stations, so a station is scored
+again only when it is at the top of the queue (lazy evaluation). Deterministic: ties go to the lower
+station and pod.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ def solve(
     start: Assignment | None = None,
     candidates: Candidates | None = None,
 ) -> Solution[Assignment]:
-    """Decide by greatest gain; `iterations` limits the calls of pods.
+    """Decide by greatest gain; `iterations` limits the number of pod calls.
 
     Parameters
     ----------
@@ -64,14 +65,14 @@ def solve(
 
 
 def fill_slots(partial: PartialAssignment, most: int | None = None) -> None:
-    """Place orders and call pods until nothing gains any more.
+    """Place orders and call pods until no call has a gain.
 
     Parameters
     ----------
     partial
         The partial assignment to complete.
     most
-        Most calls to make. Default: no limit.
+        Maximum number of calls. Default: no limit.
     """
     for station in range(partial.data.stations):
         partial.fill(station)
@@ -79,14 +80,14 @@ def fill_slots(partial: PartialAssignment, most: int | None = None) -> None:
 
 
 def add_prospects(partial: PartialAssignment, most: int | None = None) -> None:
-    """Count the orders that leftovers cover, and call pods that bring more of them than they cost.
+    """Make prospects of orders that leftover stock covers, and call pods if their prospects pay.
 
     Parameters
     ----------
     partial
         A partial assignment with its slots filled.
     most
-        Most calls to make. Default: no limit.
+        Maximum number of calls. Default: no limit.
     """
     for station in range(partial.data.stations):
         partial.reserve(station)

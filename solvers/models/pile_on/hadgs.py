@@ -1,15 +1,16 @@
 """HADGS: alternate between orders and pods, station by station (Jiao et al. 2025, section 3).
 
-Per station, in turn: (OA) place every order that the station's pods already cover; (PS and TA) call
-the pod p, with its nearest robot r, of least
+For each station in turn: (OA) place every order that the station's pods already cover; (PS and TA)
+call the pod p, with its nearest robot r, that minimises
 
     K(p) = -complete * (orders p would complete) + travel * (d_rp + d_ps)     (eq. 23)
 
-and start again, until the slots are full. Where no single pod completes an order, sets of pods are
+and repeat, until the slots are full. Where no single pod completes an order, sets of pods are
 sampled (`SETS` of them, each covering a random order) and the best is improved by local searches
-(`SEARCHES` exchanges of one pod), the paper's l1 = 10 and l2 = 3. Details the paper leaves open are
-ours: stations in the order of their inbound travel, orders by worth, then units. Shortages of
-orders already placed are not in the paper: easing them lowers K by `open_unit` a unit.
+(`SEARCHES` exchanges of one pod), the paper's l1 = 10 and l2 = 3. Our choices where the paper
+leaves details open: stations are ordered by their inbound travel, orders by worth, then units. The
+paper does not consider shortages of orders already placed; here each unit of shortage that a pod
+eases lowers K by `open_unit`.
 """
 
 from __future__ import annotations
@@ -32,10 +33,10 @@ from rmfs.solvers.models.pile_on.values import Assignment, objective
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_rule
 
 SETS = 10
-"""Pod sets sampled where no single pod completes an order (l1)."""
+"""Number of pod sets sampled if no single pod completes an order (l1 in the paper)."""
 
 SEARCHES = 3
-"""Local searches on the best of them (l2)."""
+"""Number of local searches on the best set (l2 in the paper)."""
 
 
 def solve(
@@ -46,7 +47,7 @@ def solve(
     start: Assignment | None = None,
     candidates: Candidates | None = None,
 ) -> Solution[Assignment]:
-    """Decide by HADGS; `iterations` limits the calls of pods.
+    """Decide by HADGS; `iterations` limits the number of pod calls.
 
     Parameters
     ----------

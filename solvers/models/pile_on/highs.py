@@ -1,4 +1,4 @@
-"""The pile-on models with HiGHS."""
+"""The pile-on models, solved by HiGHS."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def solve(
     candidates
         The pairs to use. Default: all. With pruned pairs the bound is -inf.
     strengthen
-        Whether to add the strengthening rows (8). Default: yes.
+        Whether to add the strengthening rows (8) of `program`. Default: yes.
 
     Returns
     -------
-    The solution; always with values.
+    The solution; it always has values.
     """
     return solve_program(highs.solve, data, limits, seed, start, candidates, strengthen)

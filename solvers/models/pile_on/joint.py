@@ -1,7 +1,8 @@
-"""The decision for a real site: start from the rule, improve exactly, and bound.
+"""The method for sites of realistic size: start from a heuristic, improve exactly, and bound.
 
-This is what controllers ask. Pod match looks at all pairs; CP-SAT then decides a few stations at a
-time anew, over pruned pairs, within its deterministic limit. The bound is one of the full input.
+Controllers use this method. Pod match (`greedy`) looks at all pairs; CP-SAT then re-optimises a few
+stations at a time over pruned pairs, within its deterministic limit. The bound is valid for the
+full input.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ def solve(
     data, limits, seed
         As for every method.
     start
-        A further decision to start from. Default: only the rule's own.
+        A further decision to start from. Default: only that of pod match.
     pruning
         How many candidates CP-SAT is given. Default: those of `Pruning`.
     bound_steps
@@ -41,8 +42,9 @@ def solve(
     Returns
     -------
     A feasible decision, never worse than pod match or the start, with a bound of the full input.
-    Its work is deterministic seconds of CP-SAT, within the limit but for the step in which it ends;
-    what grows with the input, rule and bound included, is in `built`.
+    Its work is measured in deterministic seconds of CP-SAT; only the last step can exceed the
+    limit. The effort that grows with the input, including that of pod match and the bound, is
+    counted in `built`.
     """
     began = time.perf_counter()
     rule = greedy.solve(data, seed=seed)

@@ -1,7 +1,7 @@
-"""Use what is left over where a variant allows orders in part.
+"""Use leftover slots and stock in variants that allow orders in part.
 
-Heuristics place whole orders. Where slots stay empty, `Variant.LATER` may fill them with orders
-that are covered later, and the split variants with the lines that the stock left happens to cover.
+Heuristics place whole orders. If slots stay empty, `Variant.LATER` may fill them with orders that
+are covered later, and the split variants with lines that the remaining stock covers.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from rmfs.solvers.models.pile_on.variant import Variant
 
 
 def cover_rest(data: PileOn, values: Assignment) -> Assignment:
-    """Fill empty slots with orders covered in part, as far as that gains.
+    """Fill empty slots with partly covered orders as long as that improves the objective.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def cover_rest(data: PileOn, values: Assignment) -> Assignment:
 
     Returns
     -------
-    A feasible decision, at least as good; the same one in the variants without partial orders.
+    A feasible decision that is at least as good; in variants without partial orders, the same one.
     """
     if data.variant not in (Variant.LATER, Variant.SPLIT_TIME, Variant.SPLIT_BOTH):
         return values

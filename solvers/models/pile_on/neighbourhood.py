@@ -1,9 +1,9 @@
 """Large inputs: re-optimises a few stations at a time exactly, with all others fixed.
 
-Starting from a decision, the stations are taken in pairs, neighbours by travel, again and again;
-each pair is solved with CP-SAT over its own orders, the waiting orders, and the pods and robots
-that the other stations leave. The result is never worse than the start, and the deterministic work
-of all parts together obeys the limit.
+Starting from a decision, pairs of stations that are close to each other are taken in rounds; each
+pair is solved with CP-SAT over its own orders, the waiting orders, and the pods and robots that the
+other stations do not use. The result is never worse than the start, and the limit applies to the
+total deterministic work.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from rmfs.solvers.models.pile_on.values import Assignment, nothing, objective, v
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 WIDTH = 2
-"""Stations decided at a time."""
+"""Number of stations that are re-optimised together."""
 
 DEFAULT_WORK = 1.0
-"""Deterministic seconds if the limits name none: a search over parts has no end of its own."""
+"""Deterministic seconds if the limits give none; the search does not end by itself."""
 
 
 def solve(
@@ -43,14 +43,14 @@ def solve(
     data, seed, start
         As for every method.
     limits
-        ``deterministic_s`` limits all parts together, ``iterations`` the number of parts, and
-        ``gap`` each part. Default: one deterministic second.
+        ``deterministic_s`` limits the work on all parts together, ``iterations`` the number of
+        parts, and ``gap`` each part. Default: one deterministic second.
     candidates
         The pairs to use. Default: all.
 
     Returns
     -------
-    The decision; no bound, except where one part is all there is.
+    The decision, without a bound unless a single part is the whole problem.
     """
     left = DEFAULT_WORK if limits.deterministic_s is None else limits.deterministic_s
     limits = replace(limits, deterministic_s=left)
@@ -102,7 +102,7 @@ def solve(
 
 
 def station_groups(data: PileOn) -> list[Integers]:
-    """Pairs of stations to decide together: in a ring of neighbours, each with the next.
+    """Return the pairs of stations to decide together: each with the next in a ring of neighbours.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def station_groups(data: PileOn) -> list[Integers]:
 
     Returns
     -------
-    Pairs in an order in which a round of them touches every station before any twice.
+    The pairs, ordered so that every station occurs once before any occurs a second time.
     """
     stations = np.flatnonzero((data.slots > 0) | (data.shortage > 0).any(axis=1))
     if stations.size <= WIDTH:

@@ -1,8 +1,8 @@
-"""A decision in the making: what heuristics read and change, step by step.
+"""A partial decision, which heuristics read and extend step by step.
 
-It only ever holds orders that are covered as a whole, which every variant allows. It answers
-two questions for a station with array operations over its candidate pods: how much would calling
-one pod gain, and which pods would complete one order together at the least cost.
+It contains only orders that are covered as a whole, which every variant allows. With array
+operations over the candidate pods of a station it answers two questions: how much would calling one
+pod gain, and which set of pods would complete one order at the least cost?
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from rmfs.solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
 from rmfs.solvers.models.pile_on.values import Assignment
 
 TABLE_ENTRY = 1 / 32
-"""What an entry of a table of pods and lines that is gone through counts among `Solution.built`:
-as many take the time of one nonzero of a programme."""
+"""Number of table entries (pod and line) that take as long to process as one nonzero of a
+programme; it converts table entries to `Solution.built`."""
 
 
 @dataclass(frozen=True)
 class Call:
-    """Pods to call to a station together, and what that gains over not doing it."""
+    """Pods to call to a station together, and the gain compared with not calling them."""
 
     gain: float
     station: int
@@ -33,14 +33,14 @@ class Call:
 
 @dataclass(frozen=True)
 class Offers:
-    """Which pod holds something for which line: few of all pairs, so that they are listed.
+    """The pairs of pod and line where the pod holds the line's SKU, as a sparse list.
 
     Parameters
     ----------
     pod, line, units
         One entry per pod and line whose SKU it holds, sorted by pod, then line.
     match
-        For each entry the number of its match: a pod and an order it holds something for.
+        Number of the match that each entry belongs to: a pod and an order for which it holds units.
     match_pod, match_order
         Pod and order of each match.
     """
@@ -75,9 +75,9 @@ class PartialAssignment:
     Attributes
     ----------
     scored
-        Candidates scored so far: the deterministic work of a rule.
+        Number of candidates scored so far: the deterministic work of a heuristic.
     built
-        What it took to begin with, as of a `Solution`.
+        Effort of the preparation, in the unit of `Solution.built`.
     """
 
     def __init__(self, data: PileOn, candidates: Candidates) -> None:
@@ -99,11 +99,11 @@ class PartialAssignment:
 
     @property
     def open_orders(self) -> Flags:
-        """Orders without a slot that are nobody's prospect, shape (O,)."""
+        """Whether each order has no slot and is no prospect, shape (O,)."""
         return (self.order_station < 0) & (self.prospect < 0)
 
     def coverable(self, station: int) -> Flags:
-        """Open orders that the stock left at a station covers in full, shape (O,)."""
+        """Whether an order is open and the stock at a station covers it in full, shape (O,)."""
         left = self.stock_left[station, self.data.line_sku]
         self.scored += self.data.orders
         covered = every(left >= self.data.line_units, self.data)
@@ -116,7 +116,7 @@ class PartialAssignment:
         self.slots[station] -= 1
 
     def fill(self, station: int) -> None:
-        """Place coverable orders while there are slots: most worth, then fewest units, then index.
+        """Fill the slots with coverable orders, by most worth, then fewest units, then index.
 
         Small orders first leave most stock for the others.
         """
@@ -152,17 +152,17 @@ class PartialAssignment:
                 self._send_robot(pod)
 
     def free_pods(self, station: int) -> Integers:
-        """Candidate pods of a station that are not called and have, or could have, a robot."""
+        """Candidate pods of a station that are not called yet and have a robot or can get one."""
         pods = self._pods_of[station]
         return pods[(self.pod_station[pods] < 0) & np.isfinite(self._fetch[pods])]
 
     def call_costs(self, pods: Integers, station: int) -> Floats:
-        """Cost of calling each of the pods to a station, nearest free robot included."""
+        """Cost of calling each of the pods to a station, including its nearest free robot."""
         cost: Floats = self.data.call_cost[pods, station] + self._fetch[pods]
         return cost
 
     def completions(self, pods: Integers, station: int) -> tuple[Floats, Floats]:
-        """Open orders each pod would complete, alone with the stock left, and their units, (N,)."""
+        """Number and units of open orders that each pod would complete with the stock, (N,)."""
         offers, need = self._offers, self._needs(station)
         lacking = need > 0
         # An order is complete if the pod has enough of as many lines as it lacks.
@@ -186,9 +186,9 @@ class PartialAssignment:
     def best_call(self, station: int) -> Call | None:
         """The call with the greatest gain at a station: one pod, or the set for one order.
 
-        One pod gains the slots it fills, the prospects it brings and the shortage it eases, minus
-        its cost. Where single pods complete nothing, the cheapest set that completes one order is
-        looked for.
+        The gain of a pod is the value of the slots it fills, the prospects it brings and the
+        shortage it eases, minus its cost. If no single pod completes an order, the cheapest set of
+        pods that completes one is sought.
         """
         pods = self.free_pods(station)
         if not pods.size or (not self.slots[station] and not self.shortage[station].any()):
@@ -214,10 +214,11 @@ class PartialAssignment:
         return max(options, key=lambda call: call.gain, default=None)
 
     def best_prospect_call(self, station: int) -> Call | None:
-        """The pod whose prospects at a station are worth more than its call.
+        """The best pod whose prospects at a station are worth more than its call.
 
-        It must serve an order placed there, as (5) of the program demands: one that is there, or
-        one of its prospects in exchange for a placed order that no other pod depends on.
+        As (5) of the program demands, it must serve an order placed there: either one that is
+        already placed, or one of its prospects that takes the place of an order on which no other
+        pod depends.
         """
         pods = self.free_pods(station)
         if self._spare_order(station) < 0:
@@ -231,7 +232,7 @@ class PartialAssignment:
         return Call(float(gain[best]), station, (int(pods[best]),)) if gain[best] > 0 else None
 
     def settle_prospects(self, call: Call) -> None:
-        """Make prospects of what a call brought; exchange one if its pod serves no placed order."""
+        """Add prospects of a call; if its pod serves no placed order, place one in exchange."""
         station, pods = call.station, np.array(call.pods)
         new = np.flatnonzero(self.prospect < 0)
         self.reserve(station)
@@ -336,7 +337,7 @@ class PartialAssignment:
 
 
 def decision(partial: PartialAssignment) -> Assignment:
-    """Make a decision of it, with the robots assigned at the least total cost.
+    """Turn a partial assignment into a decision, with robots assigned at the least total cost.
 
     Parameters
     ----------
@@ -364,7 +365,7 @@ def assign_robots(data: PileOn, pod_station: Integers) -> Integers:
     data
         The input.
     pod_station
-        Station of each called pod, or -1, shape (P,). There must be robots enough.
+        Station of each called pod, or -1, shape (P,). There must be enough robots.
     """
     pod_robot = np.full(data.pods, -1)
     pods = np.flatnonzero((pod_station >= 0) & data.needs_robot)
@@ -375,12 +376,12 @@ def assign_robots(data: PileOn, pod_station: Integers) -> Integers:
 
 
 def drop_idle(partial: PartialAssignment) -> None:
-    """Take back called pods that nobody needs any more, dearest first.
+    """Take back called pods that are no longer needed, most expensive first.
 
     Parameters
     ----------
     partial
-        The partial assignment; it is changed. Robots stay taken.
+        The partial assignment, changed in place. Robots are not released.
     """
     data = partial.data
     called = np.flatnonzero(partial.pod_station >= 0)

@@ -1,8 +1,8 @@
-r"""A lower bound from prices of lines at stations: Lagrangian relaxation, fast at every size.
+r"""A lower bound by Lagrangian relaxation, with prices for lines at stations; fast at every size.
 
-Of the program only (1), (3), (4), (7) and the strengthening rows (8) are kept, and (8) is priced: a
-line l covered at station s pays :math:`\pi_{ls} \ge 0`, an eased unit of shortage earns
-:math:`\sigma_{sk}`, and a pod earns there what it could supply. For all prices
+Only (1), (3), (4), (7) and the strengthening rows (8) of the program are kept, and (8) is relaxed:
+a line l covered at station s pays :math:`\pi_{ls} \ge 0`, an eased unit of shortage earns
+:math:`\sigma_{sk}`, and a pod at s earns the prices of what it could supply. For all prices
 
 .. math::
 
@@ -14,10 +14,10 @@ line l covered at station s pays :math:`\pi_{ls} \ge 0`, an eased unit of shorta
       - \sum_{l,s} \min(1, surplus_{sk(l)} / q_l)\, \pi_{ls}
       + \text{orders}(\pi), \qquad 0 \le \sigma_{sk} \le open\_unit
 
-is a lower bound. orders(π) lets every order take its cheapest treatment, with no more slots taken
-than all stations have together. A robot costs what the nearest free one does. Prices start as equal
-shares of the pods' costs and follow subgradients with Polyak's step (Polyak 1969) towards the
-objective of a known decision.
+is a lower bound. In orders(π), every order takes its cheapest option, with no more slots in total
+than all stations have. A robot costs as much as the nearest free one. Prices start as equal shares
+of the pods' costs and are improved by subgradient steps of Polyak's length (Polyak 1969), which aim
+at the objective of a known decision.
 """
 
 from __future__ import annotations
@@ -34,24 +34,25 @@ from rmfs.solvers.models.pile_on.variant import Variant
 from rmfs.solvers.models.solution import Solution, Status
 
 ITERATIONS = 40
-"""Subgradient steps by default."""
+"""Default number of subgradient steps."""
 
 _PATIENCE = 5
-"""Steps without a better bound before the step length is halved."""
+"""Number of steps without a better bound after which the step length is halved."""
 
 _ROUNDING = 1e-9
-"""Relative allowance for rounding: far above that of sums of a million terms in doubles."""
+"""Relative allowance for rounding, far above the error of sums of a million doubles."""
 
 
 def bound(data: PileOn, upper: float, iterations: int = ITERATIONS) -> float:
-    """Lower bound on the objective of every decision.
+    """Return a lower bound on the objective of every decision.
 
     Parameters
     ----------
     data
         The input.
     upper
-        Objective of a feasible decision: where the steps aim. It only shapes how good the bound is.
+        Objective of a feasible decision, at which the steps aim. It affects only the quality of the
+        bound.
     iterations
         Subgradient steps. Default `ITERATIONS`.
 

@@ -1,13 +1,13 @@
 r"""The pile-on models as an integer linear program, for every back end.
 
 Columns (binary but for v): x_ps pod called, y_os slot taken, z_ls line covered, g_os prospect
-(could be filled, gets no slot), e_o order complete, w_o order started, b_rp robot fetches, v_sk
-open units left. In `Variant.WHOLE` an order is covered as a whole: z_ls = y_os and e_o = sum_s
+(order could be filled, gets no slot), e_o order complete, w_o order started, b_rp robot fetches,
+v_sk open units left. In `Variant.WHOLE` an order is covered as a whole: z_ls = y_os and e_o = sum_s
 y_os, so that only x, y, g, b, v remain. That is M1G with h = y + g substituted (y <= h holds by
 itself), with the empty slots u_s = C_s - sum_o y_os, and without its link columns d: "2 d_ops <=
-y_os + x_ps, x_ps <= sum_o d_ops" says just that a called pod shares a SKU with an order placed
-there, which is (5). One thing differs: M1G also rewards prospects of stations without free slots,
-which only what inbound pods have left can serve; here columns g exist where C_s > 0.
+y_os + x_ps, x_ps <= sum_o d_ops" says only that a called pod shares a SKU with an order placed
+there, which is (5). There is one difference: M1G also rewards prospects of stations without free
+slots, which only the leftovers of inbound pods can serve; here columns g exist only if C_s > 0.
 
 .. math::
 
@@ -26,8 +26,8 @@ which only what inbound pods have left can serve; here columns g exist where C_s
     (8)\quad & q_l (z_{ls} + g_{os}) \le \min(q_l, surplus_{sk})
                + \textstyle\sum_p \min(q_l, a_{pk}) x_{ps}
 
-(8) is ours: implied for whole numbers, it cuts off the fractions of a well-stocked pod that (2)
-leaves to the relaxation, and is what makes the bound good.
+(8) is our addition. It is implied for integer solutions; in the relaxation it cuts off fractions of
+a well-stocked pod, which (2) allows, and so makes the bound tight.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ from rmfs.solvers.models.solution import Limits, Solution, Status
 def formulate(
     data: PileOn, candidates: Candidates, *, strengthen: bool = True
 ) -> Formulation[Assignment]:
-    """State the program of an input.
+    """Formulate the program of an input.
 
     Parameters
     ----------
@@ -95,18 +95,18 @@ def solve_program(
     candidates: Candidates | None,
     strengthen: bool,
 ) -> Solution[Assignment]:
-    """State the program and solve it; the start is the answer if nothing better is found.
+    """Formulate and solve the program; return the start if nothing better is found.
 
     Parameters
     ----------
     backend
-        Who solves it.
+        The solver.
     data
         The input.
     limits, seed
-        As the back ends say.
+        As for the back end.
     start
-        A feasible decision; None: decide nothing.
+        A feasible decision to start from; None: the empty decision.
     candidates
         The pairs to use, None for all. With a proper subset there is no bound (-inf).
     strengthen
@@ -114,7 +114,7 @@ def solve_program(
 
     Returns
     -------
-    The solution; always with values.
+    The solution; it always has values.
     """
     first = nothing(data) if start is None else start
 

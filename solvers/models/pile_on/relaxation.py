@@ -1,9 +1,9 @@
 """Lower bounds on the pile-on models from the linear relaxation (cvxpy, Clarabel).
 
-The relaxation is that of the strengthened program over all pairs; its bound is made of the duals by
-`safe_bound` and rounded to the safe side. It suits small and middling sites. At a large site the
-interior-point factors fill in, and the bound that CP-SAT proves on the full program (`cp_sat.solve`
-without candidates) is as good and much faster; the benchmark compares them.
+This relaxes the strengthened program over all pairs; `safe_bound` computes the bound from the
+duals, rounded to the safe side. It suits small and medium sites. At a large site the interior-point
+factors fill in, and the bound that CP-SAT proves on the full program (`cp_sat.solve` without
+candidates) is as good and much faster to obtain; the benchmark compares them.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from rmfs.solvers.models.solution import NO_LIMITS, Limits
 
 
 class PileOnRelaxation:
-    """Bounds for a stream of inputs, compiled anew only when their pattern changes.
+    """Bounds for a sequence of inputs, compiled anew only when their pattern changes.
 
     Inputs share a pattern as long as the same pods hold SKUs of the same lines; costs, weights,
     quantities and slots may change.
@@ -24,7 +24,7 @@ class PileOnRelaxation:
     Attributes
     ----------
     compilations
-        How often a relaxation was compiled.
+        Number of times a relaxation has been compiled.
     """
 
     def __init__(self) -> None:
@@ -43,7 +43,7 @@ class PileOnRelaxation:
 
         Returns
         -------
-        The relaxed columns and the bound, valid however the solver ended.
+        The relaxed columns and the bound, which is valid whatever the solver's final status.
         """
         program = formulate(data, everything(data)).program
         if self._compiled is None or not self._compiled.fits(program):

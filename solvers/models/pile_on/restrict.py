@@ -1,6 +1,6 @@
-"""Smaller inputs of the same kind: without what cannot matter, or for a few stations only.
+"""Smaller inputs of the same kind: without irrelevant pods and SKUs, or for a few stations only.
 
-Each restriction knows the way back from its decision to one of the full input.
+Each restriction can turn a decision of the small input into one of the full input.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from rmfs.solvers.models.pile_on.values import Assignment
 
 @dataclass(frozen=True)
 class Compact:
-    """An input without the pods and SKUs that cannot matter.
+    """An input without irrelevant pods and SKUs.
 
     Parameters
     ----------
     full
         The full input.
     data, candidates
-        The small one, and its pairs.
+        The small input, and its candidate pairs.
     pods
-        Its pods in the numbering of the full input.
+        Pods of the small input in the numbering of the full input.
     """
 
     full: PileOn
@@ -34,14 +34,14 @@ class Compact:
     pods: Integers
 
     def expand(self, values: Assignment) -> Assignment:
-        """Make a decision of the full input."""
+        """Turn a decision of the small input into one of the full input."""
         pod_station = np.full(self.full.pods, -1)
         pod_robot = np.full(self.full.pods, -1)
         pod_station[self.pods], pod_robot[self.pods] = values.pod_station, values.pod_robot
         return replace(values, pod_station=pod_station, pod_robot=pod_robot)
 
     def shrink(self, values: Assignment) -> Assignment:
-        """Make a decision of the small input of one that uses candidate pairs only."""
+        """Turn a decision of the full input (candidate pairs only) into one of the small."""
         return replace(
             values,
             pod_station=values.pod_station[self.pods],
@@ -50,7 +50,7 @@ class Compact:
 
 
 def compact(data: PileOn, candidates: Candidates) -> Compact:
-    """Keep pods that may be called, are inbound or bound to a robot, and SKUs that are wanted.
+    """Keep the wanted SKUs, and the pods that may be called, are inbound or are bound to a robot.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def compact(data: PileOn, candidates: Candidates) -> Compact:
 
 @dataclass(frozen=True)
 class Part:
-    """The decisions of a few stations, all others fixed as they are.
+    """The problem of a few stations, with the decisions of all others fixed.
 
     Parameters
     ----------
@@ -95,9 +95,10 @@ class Part:
     data, candidates
         The input of the part, and its pairs.
     stations, orders, robots
-        What belongs to the part, in the numbering of the full input.
+        The stations, orders and robots of the part, in the numbering of the full input.
     kept
-        Whether a pod called to these stations stays called, shape (P,): what is fixed needs it.
+        Whether a pod called to these stations stays called because a fixed decision needs it, shape
+        (P,).
     """
 
     full: PileOn
@@ -115,7 +116,7 @@ class Part:
         return np.flatnonzero(np.isin(self.full.line_order, self.orders))
 
     def start(self) -> Assignment:
-        """What the fixed decision does in the part."""
+        """The fixed decision, restricted to the part."""
         values = self.values
         robot_of = self._numbering(self.robots, self.full.robots)
         station_of = self._numbering(self.stations, self.full.stations)
@@ -130,7 +131,7 @@ class Part:
         )
 
     def merge(self, values: Assignment) -> Assignment:
-        """Put a decision of the part into the fixed rest."""
+        """Combine a decision of the part with the fixed rest."""
         slot, pod_robot = self.values.slot.copy(), self.values.pod_robot.copy()
         slot[np.ix_(self.orders, self.stations)] = values.slot
         line_station, prospect = self.values.line_station.copy(), self.values.prospect.copy()
@@ -161,10 +162,11 @@ def part(
 ) -> Part | None:
     """Free the decisions of a few stations.
 
-    An order that also has a slot elsewhere stays as it is: its slots here are taken, its lines here
-    become open demand, and pods called here that hold their SKUs stay called. The same holds for
-    prospects of a station whose slots are all taken so. `merge` may then leave such a line without
-    stock (at the price of open demand), which `violations` finds.
+    An order that also has a slot at another station stays as it is: its slots at the freed stations
+    remain taken, its lines there become open demand, and pods called there that hold their SKUs
+    stay called. The same applies to prospects of a station if such orders take all its slots.
+    `merge` may then leave such a line without stock (at the price of open demand), which
+    `violations` reports.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-r"""A decision, what it costs, and whether it is allowed.
+r"""A decision, its cost, and its feasibility.
 
 The objective, with x: pod called to station, b: robot fetches pod, n_s: slots taken, v: open units
 left uncovered, c_o: order covered in full (or, a prospect, coverable), q_o: its units,
@@ -12,8 +12,8 @@ z_l: line covered, and m_o: slots the order takes:
         + open\_line \sum_{l: m_{o(l)} > 0} (1 - z_l) + part \sum_o (m_o - 1)^+
 
 where the `open_line` term belongs to `Variant.LATER` alone. With the default weights, `WHOLE` and
-robots this is M1G (Jiao et al. 2025, eq. 14), prospects of stations without free slots apart: its
-"order could be filled" h_o is c_o here.
+robots this is M1G (Jiao et al. 2025, eq. 14), except for prospects of stations without free slots;
+its "order could be filled" h_o is c_o here.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Assignment:
     pod_robot
         Robot that fetches a called pod, or -1, shape (P,).
     prospect
-        Station with free slots whose pods could fill the order as well, though it gets none, or
+        Station with free slots whose pods could also fill the order, although it gets no slot, or
         -1, shape (O,).
     """
 
@@ -53,7 +53,7 @@ class Assignment:
 
 
 def nothing(data: PileOn) -> Assignment:
-    """Decide nothing; feasible for every input and variant.
+    """Return the empty decision, which is feasible for every input and variant.
 
     Parameters
     ----------
@@ -103,14 +103,14 @@ def called_supply(data: PileOn, values: Assignment) -> Integers:
 
 
 def uncovered(data: PileOn, values: Assignment) -> Integers:
-    """Units of open demand that a decision leaves without stock, shape (S, K).
+    """Return the units of open demand that a decision leaves without stock, shape (S, K).
 
     Parameters
     ----------
     data
         The input.
     values
-        The decision. If it takes more than there is, the numbers exceed the shortage.
+        The decision. If it uses more units than there are, the numbers exceed the shortage.
     """
     have = data.surplus + called_supply(data, values)
     return np.maximum(data.shortage + demand(data, values) - have, 0)
@@ -133,7 +133,7 @@ def complete(data: PileOn, values: Assignment) -> Flags:
 
 
 def cost_of_calls(data: PileOn, values: Assignment) -> float:
-    """Cost of the pods called and of the robots that fetch them: what a gap may be held against.
+    """Cost of the called pods and their robots, a possible reference for relative gaps.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def cost_of_calls(data: PileOn, values: Assignment) -> float:
 
 
 def objective(data: PileOn, values: Assignment) -> float:
-    """Cost of a decision (see the module): smaller is better.
+    """Return the cost of a decision, as defined by the module.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def objective(data: PileOn, values: Assignment) -> float:
 
 
 def violations(data: PileOn, values: Assignment) -> list[str]:
-    """Say which constraints a decision breaks.
+    """Return which constraints a decision violates.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def violations(data: PileOn, values: Assignment) -> list[str]:
 
     Returns
     -------
-    One line per kind of violation, naming the first place; empty if the decision is allowed.
+    One line per kind of violation, naming its first place; empty if the decision is feasible.
     """
     parts = values.slot.sum(axis=1)
     called = np.flatnonzero(values.pod_station >= 0)

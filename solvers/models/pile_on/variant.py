@@ -1,4 +1,4 @@
-"""Variants of the pile-on models: coverage of orders, and weights of the objective."""
+"""Variants of the pile-on models: how orders may be covered, and the weights of the objective."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Variant(Enum):
 
 @dataclass(frozen=True)
 class Weights:
-    """The weights of the objective; the unit is that of the travel cost.
+    """The weights of the objective, in the unit of the travel cost.
 
     The defaults are those of M1G (Jiao et al. 2025, with travel in metres), plus values for what
     M1G does not have.
@@ -49,25 +49,27 @@ class Weights:
     travel
         Per unit of travel of a called pod to its station and of a robot to the pod. Default 1.
     visit
-        Per called pod, beyond its travel: the hand-over at the station. Default 0.
+        Per called pod, in addition to its travel, such as for the hand-over at the station. Default
+        0.
     empty_slot
-        Per slot that stays empty. Default 1000.
+        Penalty per slot that stays empty. Default 1000.
     complete
         Reward per order that the pods assigned to its station cover in full. Default 40.
     unit
-        Reward per unit of such an order, so that large ones count for more. Default 0.
+        Reward per unit of such an order, so that large orders count for more. Default 0.
     prospects
         Whether `complete` and `unit` also reward orders that get no slot but could be filled from
-        what the pods bring (M1G does): good pods for the next decision. Default yes.
+        the pods that come (as in M1G), because such pods suit the next decision. Default yes.
     open_unit
-        Per unit of the demand of orders already at a station that no pod covers. Default 1000.
+        Penalty per unit of demand of orders already at a station that no pod covers. Default 1000.
     open_line
-        Per line of a newly placed order that is not covered now (`Variant.LATER`). Default 100.
+        Penalty per line of a newly placed order that is not covered now (`Variant.LATER`). Default
+        100.
     line
         Reward per line covered, whatever its order. Default 0.
     part
-        Per slot an order takes beyond its first (split over stations): the consolidation of its
-        parts. Default 100.
+        Penalty per slot that an order takes beyond its first (split over stations), for the
+        consolidation of its parts. Default 100.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""Visits planned ahead: which pods come to which station in which order, and what each serves.
+"""Planning ahead: which pods visit which station in which sequence, and what each serves.
 
-- `greedy`: the start rule; `lns`: large neighbourhood search from there;
-- `cp_sat`: exact, for a few visits and some twenty orders.
+- `greedy`: the start rule; `lns`: large neighbourhood search from its plan;
+- `cp_sat`: exact, for a few visits and about twenty orders.
 """
 
 from rmfs.solvers.models.methods import Methods

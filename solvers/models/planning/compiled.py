@@ -1,4 +1,4 @@
-"""The compiled part: what is to be planned as it takes it, and the plan that it gives."""
+"""Interface to the compiled search: conversion of its input and of the plan it returns."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Found(NamedTuple):
-    """A plan, its worth (the objective with the other sign), and the work it took."""
+    """A plan, its worth (minus the objective), and the work spent."""
 
     plan: Plan
     value: float
@@ -43,7 +43,7 @@ def visits(data: Planning) -> Visits:
 
 
 def found(told: tuple[list[list[int]], list[int], list[int], float, int]) -> Found:
-    """Read a plan."""
+    """Turn the result of the compiled search into a plan."""
     pods, order_station, line_visit, value, work = told
     plan = Plan(
         tuple(tuple(new) for new in pods),

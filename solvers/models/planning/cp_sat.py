@@ -31,12 +31,12 @@ def solve(
     data
         The problem.
     limits
-        Default: to optimality.
+        Limits of the solver. Default: to optimality.
     seed
         Seed of the solver. Default 0.
     start, pods
         As for `greedy`, from whose plan the solver starts.
     bound_steps
-        Not needed.
+        Not used.
     """
     return by_programme(cp_sat, data, limits, seed=seed, start=start, pods=pods)

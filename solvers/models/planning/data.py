@@ -14,49 +14,50 @@ Integers = NDArray[np.int64]
 Reals = NDArray[np.float64]
 
 MOST_VISITS = 64
-"""Most visits of a station: they are bits of a number."""
+"""Maximum number of visits of a station, as they are stored as bits of one number."""
 
 
 @dataclass(frozen=True)
 class Planning:
     """Orders, pods and stations at one instant, for a plan of several visits per station.
 
-    A *visit* is one pod at one station. Pods under way make the first visits of their station, in
-    the order in which they come; new ones follow, and a pod makes one new visit at most. Visits of
-    a station are counted from 0, those under way included.
+    A *visit* is one pod at one station. Pods under way make the first visits to their station, in
+    the order in which they arrive; new visits follow, and each pod makes at most one. Visits of a
+    station are counted from 0, those under way included.
 
-    A line is served by one visit. An order takes a slot from its first visit to its last. From one
-    visit to the next a station keeps a slot free, so that orders of a single visit can go through
-    it one after the other.
+    A line is served by one visit. An order occupies a slot from its first visit to its last.
+    Between visits a station keeps one slot free, so that orders served by a single visit can pass
+    through it one after the other.
 
     Parameters
     ----------
     slots
         Order slots of each station, shape (S,), 1 or more.
     coming
-        Pods under way, shape (F,), those of a station in the order in which they come.
+        Pods under way, shape (F,), those of a station in order of arrival.
     coming_to
         Station of each of them, shape (F,).
     order_station
         Station at which an order is open, or -1 if it waits, shape (O,).
     order_until
-        The last visit under way that has units bound for an open order, or -1, shape (O,).
+        Last visit under way that carries units for an open order, or -1, shape (O,).
     order_worth
-        Worth of closing an order besides that of its lines, shape (O,), s of a robot.
+        Worth of closing an order in addition to that of its lines, shape (O,), in s of robot time.
     line_order, line_sku, line_units
-        What is to be planned: order, SKU and units of each line, shape (L,). A waiting order has
-        one line at least.
+        Order, SKU and units of each line to be planned, shape (L,). A waiting order has at least
+        one line.
     line_worth
-        Worth of serving a line, shape (L,), s of a robot.
+        Worth of serving a line, shape (L,), in s of robot time.
     stock
-        Units to spare per pod and SKU, shape (P, K).
+        Unreserved units per pod and SKU, shape (P, K).
     cost
-        Time that a robot spends on a new visit besides the service, less what it is worth that the
-        station has work, shape (P, S), s; inf forbids it, as it must for pods under way.
+        Robot time of a new visit without its service, less the value of keeping the station busy,
+        shape (P, S), in s; inf forbids the visit and is required for pods under way.
     visits
-        New visits that a station may have at most.
+        Maximum number of new visits per station.
     decay
-        What is earned or spent in a visit counts so much less than in the one before, in (0, 1].
+        Discount factor in (0, 1]: rewards and costs of a visit are multiplied by it once for each
+        earlier visit.
 
     Raises
     ------
@@ -135,27 +136,27 @@ class Planning:
 
     @property
     def stations(self) -> int:
-        """How many stations there are."""
+        """Number of stations."""
         return len(self.slots)
 
     @property
     def orders(self) -> int:
-        """How many orders there are."""
+        """Number of orders."""
         return len(self.order_station)
 
     @property
     def lines(self) -> int:
-        """How many lines there are."""
+        """Number of order lines."""
         return len(self.line_order)
 
     @property
     def pods(self) -> int:
-        """How many pods there are."""
+        """Number of pods."""
         return len(self.stock)
 
     @cached_property
     def under_way(self) -> list[list[int]]:
-        """Pods under way to each station."""
+        """Number of pods under way to each station."""
         found: list[list[int]] = [[] for _ in range(self.stations)]
         for pod, station in zip(self.coming.tolist(), self.coming_to.tolist(), strict=True):
             found[station].append(pod)
@@ -163,9 +164,10 @@ class Planning:
 
     @cached_property
     def kept(self) -> list[int]:
-        """Orders that each station may keep from one visit to the next.
+        """Number of orders that each station may keep open from one visit to the next.
 
-        One less than slots; more only if more are open now and cannot close in the first visit.
+        This is one less than its slots; more only if more orders are open now and cannot close in
+        the first visit.
         """
         stays = self.order_until > 0
         stays[self.line_order] = True

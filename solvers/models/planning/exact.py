@@ -1,4 +1,4 @@
-"""Shared parts of the exact methods: the programme, solved from the plan of the start rule."""
+"""Shared part of the exact methods: solving the programme from the plan of the start rule."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 
 class Backend(Protocol):
-    """A solver of programmes, `rmfs.solvers.models.backends`."""
+    """A back end of `rmfs.solvers.models.backends`."""
 
     @property
     def solve(self) -> Any:
-        """Its function."""
+        """Solve a programme."""
 
 
 def by_programme(
@@ -35,7 +35,7 @@ def by_programme(
     start: Plan | None,
     pods: Sequence[Sequence[int]],
 ) -> Solution[Plan]:
-    """Solve the programme of a problem; never worse than the plan of the start rule."""
+    """Solve the programme; the plan is never worse than that of the start rule."""
     began = time.perf_counter()
     first = greedy.solve(data, start=start, pods=pods).required
     programme = Programme(data)

@@ -1,4 +1,4 @@
-"""The start rule: one visit after the other, each the best of the few pods that look best."""
+"""The start rule: visits are added one by one, each the best among a few promising pods."""
 
 from __future__ import annotations
 
@@ -26,25 +26,25 @@ def solve(
     pods: Sequence[Sequence[int]] = (),
     bound_steps: int = 0,
 ) -> Solution[Plan]:
-    """Add visits as long as they pay.
+    """Add visits as long as they improve the plan.
 
     Parameters
     ----------
     data
         The problem.
     limits, seed
-        Not needed.
+        Not used.
     start
         A feasible plan whose visits are kept. Default: none.
     pods
-        Visits per station of an earlier plan, which go on as far as they are possible; `start` goes
-        before. Default: none.
+        Visits per station of an earlier plan, which are kept where still possible; `start` takes
+        precedence. Default: none.
     bound_steps
-        Steps for the bound (`prices`). Default: no bound.
+        Number of steps for the bound (`prices`). Default: no bound.
 
     Returns
     -------
-    The plan; not worse than the start.
+    The plan, not worse than the start.
     """
     began = time.perf_counter()
     known = first_visits(data, start, pods)

@@ -1,10 +1,10 @@
-"""Neighbourhood search: visits are taken out of a plan, and others put in (Shaw 1998).
+"""Neighbourhood search: visits are removed from a plan, and others inserted (Shaw 1998).
 
-Each step replaces a visit of a station, moves or adds one, or lets visits of two stations change
-places. The pod that comes is the best, by a quick estimate, of a few that are drawn among those
-that serve something. Plans a little worse are allowed at first (threshold accepting, Dueck and
-Scheuer 1990). What the other stations serve stays with them, so that a step costs the same however
-many there are. The steps are compiled: `rmfs/traffic/src/visits`.
+Each step replaces, moves or adds a visit of a station, or swaps visits of two stations. The new pod
+is the best, by a quick estimate, of a few pods drawn from those that could serve something.
+Slightly worse plans are accepted at first (threshold accepting, Dueck and Scheuer 1990). Lines
+served at other stations stay there, so the time of a step does not depend on the number of
+stations. The steps are compiled: `rmfs/traffic/src/visits`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rmfs.solvers.models.planning.values import Plan
 
 STEPS = 1000
-"""Steps if the limits name none."""
+"""Default number of steps, if the limits give none."""
 
 
 def solve(
@@ -43,20 +43,20 @@ def solve(
     data
         The problem.
     limits
-        `iterations` are the steps. Default: 1000.
+        `iterations` limits the number of steps. Default: 1000.
     seed
         Seed of the search. Default 0.
     start
         A feasible plan. Default: none.
     pods
-        Visits per station of an earlier plan, which go on as far as they are possible; `start` goes
-        before. Default: none.
+        Visits per station of an earlier plan, which are kept where still possible; `start` takes
+        precedence. Default: none.
     bound_steps
-        Steps for the bound (`prices`). Default: no bound.
+        Number of steps for the bound (`prices`). Default: no bound.
 
     Returns
     -------
-    The plan; not worse than the start, nor than what the start rule finds from the same start.
+    The plan, not worse than the start, nor than the start rule's plan from the same start.
     """
     began = time.perf_counter()
     known = first_visits(data, start, pods)

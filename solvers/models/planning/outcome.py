@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from rmfs.solvers.models.planning.values import Plan
 
 NAME = "visits"
-"""Back end of the rule and the search; a unit of work is an entry of stock or a line looked at."""
+"""Back end name of the rule and the search; a unit of work is one stock entry or line examined."""
 
 
 def better(data: Planning, plan: Plan, start: Plan | None) -> Plan:
-    """Return the better of a plan and the start, if there is one."""
+    """Return the better of a plan and the start, if a start is given."""
     if start is not None and objective(data, start) < objective(data, plan):
         return start
     return plan
@@ -28,7 +28,7 @@ def better(data: Planning, plan: Plan, start: Plan | None) -> Plan:
 def solution(
     data: Planning, found: Found, start: Plan | None, bound_steps: int, began: float
 ) -> Solution[Plan]:
-    """Wrap a plan up, with a bound if there are steps for one."""
+    """Make a `Solution` of a plan, with a bound if its number of steps is positive."""
     chosen = better(data, found.plan, start)
     value = objective(data, chosen)
     proven = prices.bound(data, value, bound_steps)

@@ -1,10 +1,10 @@
-r"""A bound for any size: lines are paid for, and every visit takes what pays it best.
+r"""A bound for any size: lines have prices, and every visit takes what pays most.
 
-Slots, and that the lines of an order go together, are left out; that a line is served once is paid
-for by a price :math:`\pi_l \ge 0` (Lagrange). What is left is, per visit and SKU, which lines to
-serve with the stock of the pod (a knapsack, bounded by its relaxation), one at least, and which pod
-makes which visit (an assignment). Whatever the prices are, the result is a bound; a subgradient
-improves them.
+The bound ignores slots, and that lines of an order must be served together; that each line is
+served at most once is replaced by a price :math:`\pi_l \ge 0` (Lagrangian relaxation). Two problems
+remain: for each visit and SKU, which lines to serve with the stock of the pod, at least one per
+visit (a knapsack, bounded by its relaxation), and which pod makes which visit (an assignment). The
+bound is valid for any prices; subgradient steps improve it.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
     Flags = NDArray[np.bool_]
 
 _SLACK = 1e-9
-"""Relative amount by which the bound is lowered for rounding in sums."""
+"""Relative amount by which the bound is lowered to allow for rounding."""
 
 
 def bound(data: Planning, value: float, steps: int) -> float:
-    """Bound the objective of every plan from below.
+    """Return a lower bound on the objective of every plan.
 
     Parameters
     ----------
     value
-        The objective of a plan, at which the steps aim.
+        Objective of a known plan, at which the steps aim.
     steps
-        How many times the prices are improved; without any the bound is -inf.
+        Number of times the prices are improved; with 0 the bound is -inf.
     """
     best = -np.inf
     prices = np.zeros(data.lines)

@@ -7,13 +7,14 @@ r"""The plan as an integer programme.
     c_{osv} \text{ order } o \text{ closes then}, \quad
     h_{osv} \text{ it is kept to the next}
 
-A visit gives no more than its pod has; the lines of a waiting order are served where the order is,
-all or none; an order closes no sooner than its last line; and what is kept fits into the slots.
+A visit uses no more units than its pod has. Of a waiting order all lines are served or none, at the
+station of the order. An order does not close before its last line is served, and the orders kept
+open fit into the slots.
 
-Three kinds of rows are stated per line or pod although one row for all would do, because the
-relaxation is so much tighter (2 % from the best plan, not 50 %). A line is served only if a pod
-comes that has all its units, a pod comes only if a line is served that it has, and an order is kept
-from its first line until it closes:
+Three kinds of rows are stated per line or pod although one aggregated row would suffice, because
+the relaxation is then much tighter (2 % from the best plan instead of 50 %). A line is served only
+if a pod comes that has all its units; a pod comes only if a line is served that it holds; and an
+order is kept open from its first line until it closes:
 
 .. math::
 
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
 
 
 class Programme:
-    """Columns and rows for one input, and the way from columns to a plan and back.
+    """The columns and rows for one input, and the conversion between columns and plans.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Initial plans: a feasible one, or one with the visits of an earlier plan."""
+"""Initial plans: a given feasible plan, or the visits of an earlier plan."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def first_visits(
     data: Planning, start: Plan | None, pods: Sequence[Sequence[int]]
 ) -> list[list[int]]:
-    """Return the visits of a start, or those of an earlier plan that are still possible.
+    """Return the visits of the start, or those of an earlier plan that are still possible.
 
     Raises
     ------

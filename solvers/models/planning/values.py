@@ -1,4 +1,4 @@
-"""A plan, what it is worth, and what is wrong with it."""
+"""A plan, its objective, and its feasibility."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ _NEVER = np.iinfo(np.int64).max
 
 @dataclass(frozen=True)
 class Plan:
-    """Which pods come, in which order, and what each visit serves.
+    """Which pods come, in which sequence, and which lines each visit serves.
 
     Attributes
     ----------
     pods
-        Per station, the pods of its new visits in their order.
+        For each station, the pods of its new visits in sequence.
     order_station
-        Station of each order, -1 if it goes on waiting, shape (O,).
+        Station of each order, or -1 if it keeps waiting, shape (O,).
     line_visit
         Visit that serves each line, at the station of its order; -1 for none, shape (L,).
     """
@@ -38,7 +38,7 @@ class Plan:
 
 
 def nothing(data: Planning) -> Plan:
-    """Return the plan that leaves all as it is."""
+    """Return the plan that changes nothing."""
     none: tuple[tuple[int, ...], ...] = ((),) * data.stations
     return Plan(none, data.order_station.copy(), np.full(data.lines, NONE))
 
@@ -58,7 +58,7 @@ def objective(data: Planning, plan: Plan) -> float:
 
 
 def violations(data: Planning, plan: Plan) -> list[str]:
-    """Say what is wrong with a plan; nothing if it is feasible."""
+    """Return what is wrong with a plan; empty if it is feasible."""
     return [*_wrong_pods(data, plan), *_wrong_orders(data, plan), *_wrong_visits(data, plan)]
 
 

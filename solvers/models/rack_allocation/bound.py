@@ -1,4 +1,4 @@
-"""A bound in whole pods for every back end: that of the relaxation over all stations together."""
+"""A bound in whole pods for every back end, from the relaxation over all stations together."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from rmfs.solvers.models.rack_allocation.program import formulate, together
 from rmfs.solvers.models.solution import Limits, Solution, Status
 
 _TOLERANCE = 1e-4
-"""What a bound may be above a whole number by rounding."""
+"""Amount by which rounding may raise a bound above a whole number."""
 
 
 def solve_in_whole_pods(
     backend: Backend, data: RackAllocation, limits: Limits, seed: int, start: Allocation | None
 ) -> Solution[Allocation]:
-    """Solve the integer programme, and round the bound up.
+    """Solve the integer programme and round its bound up to a whole number of pods.
 
     Parameters
     ----------
     backend
-        Who solves it.
+        The solver.
     data
         The problem.
     limits, seed, start
-        As the back ends say.
+        As for the back end.
 
     Returns
     -------
-    Who goes where, never worse than the start.
+    The allocation, never worse than the start.
     """
     found = solve_by(backend, lambda: formulate(data), limits, seed=seed, start=start)
     if found.status is Status.INFEASIBLE:

@@ -1,4 +1,4 @@
-"""Rack allocation by CP-SAT."""
+"""Rack allocation, solved by CP-SAT."""
 
 from __future__ import annotations
 

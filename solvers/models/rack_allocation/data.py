@@ -1,13 +1,13 @@
-r"""The problem: every station gets as many orders as it has slots, and pods that cover them.
+r"""The problem: each station gets as many orders as it has slots, and pods that cover them.
 
 .. math::
 
     \min \sum_{ps} y_{ps}, \quad \sum_o x_{os} = C_s, \quad \sum_s x_{os} \le 1, \quad
     \sum_s y_{ps} \le 1, \quad \sum_p stock_{pk}\, y_{ps} \ge \sum_o units_{ok}\, x_{os}
 
-for all stations s and SKUs k (Valle and Beasley 2021, who speak of racks and pickers). Orders may
-be more than slots; a station is always filled. Beside the pile-on models it knows no time: no pods
-under way, no travel, no slots left empty.
+for all stations s and SKUs k (Valle and Beasley 2021, who speak of racks and pickers). There may be
+more orders than slots, but every slot is filled. Unlike the pile-on models, this one is static: it
+has no pods under way, no travel and no empty slots.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from rmfs.solvers.models.checks import integers
 
 NONE = -1
-"""The station of an order, or of a pod, that is not used."""
+"""Marks the station of an order or pod that is not used."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class RackAllocation:
 
 @dataclass(frozen=True)
 class Allocation:
-    """Who goes where.
+    """The station of each order and pod.
 
     Attributes
     ----------
@@ -83,22 +83,22 @@ class Allocation:
 
 
 def objective(data: RackAllocation, allocation: Allocation) -> float:
-    """Return how many pods are used.
+    """Return the number of pods used.
 
     Parameters
     ----------
     data
         The problem.
     allocation
-        Who goes where.
+        The station of each order and pod.
     """
     return float((allocation.pod_station != NONE).sum())
 
 
 def pods_needed(data: RackAllocation) -> float:
-    """Bound the number of pods from below: one for each station that must get a real order.
+    """Return a lower bound on the number of pods: one per station that must get a nonempty order.
 
-    Orders that ask for nothing need no pod; at best they fill the smallest stations.
+    Orders without lines need no pod; at best, they fill the stations with the fewest slots.
 
     Parameters
     ----------
@@ -110,14 +110,14 @@ def pods_needed(data: RackAllocation) -> float:
 
 
 def violations(data: RackAllocation, allocation: Allocation) -> list[str]:
-    """Say what is wrong with an allocation; empty if nothing is.
+    """Return what is wrong with an allocation; empty if it is feasible.
 
     Parameters
     ----------
     data
         The problem.
     allocation
-        Who goes where.
+        The station of each order and pod.
     """
     orders, pods, stations = data.sizes
     for name, chosen, count in (

@@ -1,4 +1,4 @@
-"""Station after station: the pod that lets most orders be filled, and so on until it is full."""
+"""Fill station after station, each time with the pod that completes the most orders."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ def solve(
     seed: int = 0,
     start: Allocation | None = None,
 ) -> Solution[Allocation]:
-    """Fill stations one after another, the one with most slots first.
+    """Fill stations one after another, the one with the most slots first.
 
-    A station gets the pod with which it can fill most further orders, and these, fewest units
-    first; if no pod completes one, the pod that adds most of the lines still missing. Pods that
-    turn out not to be needed are given back.
+    A station gets the pod with which it can fill the most further orders, and these orders, fewest
+    units first. If no pod completes an order, it gets the pod that adds the most missing lines.
+    Pods that turn out to be unnecessary are released.
 
     Returns
     -------
-    Who goes where; ties go to the lowest index. Status LIMIT if a station could not be filled,
-    INFEASIBLE if there are fewer orders that stock can serve than slots. The bound is one pod for
-    each station that gets an order that asks for something.
+    The allocation; ties go to the lowest index. The status is LIMIT if a station could not be
+    filled, and INFEASIBLE if stock can serve fewer orders than there are slots. The bound is that
+    of `pods_needed`.
     """
     begin = perf_counter()
     servable = (data.units <= data.stock.sum(axis=0)).all(axis=1)

@@ -1,4 +1,4 @@
-"""Rack allocation by HiGHS."""
+"""Rack allocation, solved by HiGHS."""
 
 from __future__ import annotations
 

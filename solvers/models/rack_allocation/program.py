@@ -1,12 +1,12 @@
 r"""The integer programme.
 
 Two additions make the relaxation tighter without cutting off any allocation. No station needs more
-of SKU k than the sum :math:`d_{sk}` of its :math:`C_s` largest order lines of it, so that
+of SKU k than the sum :math:`d_{sk}` of the :math:`C_s` largest order lines of that SKU, so
 
 .. math:: \sum_p \min(stock_{pk}, d_{sk})\, y_{ps} \ge \sum_o units_{ok}\, x_{os};
 
-and an order needs a pod for each of its SKUs: :math:`x_{os} \le \sum_{p \ni k} y_{ps}`. Pods with
-nothing that an order wants, and orders that all pods together cannot serve, have no columns.
+and an order needs a pod for each of its SKUs: :math:`x_{os} \le \sum_{p \ni k} y_{ps}`. Pods
+without any wanted SKU, and orders that all pods together cannot serve, have no columns.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from rmfs.solvers.models.rack_allocation.data import (
 
 
 def formulate(data: RackAllocation) -> Formulation[Allocation]:
-    """State the problem as an integer programme.
+    """Formulate the problem as an integer programme.
 
     Parameters
     ----------
@@ -72,10 +72,11 @@ def formulate(data: RackAllocation) -> Formulation[Allocation]:
 
 
 def together(data: RackAllocation) -> LinearProgram:
-    """State the sum of the programme over the stations: a relaxation with few columns.
+    """Formulate the programme aggregated over the stations, a relaxation with few columns.
 
-    Of every cap d the greatest over the stations is taken, so that each row is implied by the sum
-    of the rows it stands for. With equal slots the relaxations of both have the same value.
+    For each cap d the largest over the stations is used, so that each row is implied by the sum of
+    the rows it replaces. If all stations have equally many slots, the relaxations of both
+    programmes have the same value.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Replenishment (RPS and ROA): bundles to pods, and these pods to stations.
+"""Replenishment (RPS and ROA): assign bundles to pods, and these pods to stations.
 
-Both decisions are one: a pod is brought to one station for all its bundles, and the bundles' worth
-must pay for its trip.
+The two decisions are taken together: a pod is brought to one station for all its bundles, and the
+worth of the bundles must exceed the cost of the trip.
 """
 
 from rmfs.solvers.models.methods import Methods

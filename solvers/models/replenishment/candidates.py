@@ -1,4 +1,4 @@
-"""Fewer pods per bundle: the rest is hardly ever worth a trip."""
+"""Pruning of pods per bundle: the others are hardly ever worth a trip."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from rmfs.solvers.models.replenishment.data import Replenishment
 def best_pods(data: Replenishment, *, pods: int, stations: int) -> Replenishment:
     """Keep the best pods of every bundle and the nearest stations of every pod.
 
-    Pods are rated by the worth of the bundle minus their shortest trip, shared by as many average
-    bundles as fit: a pod with room for several is not judged by one. A bundle that may be
-    stored in few pods keeps those.
+    A pod is rated by the worth of the bundle minus the cost of its shortest trip, divided by the
+    number of average bundles that fit into the pod. A bundle that only a few pods can store keeps
+    all of them.
 
     Parameters
     ----------
     data
         The problem.
     pods
-        How many pods to keep per bundle.
+        Number of pods to keep per bundle.
     stations
-        How many stations to keep per pod.
+        Number of stations to keep per pod.
 
     Returns
     -------
-    The same problem with fewer pairs; ties keep the lowest index. Its solutions are ones of the
-    problem; its bound is one for itself only.
+    The same problem with fewer pairs; ties keep the lowest index. Its solutions are feasible for
+    the full problem; its bound is not valid for the full problem.
     """
     trip_s = data.trip_s.min(axis=1, initial=np.inf)
     mean_space = max(float(data.space.mean()), 1e-9) if len(data.space) else 1.0

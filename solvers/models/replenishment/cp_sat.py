@@ -1,4 +1,4 @@
-"""Replenishment by CP-SAT."""
+"""Replenishment, solved by CP-SAT."""
 
 from __future__ import annotations
 

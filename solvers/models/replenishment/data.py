@@ -1,15 +1,15 @@
-r"""The problem: bundles that wait, pods with free space, stations with free space.
+r"""The problem: waiting bundles, and pods and stations with free space.
 
 .. math::
 
     \min \sum_{ps} trip_{ps}\, y_{ps} + \sum_b leave_b\, l_b - \sum_{bp} worth_{bp}\, x_{bp}
 
-Every bundle goes to one pod or is left, :math:`\sum_p x_{bp} + l_b = 1`; a pod that gets one is
-brought to one station, :math:`x_{bp} \le \sum_s y_{ps} \le 1`; the bundles of a pod fit into it,
-and those of the pods of a station fit into the station's buffer. What a bundle is worth in a pod
-is the robot time it will save (`bundle_worth_s`), so both sides of the balance are seconds: a trip
-is made if its bundles will save more. The bundles of one batch are rated one by one; what two of
-them are worth to each other in a pod is not counted.
+Every bundle goes to one pod or is left, :math:`\sum_p x_{bp} + l_b = 1`; a pod that gets a bundle
+is brought to one station, :math:`x_{bp} \le \sum_s y_{ps} \le 1`; the bundles of a pod fit into it,
+and all bundles brought to a station fit into its buffer. What a bundle is worth in a pod is the
+robot time it will save (`bundle_worth_s`), so cost and worth are both in seconds, and a trip is
+made if its bundles save more than it costs. The bundles of one batch are rated one by one; the
+mutual benefit of two new bundles in the same pod is not counted.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from rmfs.solvers.models.checks import costs, reals
 
 LEFT = -1
-"""The pod of a bundle that is left for later, and the station of a pod that is not brought."""
+"""Marks the pod of a bundle left for later, and the station of a pod that is not brought."""
 
 PARTS = 16
 """Resolution of space, in parts of a space unit."""
@@ -33,24 +33,23 @@ PARTS = 16
 class Replenishment:
     """Bundles, pods and replenishment stations.
 
-    Spaces are rounded to sixteenths of a space unit, those of bundles up and those that are free
-    down, so that all back ends solve the same problem in whole numbers.
+    Spaces are rounded to sixteenths of a space unit (bundles up, free space down), so that all back
+    ends solve the same problem in integers.
 
     Parameters
     ----------
     worth_s
         Robot time saved later if each bundle is stored in each pod, shape (B, P), in s; -inf where
-        it may not be.
+        it may not be stored.
     leave_s
-        What it costs to leave each bundle for later, shape (B,), in s; +inf where it must be
-        stored.
+        Cost of leaving each bundle for later, shape (B,), in s; +inf if it must be stored.
     space
         Space units of each bundle, shape (B,).
     pod_space
         Space units free in each pod, shape (P,).
     trip_s
-        Robot time to bring each pod to each station and back, shape (P, S), in s; +inf where it
-        may not be, 0 where it is going anyway.
+        Robot time to bring each pod to each station and back, shape (P, S), in s; +inf where it may
+        not go, 0 where it is going anyway.
     station_space
         Space units free at each station, shape (S,).
 
@@ -114,7 +113,7 @@ class Stocking:
 
 
 def objective(data: Replenishment, stocking: Stocking) -> float:
-    """Return trips plus the cost of what is left minus the worth of what is stored, in s.
+    """Return the cost of trips and of bundles left minus the worth of stored bundles, in s.
 
     Parameters
     ----------
@@ -130,7 +129,7 @@ def objective(data: Replenishment, stocking: Stocking) -> float:
 
 
 def violations(data: Replenishment, stocking: Stocking) -> list[str]:
-    """Say what is wrong with a stocking; empty if nothing is.
+    """Return what is wrong with a stocking; empty if it is feasible.
 
     Parameters
     ----------

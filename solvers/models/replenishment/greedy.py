@@ -1,4 +1,4 @@
-"""Pod after pod: bring the one whose bundles gain most over its trip."""
+"""Bring pod after pod, each time the one whose bundles exceed its trip cost the most."""
 
 from __future__ import annotations
 
@@ -27,16 +27,17 @@ def solve(
     seed: int = 0,
     start: Stocking | None = None,
 ) -> Solution[Stocking]:
-    """Bring the pod with the greatest gain, with the bundles that gain most per space, and so on.
+    """Repeatedly bring the pod with the greatest gain, with its best bundles by gain per space.
 
-    As bundles and space only get fewer, a gain computed earlier is too high at worst, so only
-    the pods on top of a heap are rated again; they enter it with what they could gain if bundles
-    could be cut. Bundles that must be stored count a large gain.
+    As bundles and space only decrease, a gain computed earlier is an upper bound, so only the pods
+    at the top of a heap are rated again. Their initial rating is the gain if bundles could be
+    divided. Bundles that must be stored count as a large gain.
 
     Returns
     -------
-    Where bundles and pods go; ties go to the lowest pod and station. Status LIMIT if a bundle is
-    left that must be stored. The bound lets every bundle choose for itself, trips for nothing.
+    Where bundles and pods go; ties go to the lowest pod and station. The status is LIMIT if a
+    bundle that must be stored is left. For the bound, every bundle chooses its best pod
+    independently, and trips cost nothing.
     """
     begin = perf_counter()
     best = np.minimum(-data.worth_s.max(axis=1, initial=-math.inf), data.leave_s)
@@ -53,7 +54,7 @@ def solve(
 
 
 class Filling:
-    """Bundles, pods and stations while they are being matched.
+    """The state of the heuristic: bundles, pods and stations with their remaining space.
 
     Parameters
     ----------
@@ -63,7 +64,7 @@ class Filling:
     Attributes
     ----------
     scored
-        Candidates scored so far.
+        Number of candidates scored so far.
     """
 
     def __init__(self, data: Replenishment) -> None:
@@ -80,7 +81,7 @@ class Filling:
         self.scored = data.worth_s.size
 
     def run(self) -> Stocking:
-        """Bring pods until none gains anything."""
+        """Bring pods until no pod has a gain."""
         pods, stations = np.nonzero(np.isfinite(self._data.trip_s))
         most = (self._most()[pods] - self._data.trip_s[pods, stations]).tolist()
         options = zip(most, pods.tolist(), stations.tolist(), strict=True)
@@ -105,16 +106,16 @@ class Filling:
         Parameters
         ----------
         pod, station
-            The pod, which is not brought yet, and the station.
+            The pod, not brought yet, and the station.
         bundles
-            Bundles that are not stored yet; they fit.
+            Bundles that are not stored yet and fit.
         """
         self._station[pod] = station
         self._pod[bundles] = pod
         self._room[station] -= sum(self._space[bundle] for bundle in bundles)
 
     def gain(self, pod: int, station: int, wanted: list[int]) -> tuple[float, list[int]]:
-        """Return what bringing a pod gains with the first of some bundles that fit, and these.
+        """Return the gain of bringing a pod with the wanted bundles that fit, and these.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Replenishment by HiGHS."""
+"""Replenishment, solved by HiGHS."""
 
 from __future__ import annotations
 

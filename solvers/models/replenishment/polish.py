@@ -9,7 +9,7 @@ import numpy as np
 from rmfs.solvers.models.replenishment.data import LEFT, Replenishment, Stocking
 
 _GAIN_S = 1e-9
-"""A move must gain more than rounding could feign."""
+"""Minimum gain of a move, larger than rounding errors."""
 
 
 def polished(data: Replenishment, stocking: Stocking) -> Stocking:

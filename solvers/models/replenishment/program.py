@@ -8,8 +8,8 @@ Bundles go to pods (x), pods to stations (y); the load w of a pod counts at its 
     \sum_b space_b\, x_{bp} \le \sum_s w_{ps}, \\
     w_{ps} \le podspace_p\, y_{ps}, \quad \sum_p w_{ps} \le stationspace_s
 
-Splitting x by stations instead would say the same with as many times the columns as there are
-stations. Spaces are counted in parts of a unit, so that all numbers but the costs are whole.
+Splitting x by stations instead would be equivalent but multiply the columns by the number of
+stations. Spaces are counted in parts of a unit, so all numbers except the costs are integers.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from rmfs.solvers.models.replenishment.data import (
 
 @dataclass(frozen=True)
 class Columns:
-    """What the columns of a programme stand for: x, then y, then w, then l.
+    """The columns of the programme in order: x, y, w, l.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Columns:
 
     @classmethod
     def of(cls, data: Replenishment) -> Columns:
-        """List what is allowed.
+        """List the allowed pairs.
 
         Parameters
         ----------
@@ -68,7 +68,7 @@ class Columns:
 
 
 def program(data: Replenishment, columns: Columns, *, whole: bool) -> LinearProgram:
-    """State the problem in matrix form.
+    """Formulate the problem in matrix form.
 
     Parameters
     ----------
@@ -77,8 +77,8 @@ def program(data: Replenishment, columns: Columns, *, whole: bool) -> LinearProg
     columns
         Its columns.
     whole
-        Whether loads must be whole. They are, if x and y are; CP-SAT wants to be told, and branch
-        and bound is ten times as fast where it need not care.
+        Whether loads are declared integer. They are integer if x and y are; CP-SAT requires the
+        declaration, while branch and bound is ten times as fast without it.
     """
     bundles, (pods, stations) = len(data.space), data.trip_s.shape
     bundle, pod, brought, station = columns.bundle, columns.pod, columns.brought, columns.station
@@ -115,7 +115,7 @@ def _meet(
 
 
 def columns_of(data: Replenishment, columns: Columns, stocking: Stocking) -> NDArray[np.float64]:
-    """Write a stocking as columns of the programme.
+    """Turn a stocking into column values of the programme.
 
     Parameters
     ----------
@@ -137,9 +137,9 @@ def columns_of(data: Replenishment, columns: Columns, stocking: Stocking) -> NDA
 
 
 def stocking_of(data: Replenishment, columns: Columns, x: NDArray[np.float64]) -> Stocking:
-    """Read a stocking off the columns of the programme.
+    """Turn column values of the programme into a stocking.
 
-    Pods that are brought for nothing stay where they are.
+    Pods that would be brought without a bundle stay where they are.
 
     Parameters
     ----------
@@ -164,14 +164,14 @@ def stocking_of(data: Replenishment, columns: Columns, x: NDArray[np.float64]) -
 
 
 def formulate(data: Replenishment, *, whole: bool) -> Formulation[Stocking]:
-    """State the problem as an integer programme.
+    """Formulate the problem as an integer programme.
 
     Parameters
     ----------
     data
         The problem.
     whole
-        Whether the solver wants whole columns only.
+        Whether the solver requires all columns to be integer.
     """
     columns = Columns.of(data)
     return Formulation(

@@ -1,8 +1,8 @@
-"""The relaxed programme as a guide: its fractions say which pods to bring, and for what.
+"""Rounding of the relaxation: its fractions say which pods to bring, and with which bundles.
 
-The relaxation is solved in a fraction of the time of the programme and is tight, so its fractions
-are good advice, and its value is a bound. (Rounding by a relaxation, as in fix-and-dive heuristics;
-the greedy rule takes over where the fractions end.)
+The relaxation is tight and is solved in a fraction of the time of the integer programme, so its
+fractions are a good guide, and its value is a bound. This resembles fix-and-dive heuristics; the
+greedy rule decides what the fractions leave open.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from rmfs.solvers.models.replenishment.program import Columns, program
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 _SOME = 1e-6
-"""Fractions below this are noise."""
+"""Fractions below this are ignored as noise."""
 
 
 def solve(
@@ -31,7 +31,7 @@ def solve(
     seed: int = 0,
     start: Stocking | None = None,
 ) -> Solution[Stocking]:
-    """Bring the pods that the relaxation brings most of, for the bundles it puts there.
+    """Bring the pods with the largest fractions in the relaxation, and their bundles.
 
     Parameters
     ----------

@@ -1,11 +1,11 @@
-r"""What a bundle is worth in a pod: the robot time its units will save by raising the pile-on.
+r"""The worth of a bundle in a pod: the robot time that its units save by raising the pile-on.
 
-When a pod is visited, it can serve what has come up of its SKUs. Let the demand for SKU k that a
-visit meets be Poisson with mean :math:`\mu_k`. A pod with :math:`q` units of it serves
-:math:`g_k(q) = E[\min(q, D_k)]` of them, so u more units add *coverage*
-:math:`g_k(q + u) - g_k(q)`: much where the SKU is wanted and missing, little where it abounds.
-Whoever orders k orders :math:`a_{kh}` lines of SKU h with it (*affinity*): if the pod holds h too,
-these need no visit of their own. A unit served on the side saves its share of a visit:
+On each visit, a pod can serve the demand for its SKUs that has accumulated. Let the demand for SKU
+k on a visit be Poisson with mean :math:`\mu_k`. A pod with :math:`q` units of k serves
+:math:`g_k(q) = E[\min(q, D_k)]` of them, so u more units add the *coverage* :math:`g_k(q + u) -
+g_k(q)`, which is large if the SKU is in demand and scarce, and small if it is plentiful. With each
+line of SKU k, :math:`a_{kh}` lines of SKU h are ordered on average (*affinity*); if the pod holds h
+too, these need no separate visit. Each additional unit served saves its share of a visit:
 
 .. math::
 
@@ -13,7 +13,7 @@ these need no visit of their own. A unit served on the side saves its share of a
     \Bigl(1 + \sum_{h \in p, h \ne k} a_{kh}\Bigr)
 
 with k the SKU of bundle b. (Spread of SKUs over pods: Lamballais, Roy, de Koster 2020; affinity:
-the "Correlative" rule of RAWSim-O. That both are expressed in robot time is ours.)
+the "Correlative" rule of RAWSim-O. Expressing both in robot time is our addition.)
 """
 
 from __future__ import annotations
@@ -35,18 +35,19 @@ def bundle_worth_s(
     visit_s: float,
     pile_on: float,
 ) -> NDArray[np.float64]:
-    """Rate every pod for every bundle.
+    """Compute the worth of every bundle in every pod.
 
     Parameters
     ----------
     stock
-        Units of each SKU in each pod, or promised to it, shape (K, P).
+        Units of each SKU in each pod, including bundles assigned to it, shape (K, P).
     sku, units
         SKU and units of each bundle, shape (B,).
     wanted_per_visit
-        Units of each SKU that orders want while a pod is away between two visits, shape (K,).
+        Units of each SKU demanded by orders between two visits of a pod, shape (K,).
     affinity
-        Lines of SKU h ordered with a line of SKU k, shape (K, K), row k. Default: none.
+        Mean number of lines of SKU h ordered with a line of SKU k (row k), shape (K, K). Default:
+        none.
     visit_s
         Robot time of a visit, in s.
     pile_on
@@ -91,11 +92,11 @@ def expected_served(units: NDArray[np.int64], mean: NDArray[np.float64]) -> NDAr
     units
         Units q, any shape.
     mean
-        Mean of the demand, of a shape that fits.
+        Mean of the demand; broadcasts with `units`.
 
     Returns
     -------
-    Units served, of the common shape.
+    Expected units served, in the broadcast shape.
     """
     few = np.where(units >= 2, pdtr(np.maximum(units - 2, 0), mean), 0.0)
     many = np.where(units >= 1, pdtrc(np.maximum(units - 1, 0), mean), 1.0)

@@ -1,4 +1,4 @@
-"""A proven upper bound on the units that a warehouse can pick in a given time."""
+"""A proven upper bound on the number of units that a warehouse can pick in a given time."""
 
 from rmfs.solvers.models.methods import Methods
 from rmfs.solvers.models.run_bound import highs

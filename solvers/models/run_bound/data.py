@@ -1,7 +1,7 @@
-"""What the bound is made of: stations, robots, stock, refill and demand over a window of time.
+"""The input of the bound: stations, robots, stock, refill and demand over a window of time.
 
-Every number is an extreme: a *least* time, a *largest* amount. The bound is proven for whatever
-stays within them, so a caller who is not sure of a number gives a more generous one (0 for a
+Every number is an extreme: a *least* time or a *largest* amount. The bound is proven for all runs
+within these limits, so a caller who is unsure of a number should pass a more generous one (0 for a
 changeover, infinity for the demand).
 """
 
@@ -23,17 +23,16 @@ class PickStations:
     Parameters
     ----------
     unit_transfer_s
-        Time that one unit keeps the station, in s.
+        Time for which one unit occupies the station, in s.
     unit_pick_s
-        Time that one unit keeps the robot, in s. The longer of the two must be positive.
+        Time for which one unit holds the robot, in s. The longer of the two must be positive.
     changeover_s
-        Least time from the moment a robot may leave the head of the queue until a robot that
-        comes next can be served, in s; 0 is always right.
+        Least time from the moment a robot may leave the head of the queue until the next robot can
+        be served, in s; 0 is always valid.
     inbound_s, outbound_s
-        Least robot time to bring a pod to the station and to take it away, in s; see
-        `visit_legs`.
+        Least robot time to bring a pod to the station and to take it away, in s; see `visit_legs`.
     order_slots
-        Orders that may be open at once.
+        Maximum number of open orders.
 
     Raises
     ------
@@ -66,24 +65,24 @@ class PickStations:
 
     @property
     def change_s(self) -> NDArray[np.float64]:
-        """Least time between two picks from pods that follow each other."""
+        """Least time between two picks from consecutive pods."""
         return np.maximum(self.unit_transfer_s, self.unit_pick_s + self.changeover_s)
 
 
 @dataclass(frozen=True)
 class Refill:
-    """The replenishment stations; arrays have shape (Q,). No stations: nothing is refilled.
+    """The replenishment stations; arrays have shape (Q,). Without stations nothing is refilled.
 
     Parameters
     ----------
     bundle_transfer_s
-        Time that one bundle keeps station and robot, in s, positive.
+        Time for which one bundle occupies the station and the robot, in s, positive.
     inbound_s, outbound_s
         As for pick stations.
     bundle_units
-        Most units in a bundle.
+        Maximum number of units in a bundle.
     bundles_per_visit
-        Most bundles put into a pod in one visit.
+        Maximum number of bundles put into a pod in one visit.
 
     Raises
     ------
@@ -110,15 +109,15 @@ class Refill:
 
 @dataclass(frozen=True)
 class Stock:
-    """What the pods hold.
+    """Contents of the pods.
 
     Parameters
     ----------
     pod_units
-        Most units that each pod can hold at the start of the window, shape (P,): its contents
-        where they are known, or what fits (capacity / least space of a unit).
+        Maximum number of units that each pod can hold at the start of the window, shape (P,): its
+        contents if they are known, otherwise what fits (capacity / least space of a unit).
     largest_pod_units
-        Most units that any pod can hold at any time.
+        Maximum number of units that any pod can hold at any time.
 
     Raises
     ------
@@ -137,22 +136,23 @@ class Stock:
 
 @dataclass(frozen=True)
 class Orders:
-    """What is ordered.
+    """Demand for units.
 
     Parameters
     ----------
     units
         Units asked for and not yet picked when the window begins (work in progress included) plus
-        those of the orders that arrive in it. Default: without limit, as with a backlog that is
-        always topped up.
+        those of the orders that arrive in it. Default: unlimited, as with a backlog of constant
+        size.
     largest_order_units
-        Most units in an order; infinity if unknown. Default: unknown.
+        Maximum number of units in an order; infinity if unknown. Default: unknown.
     lone_units
-        Most units of orders that are served whole from one visit. Known where demand is: the
-        units of the orders whose SKUs some pod holds together. Default: without limit.
+        Maximum number of units of orders that are served whole from one visit. If the demand is
+        known, these are the units of the orders whose SKUs some pod holds together. Default:
+        unlimited.
     join_visits
-        Whether an order put on the station while a pod is served there can still be served from
-        that visit. Default: yes, which holds always.
+        Whether an order assigned to the station while a pod is served there can still be served
+        from that visit. Default: yes, which is always valid.
 
     Raises
     ------
@@ -173,7 +173,7 @@ class Orders:
 
 @dataclass(frozen=True)
 class RunBound:
-    """A warehouse and the time it has.
+    """A warehouse and the time window considered.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ class RunBound:
     robots
         Number R of robots.
     picking, refill, stock, orders
-        What they can do, and with what.
+        Capabilities of the stations, contents of the pods, and demand.
 
     Raises
     ------
@@ -202,9 +202,10 @@ class RunBound:
         integers("robots", self.robots, (), low=0)
 
     def keeping_stock(self) -> RunBound:
-        """Return the same for runs that put in at least as many units as they pick.
+        """Return the same problem for runs that store at least as many units as they pick.
 
-        What the pods hold at the start is then of no help: units picked are at most those stored.
+        The initial contents of the pods then do not count: at most as many units are picked as
+        stored.
         """
         stock = Stock(np.zeros_like(self.stock.pod_units), self.stock.largest_pod_units)
         return replace(self, stock=stock)
@@ -216,10 +217,10 @@ class RunBound:
 
     @property
     def visit_units(self) -> NDArray[np.float64]:
-        """Most units in one visit at each pick station, shape (S,).
+        """Maximum number of units in one visit at each pick station, shape (S,).
 
-        A pod is not refilled while it is picked from, so it gives no more than it can hold; if no
-        order joins a running visit, also no more than the open orders can ask for.
+        A pod is not refilled while units are picked from it, so a visit cannot yield more than the
+        pod can hold; if no order joins a running visit, nor more than the open orders can ask for.
         """
         largest = np.full(len(self.picking.order_slots), float(self.stock.largest_pod_units))
         if self.orders.join_visits or math.isinf(self.orders.largest_order_units):
@@ -230,7 +231,7 @@ class RunBound:
 
     @property
     def end_effect_s(self) -> float:
-        """Robot time per robot that can lie outside the window: a way in, a service, a way out."""
+        """Maximum time per robot outside the window: a drive in, a service, a drive out."""
         inbound = np.concatenate([self.picking.inbound_s, self.refill.inbound_s])
         outbound = np.concatenate(
             [
@@ -243,16 +244,16 @@ class RunBound:
 
 @dataclass(frozen=True)
 class Throughput:
-    """What the best imaginable run does in the window.
+    """Counts of the best conceivable run in the window.
 
     Attributes
     ----------
     units, visits
-        Units picked and visits of pods per pick station, shape (S,).
+        Units picked, and visits of pods, at each pick station, shape (S,).
     lone_units
         The part of the units that went to orders served whole from one visit, shape (S,).
     bundles, refill_visits
-        Bundles stored and visits per replenishment station, shape (Q,).
+        Bundles stored, and visits of pods, at each replenishment station, shape (Q,).
     """
 
     units: NDArray[np.float64]
@@ -270,6 +271,6 @@ def objective(data: RunBound, values: Throughput) -> float:
     data
         The warehouse.
     values
-        What happens in the window.
+        The counts in the window.
     """
     return float(values.units.sum()) / data.hours

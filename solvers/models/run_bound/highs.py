@@ -1,4 +1,4 @@
-"""The proven bound by HiGHS, the solution repaired so that no error of the solver can lower it."""
+"""The proven bound, solved by HiGHS and repaired so that no solver error can lower it."""
 
 from __future__ import annotations
 
@@ -24,20 +24,21 @@ def solve(
     seed: int = 0,
     start: Throughput | None = None,
 ) -> Solution[Throughput]:
-    """Bound the units per hour of every run, and show what would reach the bound.
+    """Return an upper bound on the units per hour of every run, and counts that would reach it.
 
     Parameters
     ----------
     data
         The warehouse.
     limits
-        `iterations` limits the simplex; the bound is one whenever it stops.
+        `iterations` limits the simplex method; the bound is valid whenever it stops.
     seed, start
-        Not needed: a linear programme.
+        Not used, as this is a linear programme.
 
     Returns
     -------
-    The best point and, as `bound`, the proven units per hour; work in simplex iterations.
+    The best point and, as `bound`, the proven units per hour; work is counted in simplex
+    iterations.
     """
     begin = perf_counter()
     linear, columns = program(data)

@@ -1,16 +1,16 @@
-r"""The least robot time that a visit takes on its way in and out.
+r"""The least robot time of a visit for bringing its pod and taking it away.
 
-A pod comes to a station from a storage place, where it was lifted, or straight from another
-station, and leaves likewise. A way from storage belongs to its visit alone; a way between two
-stations is shared by two visits, so each is charged one half:
+A pod comes to a station from a storage place, where it was lifted, or directly from another
+station, and leaves likewise. A drive from storage belongs to one visit; a drive between two
+stations is shared by two visits, each of which is charged one half:
 
 .. math::
 
     in_s &= \min(lift + \min_l t_{ls},\; \tfrac12 \min_{r \ne s} t_{rs}) \\
     out_s &= \min(setdown + \min_l t_{sl},\; \tfrac12 \min_{r \ne s} t_{sr})
 
-Whatever a robot does, the charges of its visits add up to no more than its driving, lifting and
-setting down. Empty driving is not counted: it can be zero.
+Whatever a robot does, the charges of its visits never exceed its total time for driving, lifting
+and setting down. Empty driving is not counted, as it can be zero.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def visit_legs(
     between_s: NDArray[np.float64],
     transfer_s: float,
 ) -> Legs:
-    """Charge the ways of pods to visits, for all stations in their common numbering.
+    """Compute the drives charged to a visit of each station, in the common numbering.
 
     Parameters
     ----------

@@ -1,41 +1,41 @@
-r"""The linear programme behind the proven bound: one whose every inequality holds for every run.
+r"""The linear programme behind the proven bound; each of its inequalities holds for every run.
 
-A *pick* keeps station s for :math:`\tau_s` and the robot for :math:`\pi_s` seconds from its start.
-A *visit* is a stay of a pod at the head of a station; it counts if a pick starts in the window
-:math:`[0, H]`. :math:`n_s` units and :math:`v_s` visits are counted at pick station s,
-:math:`m_q` bundles and :math:`z_q` visits at replenishment station q. With
-:math:`a_s = \max(\tau_s, \pi_s)` and :math:`b_s = \max(\tau_s, \pi_s + c_s)`, where :math:`c_s`
-is the least changeover:
+A *pick* occupies station s for :math:`\tau_s` and the robot for :math:`\pi_s` seconds from its
+start. A *visit* is a stay of a pod at the head of a station; it counts if a pick starts in the
+window :math:`[0, H]`. :math:`n_s` units and :math:`v_s` visits are counted at pick station s,
+:math:`m_q` bundles and :math:`z_q` visits at replenishment station q. With :math:`a_s =
+\max(\tau_s, \pi_s)` and :math:`b_s = \max(\tau_s, \pi_s + c_s)`, where :math:`c_s` is the least
+changeover:
 
-1. :math:`a_s n_s + (b_s - a_s) v_s \le H + b_s`. Picks of one visit start at least
-   :math:`a_s` apart, the last of a visit and the first of the next :math:`b_s`; all
-   :math:`n_s - 1` gaps, :math:`v_s - 1` of them changes, fit between 0 and H.
+1. :math:`a_s n_s + (b_s - a_s) v_s \le H + b_s`. Picks of one visit start at least :math:`a_s`
+   apart, the last of a visit and the first of the next :math:`b_s`; all :math:`n_s - 1` gaps,
+   :math:`v_s - 1` of them changes, fit between 0 and H.
 2. :math:`n_s \le \lfloor H / a_s \rfloor + 1`, for the same reason and because units are whole.
-3. :math:`v_s \le n_s \le u_s v_s`: a visit that counts has a unit, and no more than
-   :math:`u_s` (see `RunBound.visit_units`).
-4. :math:`m_q \le z_q B`, and :math:`\beta_q m_q \le H + \beta_q`: a visit stores at most B
-   bundles, and a bundle keeps its station for :math:`\beta_q`.
-5. Robots: :math:`\sum_s a_s n_s + (w_s + \pi_s - a_s) v_s + \sum_q \beta_q m_q + w_q z_q
-   \le R\,(H + E)`. A visit with k units holds its robot for :math:`(k - 1) a_s + \pi_s`, one
-   with k bundles for :math:`k \beta_q`; each takes a way in and a way out of together
-   :math:`w` seconds (`visit_legs` splits a way between two stations in halves, so that nothing
-   counts twice). Of all that, only the way in of a robot's first visit, and the way out and the
-   last service of its last one, can lie outside the window: at most E in all.
+3. :math:`v_s \le n_s \le u_s v_s`: a visit that counts has a unit, and no more than :math:`u_s`
+   (see `RunBound.visit_units`).
+4. :math:`m_q \le z_q B`, and :math:`\beta_q m_q \le H + \beta_q`: a visit stores at most B bundles,
+   and a bundle occupies its station for :math:`\beta_q`.
+5. Robots: :math:`\sum_s a_s n_s + (w_s + \pi_s - a_s) v_s + \sum_q \beta_q m_q + w_q z_q \le R\,(H
+   + E)`. A visit with k units holds its robot for :math:`(k - 1) a_s + \pi_s`, one with k bundles
+   for :math:`k \beta_q`; each needs a drive in and a drive out, together :math:`w` seconds
+   (`visit_legs` divides a drive between two stations into halves, so nothing counts twice). Of all
+   this, only the drive in of a robot's first visit, and the last service and the drive out of its
+   last visit, can lie outside the window: at most E in total.
 6. Content: :math:`\sum_s n_s \le \sum_p K_p y_p + g \sum_q m_q`, :math:`0 \le y_p \le 1`,
-   :math:`\sum_p y_p \le \sum_s v_s`. A unit picked in the window was in its pod p at the start
-   (one of at most :math:`K_p`) or came with a bundle of at most g units since; and no more pods
-   are picked from than there are visits. Whole :math:`y_p` are relaxed.
+   :math:`\sum_p y_p \le \sum_s v_s`. A unit picked in the window was in its pod p at the start (one
+   of at most :math:`K_p`) or came with a bundle of at most g units since; and there are no more
+   pods with picks than visits. Integrality of :math:`y_p` is relaxed.
 7. Demand: :math:`\sum_s n_s \le D`.
-8. Slots: :math:`n_s \le l_s + U C_s (v_s + 1)`, :math:`\sum_s l_s \le L`. An order is *lone* if
-   one visit serves it whole, else *spread*; :math:`l_s` units go to lone orders. A spread order
-   served in a visit was open when the visit began, or still is when it ends: at most
-   :math:`2 C_s` of them per visit, with :math:`C_s` slots. Each needs two visits, but for those
-   cut by an end of the window, at most :math:`C_s` at either: no more than
-   :math:`C_s (v_s + 1)` spread orders, of at most U units.
+8. Slots: :math:`n_s \le l_s + U C_s (v_s + 1)`, :math:`\sum_s l_s \le L`. An order is *lone* if one
+   visit serves it whole, else *spread*; :math:`l_s` units go to lone orders. A spread order served
+   in a visit was open when the visit began or is still open when it ends, so a visit serves at most
+   :math:`2 C_s` of them, with :math:`C_s` slots. Each needs two visits, except for those cut off by
+   either end of the window, at most :math:`C_s` each. So there are no more than :math:`C_s (v_s +
+   1)` spread orders, of at most U units.
 
-So the counts of every run are a feasible point, and their total is at most the optimum. What is
-reported is not the optimum a solver found but the value of its multipliers, repaired to dual
-feasibility and rounded up, which no error of the solver can push below the optimum.
+So the counts of every run are a feasible point, and their total is at most the optimum. The
+reported bound is not the optimum found by a solver but the dual value of its multipliers, made dual
+feasible and rounded up, which no solver error can push below the optimum.
 """
 
 from __future__ import annotations
@@ -50,12 +50,12 @@ from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
 from rmfs.solvers.models.run_bound.data import RunBound, Throughput
 
 _ROUNDING = 1e-9
-"""Relative error of a quotient of times, taken to the safe side before it is cut to a whole."""
+"""Relative rounding error of a quotient of times, added for safety before it is rounded down."""
 
 
 @dataclass(frozen=True)
 class Columns:
-    """Where the programme's columns are: per pick station, replenishment station, pod content."""
+    """Column indices of the programme: per pick station, replenishment station and pod."""
 
     units: NDArray[np.int64]
     visits: NDArray[np.int64]
@@ -66,16 +66,16 @@ class Columns:
 
 
 def violations(data: RunBound, values: Throughput) -> list[str]:
-    """Say which inequalities do not hold; empty if all do.
+    """Return the inequalities that do not hold; empty if all do.
 
-    The counts of a real run can be put in here, too: they must satisfy all.
+    The counts of a simulated run must satisfy all inequalities, too.
 
     Parameters
     ----------
     data
         The warehouse.
     values
-        What happens in the window.
+        The counts in the window.
     """
     linear, columns = program(data)
     x = np.zeros(linear.columns)
@@ -91,7 +91,7 @@ def violations(data: RunBound, values: Throughput) -> list[str]:
 
 
 def program(data: RunBound) -> tuple[LinearProgram, Columns]:
-    """State the inequalities of the module's docstring.
+    """Formulate the inequalities of the module's docstring.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def program(data: RunBound) -> tuple[LinearProgram, Columns]:
 
     Returns
     -------
-    The programme, which minimises the negative number of units, and its columns.
+    The programme, which minimises minus the number of units, and its columns.
     """
     builder = ProgramBuilder()
     columns = _columns(builder, data)

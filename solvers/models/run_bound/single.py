@@ -1,4 +1,4 @@
-"""Bounds from single resources: weaker than the linear programme, but easy to interpret."""
+"""Bounds from single resources, weaker than the linear programme but easy to interpret."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from rmfs.solvers.models.run_bound.data import RunBound
 
 
 def single_bounds(data: RunBound) -> dict[str, float]:
-    r"""Bound the units per hour by one resource at a time.
+    r"""Return upper bounds on the units per hour, each from a single resource.
 
-    - ``stations``: never waiting for a pod, :math:`\sum_s (H / a_s + 1)`;
-    - ``robots``: always at the station with the best ratio, every visit at its largest pile-on
-      :math:`u_s`: :math:`R (H + E) / \min_s (a_s + (w_s + \pi_s - a_s) / u_s)`, or
-      :math:`w_s + \pi_s` per unit where that is less;
-    - ``demand``: what is ordered.
+    - ``stations``: stations never wait for a pod, :math:`\sum_s (H / a_s + 1)`;
+    - ``robots``: all visits go to the station with the best ratio, with the largest possible
+      pile-on :math:`u_s`: :math:`R (H + E) / \min_s (a_s + (w_s + \pi_s - a_s) / u_s)`, or
+      :math:`w_s + \pi_s` per unit if that is less;
+    - ``demand``: the units ordered.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Rack sequencing at one station (Boysen, Briskorn, Emde 2017): fewest pod visits.
+"""Rack sequencing at one station with the fewest pod visits (Boysen, Briskorn, Emde 2017).
 
 - `dynamic`: exact, for about ten orders; `cp_sat`: exact, limited by counted work;
 - `beam`: beam search with local search, for any size.

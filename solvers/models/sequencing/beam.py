@@ -1,11 +1,11 @@
-"""Beam search with a local search behind it: for inputs beyond the exact methods.
+"""Beam search followed by a local search, for inputs too large for the exact methods.
 
-The best few partial plans are kept, one visit longer at a time, and every pod is tried on each. Of
-the orders a pod would serve in part, those with the fewest SKUs then missing start, as many as
-there are slots; a second branch starts only those that the pod serves at least half. Plans are
-ranked by the SKUs all orders still miss, those of open orders counted twice: an open order holds a
-slot. All plans of a step are scored at once, by one matrix product. Deterministic: ties go to the
-plan kept earlier, then the lower pod.
+In each step every kept partial plan is extended by a visit of every pod, and the best few plans are
+kept. Of the orders that a pod would serve in part, those that would miss the fewest SKUs are
+opened, as many as there are slots; a second branch opens only orders of which the pod serves at
+least half. Plans are ranked by the number of SKUs that all orders still miss; those of open orders
+count twice, as an open order holds a slot. All plans of a step are scored at once, by one matrix
+product. Deterministic: ties go to the plan kept earlier, then the lower pod.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from rmfs.solvers.models.sequencing.sets import useful_pods
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 WIDTH = 20
-"""Partial plans kept per visit."""
+"""Number of partial plans kept per visit."""
 
 
 def solve(
@@ -52,9 +52,9 @@ def solve(
     seed
         Seed of the local search. Default 0.
     start
-        A plan that the result must not be worse than. Default: none.
+        A plan; the result is never worse. Default: none.
     width
-        Partial plans kept per visit. Default `WIDTH`.
+        Number of partial plans kept per visit. Default `WIDTH`.
 
     Returns
     -------
@@ -80,14 +80,14 @@ def solve(
 
 
 def search(data: Sequencing, width: int) -> tuple[VisitSequence, int]:
-    """The beam search alone.
+    """Run the beam search without the local search.
 
     Parameters
     ----------
     data
         The input; feasible.
     width
-        Partial plans kept per visit, at least 1.
+        Number of partial plans kept per visit, at least 1.
 
     Returns
     -------

@@ -1,7 +1,8 @@
 """Lower bounds on the number of visits.
 
-Every needed SKU must be seen: the visits include a set of pods that covers all needed SKUs. The
-duals of the relaxed covering problem give a bound (`safe_bound`), rounded up to a whole number.
+The visiting pods must together hold all needed SKUs, so a minimum cover of these SKUs by pods is a
+lower bound. It is bounded by the duals of the relaxed covering problem (`safe_bound`), rounded up
+to a whole number.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from rmfs.solvers.models.sequencing.data import Sequencing
 
 
 def covering(data: Sequencing) -> LinearProgram:
-    """Fewest pods that hold all needed SKUs together.
+    """Return a lower bound on the number of pods that together hold all needed SKUs.
 
     Parameters
     ----------
@@ -32,7 +33,7 @@ def covering(data: Sequencing) -> LinearProgram:
 
 
 def visits_bound(data: Sequencing) -> float:
-    """A number of visits that no plan goes below.
+    """Return a lower bound on the number of visits of every plan.
 
     Parameters
     ----------

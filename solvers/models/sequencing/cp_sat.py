@@ -1,4 +1,4 @@
-"""Rack sequencing with CP-SAT, within the length of a heuristic plan."""
+"""Rack sequencing, solved by CP-SAT; the horizon is the length of a heuristic plan."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ def solve(
     seed: int = 0,
     start: VisitSequence | None = None,
 ) -> Solution[VisitSequence]:
-    """Find a plan of fewest visits; `deterministic_s` and `gap` apply.
+    """Find a plan with the fewest visits; `deterministic_s` and `gap` apply.
 
-    It starts from the plan of the beam search unless there is another.
+    It starts from the plan of the beam search unless another start is given.
     """
     began = time.perf_counter()
     if not data.feasible:

@@ -1,13 +1,13 @@
 """Rack sequencing at one pick station: the problem, a plan, and its rules.
 
 Orders are processed with at most C of them open at a time, pods visit the station one after the
-other, and an open order takes from a visiting pod every SKU it still misses. The fewer visits the
-better (Boysen, Briskorn, Emde 2017, mobile robot order picking; consecutive use of a pod counts
-once; stock of a pod is ample for all orders at the station).
+other, and an open order takes from a visiting pod every SKU it still misses. The number of visits
+is minimised (Boysen, Briskorn, Emde 2017, mobile robot order picking); consecutive visits of the
+same pod count once, and the stock of a pod suffices for all orders at the station.
 
-What may happen during one visit, in this order: open orders are served, and those complete leave
-(B); orders that this pod completes alone come and go one after the other, each needing a slot for a
-moment (Z); new orders come and stay (N). With A the orders open before and after the visit:
+A visit has three steps: open orders are served, and complete ones leave (B); orders that this pod
+completes alone come and go one after the other, each occupying a slot for a moment (Z); new orders
+are opened and stay (N). If A denotes the orders that are open before and after the visit:
 
     |A| + |B| <= C,    |A| + |N| <= C,    |A| + 1 <= C if Z is not empty
 """
@@ -33,13 +33,13 @@ class Sequencing:
     Parameters
     ----------
     needs
-        Whether an order needs a SKU (still), shape (O, K); every order needs one at least.
+        Whether an order (still) needs a SKU, shape (O, K); every order needs at least one.
     holds
         Whether a pod holds a SKU, shape (P, K).
     capacity
-        Most orders open at a time, C.
+        Maximum number C of open orders.
     opened
-        Whether an order is open already before the first visit, shape (O,). Default: none is.
+        Whether an order is already open before the first visit, shape (O,). Default: none is.
 
     Raises
     ------
@@ -65,7 +65,7 @@ class Sequencing:
 
     @property
     def open(self) -> Flags:
-        """`opened`, never None."""
+        """`opened`, or all false if it was not given, shape (O,)."""
         assert self.opened is not None
         return self.opened
 
@@ -81,18 +81,18 @@ class Sequencing:
 
     @property
     def feasible(self) -> bool:
-        """Whether every SKU that is needed is on some pod; then there is a plan."""
+        """Whether every needed SKU is on some pod, so that a plan exists."""
         return bool((self.holds.any(axis=0) | ~self.needs.any(axis=0)).all())
 
 
 @dataclass(frozen=True)
 class VisitSequence:
-    """A plan: visits, and when each order comes.
+    """A plan: the sequence of visits, and the visit at which each order is opened.
 
     Parameters
     ----------
     pods
-        The visiting pods in turn, shape (T,).
+        The visiting pods in sequence, shape (T,).
     start
         Visit during which an order is opened, shape (O,); -1 for those open before.
     """
@@ -102,7 +102,7 @@ class VisitSequence:
 
 
 def objective(data: Sequencing, plan: VisitSequence) -> float:
-    """Number of visits; the same pod twice in a row is one visit.
+    """Return the number of visits; consecutive visits of the same pod count once.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def objective(data: Sequencing, plan: VisitSequence) -> float:
 
 
 def finish(data: Sequencing, plan: VisitSequence) -> Integers:
-    """Visit during which each order is complete, shape (O,); `NEVER` if it is not.
+    """Return the visit that completes each order, shape (O,); `NEVER` if none does.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def finish(data: Sequencing, plan: VisitSequence) -> Integers:
 
 
 def violations(data: Sequencing, plan: VisitSequence) -> list[str]:
-    """Say which rules a plan breaks.
+    """Return which rules a plan breaks.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def violations(data: Sequencing, plan: VisitSequence) -> list[str]:
 
     Returns
     -------
-    One line per kind of violation; empty if the plan is allowed.
+    One line per kind of violation; empty if the plan is feasible.
     """
     visits, end = plan.pods.size, finish(data, plan)
     problems = []

@@ -1,12 +1,12 @@
-"""Exact dynamic programme for small inputs: A* over what every order still misses.
+"""Exact dynamic programme for small inputs: A* over the missing SKUs of each order.
 
-A state is the set of missing SKUs of every order (none: complete; part of them: open; all: not
-started, unless open before). One transition is one visit: the pod serves the open orders, passes
-orders it completes alone if there is a slot, and some of the orders it serves in part may start
+A state is the set of missing SKUs of every order (none: complete; some: open; all: not started,
+unless open before). A transition is one visit: the pod serves the open orders, completes further
+orders by itself if there is a slot, and some of the orders that it serves in part may be opened
 (states after Justkowiak, Kovalyov, Pesch 2024: completed orders, open orders, missing SKUs). Each
-visit costs 1; the estimate of what is left is the largest number of visits any one order needs,
-which never overestimates. So the first complete state is optimal, and the smallest estimate in the
-queue is a bound at any time.
+visit costs 1; the remaining cost is estimated by the largest number of visits that any single order
+still needs, which is never too high. So the first complete state is optimal, and the smallest
+estimate in the queue is always a valid bound.
 """
 
 from __future__ import annotations
@@ -34,22 +34,22 @@ def solve(
     seed: int = 0,
     start: VisitSequence | None = None,
 ) -> Solution[VisitSequence]:
-    """Find a plan of fewest visits.
+    """Find a plan with the fewest visits.
 
     Parameters
     ----------
     data
-        The input. About ten orders are small enough.
+        The input, of at most about ten orders.
     limits
-        ``iterations`` limits the states expanded. Default: none.
+        ``iterations`` limits the number of expanded states. Default: none.
     seed
-        Not used: nothing is drawn.
+        Not used, as nothing is random.
     start
-        A plan to return if the limit comes first. Default: none.
+        A plan to return if the limit is reached. Default: none.
 
     Returns
     -------
-    The plan; LIMIT without values if the limit came first and there is no start.
+    The plan; status LIMIT without values if the limit is reached and there is no start.
     """
     began = time.perf_counter()
     if not data.feasible:

@@ -1,9 +1,10 @@
-"""Local search on the order of visits: take one visit out, and repair what that leaves open.
+"""Local search on the sequence of visits: remove a visit, then repair the plan.
 
-For a given order of visits, `open_orders` decides which orders to open when, as in interval
-scheduling: of the orders that lose by waiting, the one that ends first. A visit is taken out; then
-random moves (exchange two visits, move one, replace one) are kept as long as no more SKUs stay
-open. When none is open, the plan is one visit shorter, and the next is taken out.
+For a given sequence of visits, `open_orders` decides when to open which order, as in interval
+scheduling: of the orders that would lose by waiting, it opens the one that ends first. The search
+removes a visit, then tries random moves (exchange two visits, move one, replace one) and keeps
+those that do not increase the number of missing SKUs. When none is missing, the plan is one visit
+shorter, and the next visit is removed.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from rmfs.solvers.models.sequencing.data import (
 from rmfs.solvers.models.sequencing.sets import useful_pods
 
 MOVES = 400
-"""Moves tried in all, unless limited otherwise."""
+"""Default number of moves tried in total."""
 
 
 def improve(
@@ -35,7 +36,7 @@ def improve(
     plan
         A feasible plan.
     moves
-        Most moves to try. Default: `MOVES`.
+        Maximum number of moves to try. Default: `MOVES`.
     seed
         Seed of the moves. Default 0.
 
@@ -69,7 +70,7 @@ def improve(
 
 
 def still_open(data: Sequencing, pods: Integers) -> tuple[Integers, int]:
-    """Open orders along a fixed sequence of visits.
+    """Decide when to open which order for a fixed sequence of visits.
 
     Parameters
     ----------
@@ -103,7 +104,7 @@ def still_open(data: Sequencing, pods: Integers) -> tuple[Integers, int]:
 
 
 def merged(plan: VisitSequence) -> VisitSequence:
-    """Make one visit of the same pod twice in a row.
+    """Merge consecutive visits of the same pod into one.
 
     Parameters
     ----------

@@ -43,14 +43,14 @@ from rmfs.solvers.models.sequencing.sets import useful_pods
 
 @dataclass(frozen=True)
 class Columns:
-    """The columns for a horizon of T visits, and the way from them to a plan and back.
+    """The columns for a horizon of T visits, and their conversion to and from plans.
 
     Parameters
     ----------
     data
         The input.
     pods
-        The pods that are worth looking at.
+        The pods considered.
     visit, started, finished, passing, room
         Columns v (T, pods), s and f (T + 1, O; row 0 is before the first visit), c (T, O), r (T,).
     order, sku, take
@@ -95,7 +95,7 @@ class Columns:
         names.block("take", self.take, t=time_, o=self.order, k=self.sku)
 
     def encode(self, plan: VisitSequence) -> NDArray[np.float64]:
-        """Make column values of a feasible plan of at most T visits."""
+        """Turn a feasible plan of at most T visits into column values."""
         visits, end = self.visit.shape[0], finish(self.data, plan)
         blocks = (self.visit, self.started, self.finished, self.passing, self.room, self.take)
         x = np.zeros(sum(block.size for block in blocks))
@@ -114,7 +114,7 @@ class Columns:
 
 
 def formulate(data: Sequencing, visits: int, least: int) -> Formulation[VisitSequence]:
-    """State the program.
+    """Formulate the program.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def formulate(data: Sequencing, visits: int, least: int) -> Formulation[VisitSeq
     visits
         The horizon T.
     least
-        A proven lower bound on the visits: so many are made in any case.
+        A proven lower bound on the number of visits; at least this many visits are made.
     """
     builder = ProgramBuilder()
     pods = useful_pods(data)

@@ -1,7 +1,7 @@
-"""The problem as bit sets, reduced to what matters: what the search methods work on.
+"""The problem as bit sets without irrelevant pods and SKUs, for the search methods.
 
-SKUs that nobody needs are dropped, and so are pods whose useful SKUs another pod has as well
-(a pod that can do more never costs more). The lower index stays if two pods are equal.
+SKUs that no order needs are dropped, and so are pods whose useful SKUs are all on another pod (a
+pod that can do more never costs more). Of equal pods the one with the lowest index is kept.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Sets:
 
 
 def reduce(data: Sequencing) -> Sets:
-    """Make the bit sets of an input.
+    """Build the bit sets of an input.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def reduce(data: Sequencing) -> Sets:
 
 
 def useful_pods(data: Sequencing) -> Integers:
-    """Pods that hold something needed and that no other pod can stand in for, in order.
+    """Return the pods with needed SKUs that no other pod can replace, in ascending order.
 
     Parameters
     ----------

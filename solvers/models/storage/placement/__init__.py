@@ -1,4 +1,4 @@
-"""Returning pods to free places, with the pods' expected next visits in the cost."""
+"""Assign returning pods to free places, including the cost of their expected next visits."""
 
 import numpy as np
 from numpy.typing import NDArray

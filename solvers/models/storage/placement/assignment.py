@@ -29,11 +29,11 @@ def solve_by(data: Placement, solver: Solver) -> Solution[NDArray[np.int64]]:
     data
         The problem.
     solver
-        Who solves it.
+        The solver.
 
     Returns
     -------
-    The place of each pod, shape (P,); work in entries of the cost table.
+    The place of each pod, shape (P,); work is the number of entries of the cost table.
     """
     return solve_by_assignment(
         lambda: data.cost_s, lambda column: column, lambda place: objective(data, place), solver

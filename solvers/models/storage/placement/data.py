@@ -5,9 +5,9 @@ r"""The problem: a batch of pods that need a place, and the places that are free
     \min \sum_{p,l} (travel_{pl} + visits_p \cdot access_l)\, x_{pl}, \quad
     \sum_l x_{pl} = 1, \quad \sum_p x_{pl} \le 1
 
-Robot time now is weighed against robot time later: a pod that will soon be wanted is worth a longer
-way today to a place near the stations. (The batch form of the "cheapest place" rule of Krenzler,
-Xie, Li 2018; nearest-place storage is the case of no visits.)
+Robot time now is weighed against robot time later: for a pod that is needed again soon, a longer
+drive to a place near the stations pays off. (The batch form of the "cheapest place" rule of
+Krenzler, Xie, Li 2018; without expected visits it becomes nearest-place storage.)
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ class Placement:
     Parameters
     ----------
     travel_s
-        Robot time from where each pod is now to each place, set-down included, shape (P, L), in
-        s; +inf where a pod may not be put.
+        Robot time from where each pod is now to each place, set-down included, shape (P, L), in s;
+        +inf where a pod may not be stored.
     access_s
-        Robot time between each place and the stations that a future visit takes, both ways,
-        shape (L,), in s.
+        Robot time between each place and the stations that a future visit takes, both ways, shape
+        (L,), in s.
     visits
         Expected visits of each pod before it is moved again, shape (P,); see `expected_visits`.
 
@@ -54,7 +54,7 @@ class Placement:
 
     @property
     def cost_s(self) -> NDArray[np.float64]:
-        """Robot time of each pair, now and later, shape (P, L)."""
+        """Robot time of each pair, now and later, shape (P, L), in s."""
         return self.travel_s + np.outer(self.visits, self.access_s)
 
 
@@ -74,7 +74,7 @@ def objective(data: Placement, place: NDArray[np.int64]) -> float:
 
 
 def violations(data: Placement, place: NDArray[np.int64]) -> list[str]:
-    """Say what is wrong with a placement; empty if nothing is.
+    """Return what is wrong with a placement; empty if it is feasible.
 
     Parameters
     ----------

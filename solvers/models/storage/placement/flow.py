@@ -1,4 +1,4 @@
-"""The best placement by OR-Tools' minimum-cost flow."""
+"""The optimal placement by OR-Tools' minimum-cost flow."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pods one after another: whose coming visits weigh most chooses first."""
+"""Pods choose places in turn, those with the most expected visits first."""
 
 from __future__ import annotations
 
@@ -19,14 +19,15 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Let each pod take the cheapest place left, most visited pods first.
+    """Let each pod take the cheapest remaining place, most visited pods first.
 
-    The bound lets every pod have its cheapest place, also one that others have.
+    For the bound, every pod takes its cheapest place, even if others take it too.
 
     Returns
     -------
-    The place of each pod, shape (P,); ties go to the lowest index. Status LIMIT if a pod is left
-    without a place, as the rule does not take back what it gave; INFEASIBLE if none is allowed.
+    The place of each pod, shape (P,); ties go to the lowest index. The status is LIMIT if a pod is
+    left without a place, as the rule never revises a choice, and INFEASIBLE if no place is allowed
+    for some pod.
     """
     begin = perf_counter()
     cost_s = data.cost_s

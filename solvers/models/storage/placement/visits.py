@@ -1,7 +1,7 @@
-r"""How often a pod will be asked for: its share of what will be ordered.
+r"""Expected visits of a pod: its share of the demand.
 
 Units of SKU k wanted within the horizon, :math:`D_k = backlog_k + rate_k \cdot horizon`, are taken
-from the pods in proportion to their stock :math:`s_{kp}`, and not more than there is:
+from the pods in proportion to their stock :math:`s_{kp}`, up to the units in stock:
 
 .. math::
 
@@ -26,7 +26,7 @@ def expected_visits(
     pile_on: float,
     pods: ArrayLike | None = None,
 ) -> NDArray[np.float64]:
-    """Expect the visits of pods from stock, popularity and backlog.
+    """Estimate the visits of pods from stock, popularity and backlog.
 
     Parameters
     ----------
@@ -37,11 +37,11 @@ def expected_visits(
     rate_per_h
         Units of each SKU that new orders will ask for per hour (its popularity), shape (K,).
     horizon_h
-        How far ahead to look, in h: about the time a pod stays where it is put.
+        Horizon in h: about the time that a pod stays at its place.
     pile_on
         Units taken per visit, positive.
     pods
-        Which pods to look at, shape (Q,). Default: all.
+        The pods to evaluate, shape (Q,). Default: all.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Pods whose next visits are known: which zone of places each stays in, and when."""
+"""Storage of pods whose next visits are known: the zone of places for each stay."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,4 +1,4 @@
-"""The interval model by CP-SAT."""
+"""The interval model, solved by CP-SAT."""
 
 from __future__ import annotations
 

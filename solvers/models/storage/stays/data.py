@@ -5,11 +5,11 @@ r"""The problem: stays with known begin and end, and zones of equal places.
     \min \sum_{sz} c_{sz} x_{sz}, \quad \sum_z x_{sz} = 1, \quad
     \sum_{s \text{ present at } t} x_{sz} \le k_z \text{ for all } t, \quad x \in \{0, 1\}
 
-A stay lasts from the moment a place is given to a pod until the pod has left it, ``[begin, end)``.
-(Weidinger, Boysen, Briskorn 2018 decide on single places: zones of one place.) Places of a zone
-are interchangeable, and no more than :math:`k_z` stays at a time is enough to give each a place of
-its own: interval graphs are perfect. A pod that stands there already is a stay that begins at once
-and is allowed only where it stands.
+A stay lasts from the moment when a place is assigned to a pod until the pod has left it, ``[begin,
+end)``. (Weidinger, Boysen, Briskorn 2018 decide on single places, that is, zones of one place.)
+Places of a zone are interchangeable. If no more than :math:`k_z` stays overlap at any time, each
+can have a place of its own, because interval graphs are perfect. A pod that is already stored is a
+stay that begins at once and is allowed only in its present zone.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ class Stays:
     Parameters
     ----------
     begin_s, end_s
-        When each stay begins and ends, shape (S,), in s; every stay has a length.
+        Begin and end of each stay, shape (S,), in s; every stay has a positive length.
     cost_s
-        Robot time of a stay in each zone (the way there and the way to the next station), shape
-        (S, Z), in s; +inf where it is not allowed.
+        Robot time of a stay in each zone (the way there and the way to the next station), shape (S,
+        Z), in s; +inf where it is not allowed.
     capacity
         Places of each zone, shape (Z,).
 
@@ -59,15 +59,15 @@ class Stays:
 
     @cached_property
     def periods(self) -> tuple[NDArray[np.int64], NDArray[np.int64], int]:
-        """The fewest moments at which places must be counted.
+        """Find the fewest moments at which occupied places must be counted.
 
-        Stays can only get more until one ends, so that counting at the last moment before an end
-        is enough: these are the maximal sets of stays that are present together.
+        The number of stays can only grow until one ends, so it suffices to count just before an
+        end: these are the maximal sets of stays that are present together.
 
         Returns
         -------
-        First period of each stay, the period after its last one, both shape (S,), and the number
-        of periods.
+        First period of each stay and the period after its last one, both of shape (S,), and the
+        number of periods.
         """
         ended = np.searchsorted(np.sort(self.end_s), self.begin_s, side="right")
         distinct, first = np.unique(ended, return_inverse=True)
@@ -78,18 +78,18 @@ class Stays:
         return first.astype(np.int64), last.astype(np.int64), len(distinct)
 
     def present(self, zone: NDArray[np.int64], counted: int) -> NDArray[np.int64]:
-        """Count stays in one zone over the periods.
+        """Count the stays in one zone in each period.
 
         Parameters
         ----------
         zone
             Zone of each stay, shape (S,).
         counted
-            The zone to look at.
+            The zone whose stays are counted.
 
         Returns
         -------
-        Stays present, shape (periods,).
+        Number of stays present, shape (periods,).
         """
         first, last, periods = self.periods
         change = np.zeros(periods + 1, np.int64)
@@ -112,7 +112,7 @@ def objective(data: Stays, zone: NDArray[np.int64]) -> float:
 
 
 def violations(data: Stays, zone: NDArray[np.int64]) -> list[str]:
-    """Say what is wrong with a choice of zones; empty if nothing is.
+    """Return what is wrong with a choice of zones; empty if it is feasible.
 
     Parameters
     ----------

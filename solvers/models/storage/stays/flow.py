@@ -1,11 +1,11 @@
-r"""Two zones: a minimum-cost flow, exact at any size.
+r"""Stays in two zones as a minimum-cost flow, exact at any size.
 
-With two zones a stay that is not in zone 0 is in zone 1. The :math:`k_0` places of zone 0 walk
-along the periods as units of flow: a unit either waits from one period to the next or spends a
-stay. A stay in zone 0 saves :math:`c_{s1} - c_{s0}`. As the stays present in period t that are not
-in zone 0 must fit into zone 1, at most :math:`k_0 - (present_t - k_1)^+` units may wait there.
-(The k-colouring of intervals by flow of Carlisle and Lloyd 1995, with a limit on waiting.) A stay
-that must be in zone 0 takes its unit out of the flow and puts it back.
+With two zones, a stay that is not in zone 0 is in zone 1. The :math:`k_0` places of zone 0 move
+along the periods as units of flow: a unit either waits from one period to the next or follows the
+arc of a stay. A stay in zone 0 saves :math:`c_{s1} - c_{s0}`. As the stays present in period t that
+are not in zone 0 must fit into zone 1, at most :math:`k_0 - (present_t - k_1)^+` units may wait
+there. (The k-colouring of intervals by flow of Carlisle and Lloyd 1995, with a limit on waiting.) A
+stay that must be in zone 0 takes its unit out of the flow and puts it back.
 """
 
 from __future__ import annotations
@@ -29,23 +29,23 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Find the zone of each stay if there are two zones.
+    """Find the zone of each stay in a problem with two zones.
 
     Parameters
     ----------
     data
-        The problem; two zones.
+        The problem, with two zones.
     limits, seed, start
-        Not needed.
+        Not used.
 
     Returns
     -------
-    The zone of each stay, shape (S,); work in arcs.
+    The zone of each stay, shape (S,); work is the number of arcs.
 
     Raises
     ------
     ModelError
-        If there is another number of zones.
+        If the number of zones is not two.
     """
     require(
         len(data.capacity) == 2, "capacity", f"must be of two zones, is of {len(data.capacity)}"

@@ -1,4 +1,4 @@
-"""Stays one after another: by what is at stake per hour, or, in need, by their begin."""
+"""Stays choose zones in turn: by cost difference per hour or, if that fails, by begin."""
 
 from __future__ import annotations
 
@@ -20,16 +20,18 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Give each stay the cheapest zone that has room all the time.
+    """Give each stay the cheapest zone that has room during the whole stay.
 
-    Stays whose zones differ most per hour of stay choose first: a good place serves many short
-    stays better than a long one. If that leaves a stay without a zone, they choose in the order of
-    their begin, which fails only where not every zone is allowed (or there is no room at all).
+    Stays with the largest cost difference between zones per hour choose first, as many short stays
+    make better use of a good place than one long stay. If that leaves a stay without a zone, stays
+    choose in the order of their begin, which fails only if some zones are not allowed or there is
+    no room at all.
 
     Returns
     -------
-    The zone of each stay, shape (S,); ties go to the lowest index. Status LIMIT if both orders
-    fail. The bound lets every stay have its cheapest zone; a stay without one is INFEASIBLE.
+    The zone of each stay, shape (S,); ties go to the lowest index. The status is LIMIT if both
+    sequences fail, and INFEASIBLE if no zone is allowed for some stay. For the bound, every stay
+    has its cheapest zone.
     """
     begin = perf_counter()
     stays, zones = data.cost_s.shape

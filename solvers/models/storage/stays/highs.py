@@ -1,4 +1,4 @@
-"""The interval model by HiGHS."""
+"""The interval model, solved by HiGHS."""
 
 from __future__ import annotations
 

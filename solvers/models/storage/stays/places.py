@@ -12,10 +12,10 @@ from rmfs.solvers.models.storage.stays.data import Stays, violations
 
 
 def places(data: Stays, zone: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Give every stay the lowest place of its zone that is free when it begins.
+    """Give every stay the lowest-numbered place of its zone that is free when it begins.
 
-    Places of a zone are numbered from 0. Taking stays by their begin never needs more places than
-    there are stays at a time (interval colouring).
+    Places of a zone are numbered from 0. When stays are processed in the order of their begin, no
+    more places are needed than there are simultaneous stays (interval colouring).
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def places(data: Stays, zone: NDArray[np.int64]) -> NDArray[np.int64]:
     Raises
     ------
     ModelError
-        If the zones are no solution.
+        If the zones are not a feasible solution.
     """
     broken = violations(data, zone)
     require(not broken, "zone", "; ".join(broken))

@@ -5,8 +5,8 @@ r"""The integer programme, with the pods of each zone carried over from period t
     y_{zt} = y_{z,t-1} + \sum_{s \text{ begins in } t} x_{sz}
     - \sum_{s \text{ is over in } t} x_{sz}, \qquad 0 \le y_{zt} \le k_z
 
-says the same as one row per maximal set of stays, with a number of entries that grows with the
-stays and not with the square of them. For each zone alone the matrix is one of a network, so that
+is equivalent to one row per maximal set of stays, but the number of entries grows linearly with the
+number of stays instead of quadratically. For each zone by itself the matrix is a network matrix, so
 the relaxation is tight.
 """
 
@@ -22,7 +22,7 @@ from rmfs.solvers.models.storage.stays.data import Stays, objective, violations
 
 
 def program(data: Stays, *, whole: bool) -> LinearProgram:
-    """State the problem in matrix form.
+    """Formulate the problem in matrix form.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def program(data: Stays, *, whole: bool) -> LinearProgram:
 
 
 def columns_of(data: Stays, zone: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Write a choice of zones as columns of the programme.
+    """Turn a choice of zones into column values of the programme.
 
     Parameters
     ----------
@@ -74,14 +74,14 @@ def columns_of(data: Stays, zone: NDArray[np.int64]) -> NDArray[np.float64]:
 
 
 def zones_of(data: Stays, x: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Read a choice of zones off the columns of the programme.
+    """Turn column values of the programme into a choice of zones.
 
     Parameters
     ----------
     data
         The problem.
     x
-        The columns.
+        The column values.
     """
     if not data.cost_s.size:
         return np.zeros(0, np.int64)
@@ -91,14 +91,14 @@ def zones_of(data: Stays, x: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def formulate(data: Stays, *, whole: bool) -> Formulation[NDArray[np.int64]]:
-    """State the problem as an integer programme.
+    """Formulate the problem as an integer programme.
 
     Parameters
     ----------
     data
         The problem.
     whole
-        Whether the solver wants whole columns only.
+        Whether the solver requires all columns to be integer.
     """
     return Formulation(
         program(data, whole=whole),

@@ -1,4 +1,4 @@
-"""Classes of pods to zones of places in the steady state; the prices of zones rate places."""
+"""Assign classes of pods to zones of places in the steady state; zone prices rate places."""
 
 from rmfs.solvers.models.methods import Methods
 from rmfs.solvers.models.storage.zones import clarabel, greedy

@@ -1,8 +1,8 @@
-"""The best steady state by Clarabel, an interior-point method, through cvxpy.
+"""The optimal steady state, solved by the interior-point method Clarabel through cvxpy.
 
-cvxpy turns a problem of some size into a cone programme once; every number of `Zones` is a
-parameter of it (disciplined parametrised programming), so that solving again with other numbers
-skips that step. Each solve starts cold: its outcome depends on its input alone.
+cvxpy compiles a problem of a given size into a cone programme once. Every number of `Zones` is a
+parameter of it (disciplined parametrised programming), so solving again with other numbers skips
+the compilation. Each solve starts cold, so its result depends on its input alone.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ from rmfs.solvers.models.storage.zones.prices import price_bound
 from rmfs.solvers.models.storage.zones.repair import repaired
 
 EXACT = 1e-6
-"""Gap at which an interior-point solution counts as optimal, relative or, below 1, in s/h."""
+"""Gap at which an interior-point solution counts as optimal, relative to the objective or, if that
+is below 1 s/h, absolute."""
 
 _SIZES_KEPT = 8
 
@@ -33,22 +34,22 @@ _SIZES_KEPT = 8
 def solve(
     data: Zones, limits: Limits = NO_LIMITS, *, seed: int = 0, start: ZonePlan | None = None
 ) -> Solution[ZonePlan]:
-    """Find the steady state of least robot time, and the price of places in it.
+    """Find the steady state with the least robot time, and the prices of places.
 
     Parameters
     ----------
     data
         The problem.
     limits
-        `iterations` limits the interior-point method; the plan is feasible and the bound is one
+        `iterations` limits the interior-point method; the plan is feasible and the bound valid
         whenever it stops.
     seed, start
-        Not needed.
+        Not used.
 
     Returns
     -------
-    The plan, made exactly feasible, with its prices; work in iterations. OPTIMAL means a gap of
-    at most `EXACT`, or of the limits' gap if that is wider.
+    The plan, made exactly feasible, with its prices; work is the number of iterations. OPTIMAL
+    means a gap of at most `EXACT`, or the gap of the limits if that is larger.
 
     Raises
     ------

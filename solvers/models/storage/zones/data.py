@@ -1,4 +1,4 @@
-r"""The steady state: how many pods of each class stand in each zone on average.
+r"""The problem: the mean number of pods of each class in each zone in the steady state.
 
 .. math::
 
@@ -10,7 +10,7 @@ A pod of class i is visited :math:`r_i` times an hour; a visit from zone j takes
 :math:`t_{ij}` seconds and waits :math:`\gamma_j f_j` seconds more, because delay grows with the
 traffic :math:`f_j` of the zone. The objective is robot seconds per hour. Without congestion this is
 the transportation problem of class-based storage (Hausman, Schwarz, Graves 1976); the quadratic
-cost makes busy zones dear before they are full.
+cost makes busy zones expensive before they are full.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from rmfs.solvers.models.checks import reals
 
 _TOLERANCE = 1e-9
-"""Relative error allowed where pods are counted."""
+"""Relative error allowed in counts of pods."""
 
 
 @dataclass(frozen=True)
@@ -36,13 +36,13 @@ class Zones:
         Robot time of one visit to a pod of each class from each zone, to the station and back,
         shape (I, J), in s.
     rate_per_h
-        Visits of a pod of each class, shape (I,), in 1/h.
+        Visit rate of a pod of each class, shape (I,), in 1/h.
     pods
-        Pods of each class, shape (I,).
+        Number of pods of each class, shape (I,).
     places
-        Places of each zone, shape (J,).
+        Number of places of each zone, shape (J,).
     congestion_s_h
-        Seconds that a visit is delayed per visit per hour to the same zone, shape (J,), in s h.
+        Delay of a visit in seconds for each visit per hour to the same zone, shape (J,), in s h.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def traffic_per_h(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.floa
     data
         The problem.
     standing
-        Pods of each class in each zone, shape (I, J).
+        Number of pods of each class in each zone, shape (I, J).
     """
     visits: NDArray[np.float64] = (data.rate_per_h[:, np.newaxis] * standing).sum(axis=0)
     return visits
@@ -91,12 +91,12 @@ def traffic_per_h(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.floa
 
 @dataclass(frozen=True)
 class ZonePlan:
-    """Where pods stand on average, and what that says of places.
+    """Mean number of pods in each zone, and the resulting prices of places.
 
     Attributes
     ----------
     standing
-        Pods of each class in each zone, shape (I, J).
+        Number of pods of each class in each zone, shape (I, J).
     price_per_h
         Robot time that one more place in each zone would save, shape (J,), in s/h.
     """
@@ -106,14 +106,14 @@ class ZonePlan:
 
 
 def objective(data: Zones, plan: ZonePlan) -> float:
-    """Return the robot time a plan takes, in s/h.
+    """Return the robot time of a plan, in s/h.
 
     Parameters
     ----------
     data
         The problem.
     plan
-        Where pods stand.
+        The plan.
     """
     driving = (data.rate_per_h[:, np.newaxis] * data.visit_s * plan.standing).sum()
     traffic = traffic_per_h(data, plan.standing)
@@ -121,14 +121,14 @@ def objective(data: Zones, plan: ZonePlan) -> float:
 
 
 def violations(data: Zones, plan: ZonePlan) -> list[str]:
-    """Say what is wrong with a plan; empty if nothing is.
+    """Return what is wrong with a plan; empty if it is feasible.
 
     Parameters
     ----------
     data
         The problem.
     plan
-        Where pods stand.
+        The plan.
     """
     found = []
     slack = _TOLERANCE * max(1.0, float(data.pods.sum()))

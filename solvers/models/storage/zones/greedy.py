@@ -1,4 +1,4 @@
-"""Turnover-based storage: the classes with most visits take the best zones."""
+"""Turnover-based storage: the classes with the most visits take the best zones."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from rmfs.solvers.models.storage.zones.data import ZonePlan, Zones, objective, t
 from rmfs.solvers.models.storage.zones.prices import price_bound
 
 _PORTIONS = 16
-"""Parts in which a class is put down, so that congestion is felt on the way."""
+"""Number of portions in which a class is placed, so that congestion affects the later ones."""
 
 
 def solve(
     data: Zones, limits: Limits = NO_LIMITS, *, seed: int = 0, start: ZonePlan | None = None
 ) -> Solution[ZonePlan]:
-    """Place classes in portions, the most visited first, each where a visit then takes least time.
+    """Place classes in portions, most visited first, each where a visit then takes least time.
 
     The time includes the delay that the added traffic causes. The price of a zone is the least
-    that a pod there saves compared with the best zone that still has room; 0 if none has.
+    saving of a pod there compared with the best zone that still has room; 0 if no zone has room.
 
     Returns
     -------

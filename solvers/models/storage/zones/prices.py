@@ -1,7 +1,7 @@
-r"""What a place is worth: the dual of the steady state, its bound, and the rule it gives.
+r"""The prices of places: the dual of the steady state, its bound, and the rule derived from it.
 
-Let :math:`p_j \ge 0` be the price of a place, :math:`d_j = 2 \gamma_j f_j` the delay that one more
-visit causes at the traffic :math:`f_j`. As :math:`\gamma f^2 \ge \gamma f_j^2 + 2 \gamma f_j
+Let :math:`p_j \ge 0` be the price of a place and :math:`d_j = 2 \gamma_j f_j` the delay that one
+more visit causes at the traffic :math:`f_j`. As :math:`\gamma f^2 \ge \gamma f_j^2 + 2 \gamma f_j
 (f - f_j)`, every :math:`p` and every :math:`f` give the bound
 
 .. math::
@@ -9,15 +9,16 @@ visit causes at the traffic :math:`f_j`. As :math:`\gamma f^2 \ge \gamma f_j^2 +
     \sum_i m_i u_i - \sum_j k_j p_j - \sum_j \gamma_j f_j^2, \qquad
     u_i = \min_j r_i (t_{ij} + d_j) + p_j
 
-At the optimum it is equal to the robot time. :math:`u_i` is what a pod of class i costs per hour
-where it stands best: its worth to the rule. The rule rates the stay of a pod at a place by
+At the optimum it is equal to the robot time. :math:`u_i` is the hourly cost of a pod of class i in
+its best zone, its *worth* in the rule. The rule rates the stay of a pod at a place by
 
 .. math::
 
     travel + d_j + stay \cdot (p_j - u_i)
 
-which is 0 for the zones the plan uses and positive for all others, if travel is the average and the
-stay lasts :math:`1 / r_i`: a bargain on the way, or a pod unlike its class, tips the scales.
+If travel is average and the stay lasts :math:`1 / r_i`, this is 0 for the zones that the plan uses
+and positive for all others. A short drive, or a stay that is untypical of the class, changes the
+ranking.
 """
 
 from __future__ import annotations
@@ -31,12 +32,12 @@ from numpy.typing import NDArray
 from rmfs.solvers.models.storage.zones.data import ZonePlan, Zones, traffic_per_h
 
 _TINY = 2.0**-46
-"""Relative error of the dual value: a few thousand roundings."""
+"""Upper bound on the relative rounding error of the dual value, of a few thousand operations."""
 
 
 @dataclass(frozen=True)
 class Prices:
-    """What the steady state says of zones and classes.
+    """Dual prices of zones and classes in the steady state.
 
     Attributes
     ----------
@@ -45,7 +46,7 @@ class Prices:
     delay_s
         Delay that one more visit to each zone causes itself and others, shape (J,), in s.
     worth_per_h
-        What a pod of each class costs where it stands best, shape (I,), in s/h.
+        Cost of a pod of each class in its best zone, shape (I,), in s/h.
     """
 
     place_per_h: NDArray[np.float64]
@@ -70,14 +71,14 @@ class Prices:
 
 
 def price_bound(data: Zones, plan: ZonePlan) -> float:
-    """Bound the robot time of every plan from below by the prices of one.
+    """Return a lower bound on the robot time of every plan, from the prices of one plan.
 
     Parameters
     ----------
     data
         The problem; it has zones.
     plan
-        Any plan; the best one makes the bound equal to its robot time.
+        Any plan; for an optimal one, the bound equals its robot time.
 
     Returns
     -------
@@ -93,14 +94,14 @@ def price_bound(data: Zones, plan: ZonePlan) -> float:
 
 
 def expected_stay_h(rate_per_h: NDArray[np.float64], longest_h: float) -> NDArray[np.float64]:
-    """Expect how long a pod stays until it is wanted again.
+    """Estimate how long a pod stays until it is needed again.
 
     Parameters
     ----------
     rate_per_h
-        Visits of each pod, any shape, in 1/h.
+        Visit rate of each pod, any shape, in 1/h.
     longest_h
-        No stay is taken to be longer, in h, positive: the plan will be another by then.
+        Upper limit of the estimate, in h, positive; the plan is replaced by then.
 
     Returns
     -------
@@ -126,17 +127,17 @@ def place_values(
         Prices of the steady state.
     travel_s
         Robot time of storing each pod at each place now and fetching it from there, shape (P, L),
-        in s; +inf where a pod may not be put.
+        in s; +inf where a pod may not be stored.
     zone
         Zone of each place, shape (L,).
     pod_class
         Class of each pod, shape (P,).
     stay_h
-        How long each pod will stay, shape (P,), in h; see `expected_stay_h`.
+        Expected stay of each pod, shape (P,), in h; see `expected_stay_h`.
 
     Returns
     -------
-    Seconds of robot time, shape (P, L): the less the better.
+    Robot time in s, shape (P, L); lower is better.
     """
     rent = prices.place_per_h[zone] - prices.worth_per_h[pod_class][:, np.newaxis]
     values: NDArray[np.float64] = travel_s + prices.delay_s[zone] + stay_h[:, np.newaxis] * rent

@@ -9,17 +9,17 @@ from rmfs.solvers.models.storage.zones.data import Zones
 
 
 def repaired(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Remove the inexactness of an interior-point solution.
+    """Turn an almost feasible table into an exactly feasible one.
 
-    Negative numbers become 0, rows are scaled to the number of pods, and what a zone has too many
-    is moved to zones with room, lowest index first.
+    Negative numbers become 0, rows are scaled to the number of pods, and excess pods of a zone are
+    moved to zones with room, lowest index first.
 
     Parameters
     ----------
     data
         The problem; every pod fits.
     standing
-        Pods of each class in each zone, shape (I, J); about right.
+        Number of pods of each class in each zone, shape (I, J), almost feasible.
 
     Returns
     -------

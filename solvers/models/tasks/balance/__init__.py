@@ -1,4 +1,4 @@
-"""Robots to tasks with balanced stations and due times."""
+"""Assign robots to tasks, with stations balanced and due times considered."""
 
 import numpy as np
 from numpy.typing import NDArray

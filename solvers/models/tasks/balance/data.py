@@ -7,9 +7,9 @@ r"""The problem: free robots, waiting tasks, stations with queues, due times.
     + \sum_s \sum_{k=1}^{n_s} (queue_s + k - 1)\, service_s
 
 with :math:`n_s \le room_s` the number of robots sent to station s. The k-th of them finds
-:math:`queue_s + k - 1` pods before it, so that each further robot to the same station costs more:
-stations are balanced by what imbalance costs. The waiting is an estimate for the whole group and
-does not enter the lateness, which keeps the cost of a pair fixed.
+:math:`queue_s + k - 1` pods before it, so each further robot to the same station costs more, which
+balances the stations. The waiting time is an estimate for the whole group and does not affect the
+lateness, so the cost of a pair is fixed.
 """
 
 from __future__ import annotations
@@ -33,23 +33,23 @@ class Balance:
     Parameters
     ----------
     arrive_s
-        Time until each robot would be at the station with the pod of each task, shape (R, T), in
-        s; +inf where it may not do it.
+        Time until each robot would be at the station with the pod of each task, shape (R, T), in s;
+        +inf where it may not do the task.
     leave_s
-        What it costs to leave each task for later, shape (T,), in s; +inf where it must be done.
+        Cost of leaving each task for later, shape (T,), in s; +inf if it must be done.
     due_s
-        Time until each task should be at its station, shape (T,), in s; negative when it is late
-        already, +inf without a due time.
+        Time until each task should be at its station, shape (T,), in s; negative if it is already
+        late, +inf without a due time.
     station
         Station of each task, shape (T,).
     queue
-        Pods at each station or on their way to it, shape (S,).
+        Number of pods at each station or on their way to it, shape (S,).
     service_s
-        Time a pod keeps each station, shape (S,), in s.
+        Time for which a pod occupies each station, shape (S,), in s.
     room
-        Most robots that may be sent to each station now, shape (S,).
+        Maximum number of robots that may be sent to each station now, shape (S,).
     late_weight
-        Seconds of travel that a second of lateness is worth. Default 1.
+        Weight of a second of lateness, in seconds of travel. Default 1.
 
     Raises
     ------
@@ -86,18 +86,18 @@ class Balance:
 
     @property
     def pairs(self) -> Matching:
-        """The problem without stations: every pair at its travel and lateness."""
+        """The matching problem without stations; each pair costs its travel and lateness."""
         late_s = np.maximum(0.0, self.arrive_s - np.where(np.isinf(self.due_s), 0.0, self.due_s))
         counted = self.late_weight * np.where(np.isinf(self.due_s) | np.isinf(late_s), 0.0, late_s)
         return Matching(self.arrive_s + counted, self.leave_s)
 
     def waiting_s(self, sent: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Return the waiting of the robots sent to each station, shape (S,), in s.
+        """Return the total waiting time of the robots sent to each station, shape (S,), in s.
 
         Parameters
         ----------
         sent
-            Robots sent to each station, shape (S,).
+            Number of robots sent to each station, shape (S,).
         """
         waiting: NDArray[np.float64] = self.service_s * (
             sent * self.queue + sent * (sent - 1) / 2.0
@@ -106,7 +106,7 @@ class Balance:
 
 
 def objective(data: Balance, robot: NDArray[np.int64]) -> float:
-    """Return travel, lateness, waiting and the cost of what is left, in s.
+    """Return the cost of travel, lateness, waiting and tasks left, in s.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def objective(data: Balance, robot: NDArray[np.int64]) -> float:
 
 
 def violations(data: Balance, robot: NDArray[np.int64]) -> list[str]:
-    """Say what is wrong with a choice of robots; empty if nothing is.
+    """Return what is wrong with a choice of robots; empty if it is feasible.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
 r"""Balanced dispatch as a minimum-cost flow.
 
-Robots send one unit each: to a task and on to its station, or straight to the sink (idle). From
-station s to the sink lead arcs of capacity 1 with costs :math:`(queue_s + k - 1) service_s`,
-:math:`k = 1, 2, \dots`; as they rise, the cheapest are used first and add up to the waiting.
-Leaving a task is paid in advance and given back on the arc from the task to its station; a task
-that must be done keeps the unit, and its station sends another.
+Each robot sends one unit: to a task and on to its station, or directly to the sink (idle). From
+station s to the sink there are arcs of capacity 1 with costs :math:`(queue_s + k - 1) service_s`,
+:math:`k = 1, 2, \dots`; as the costs increase, the cheapest arcs are used first and add up to the
+waiting time. The cost of leaving a task is charged in advance and refunded on the arc from the task
+to its station. A task that must be done absorbs its unit, and its station sends another.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def solve(
 
     Returns
     -------
-    The robot of each task, or `LEFT`, shape (T,); work in arcs.
+    The robot of each task, or `LEFT`, shape (T,); work is the number of arcs.
     """
     begin = perf_counter()
     pair_s = data.pairs.travel_s

@@ -1,4 +1,4 @@
-"""Tasks one after another, the most pressing first, each by the robot that is there first."""
+"""Assign tasks in turn, most urgent first, each to the robot that arrives first."""
 
 from __future__ import annotations
 
@@ -20,15 +20,16 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Let tasks choose their robots by due time; those that must be done come first.
+    """Let tasks choose robots in order of due time; tasks that must be done come first.
 
-    A task is left if its travel, lateness and the waiting it adds cost more than leaving it. The
-    bound lets robots do any number of tasks and stations start with the queue they have.
+    A task is left if its travel, lateness and additional waiting cost more than leaving it. For the
+    bound, robots may do any number of tasks, and every task finds only the present queue at its
+    station.
 
     Returns
     -------
-    The robot of each task, or `LEFT`, shape (T,); ties go to the lowest index. Status LIMIT if a
-    task is left that must be done.
+    The robot of each task, or `LEFT`, shape (T,); ties go to the lowest index. The status is LIMIT
+    if a task that must be done is left.
     """
     begin = perf_counter()
     pair_s = data.pairs.travel_s.copy()

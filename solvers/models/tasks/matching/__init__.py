@@ -1,4 +1,4 @@
-"""Robots to tasks, at most one each, by travel time."""
+"""Assign robots to tasks, at most one each, by travel time."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -24,18 +24,18 @@ def solve(
 
 
 def solve_by(data: Matching, solver: Solver) -> Solution[NDArray[np.int64]]:
-    """Find the robot of each task by a solver of assignments.
+    """Find the robot of each task by the given solver of assignments.
 
     Parameters
     ----------
     data
         The problem.
     solver
-        Who solves it.
+        The solver.
 
     Returns
     -------
-    The robot of each task, or `LEFT`, shape (T,); work in entries of the cost table.
+    The robot of each task, or `LEFT`, shape (T,); work is the number of entries of the cost table.
     """
     robots, tasks = data.travel_s.shape
 

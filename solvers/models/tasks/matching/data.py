@@ -1,12 +1,12 @@
-r"""The problem: robots that are free, tasks that wait.
+r"""The problem: free robots and waiting tasks.
 
 .. math::
 
     \min \sum_{rt} travel_{rt}\, x_{rt} + \sum_t leave_t \Bigl(1 - \sum_r x_{rt}\Bigr), \quad
     \sum_r x_{rt} \le 1, \quad \sum_t x_{rt} \le 1
 
-A task that stays behind costs what waiting for another robot is worth; where that is infinite the
-task must be done. Robots may stay idle. (The Hungarian dispatch of the literature, with tasks that
+Leaving a task costs as much as waiting for another robot; if that cost is infinite, the task must
+be done. Robots may stay idle. (This is the Hungarian dispatch of the literature, except that tasks
 may wait.)
 """
 
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from rmfs.solvers.models.checks import costs
 
 LEFT = -1
-"""The robot of a task that is left for later."""
+"""Marks the robot of a task that is left for later."""
 
 
 @dataclass(frozen=True)
@@ -30,9 +30,10 @@ class Matching:
     Parameters
     ----------
     travel_s
-        Time each robot needs to each task, shape (R, T), in s; +inf where it may not do it.
+        Travel time of each robot to each task, shape (R, T), in s; +inf where it may not do the
+        task.
     leave_s
-        What it costs to leave each task for later, shape (T,), in s; +inf where it must be done.
+        Cost of leaving each task for later, shape (T,), in s; +inf if it must be done.
 
     Raises
     ------
@@ -50,7 +51,7 @@ class Matching:
 
 
 def objective(data: Matching, robot: NDArray[np.int64]) -> float:
-    """Return travel plus the cost of what is left, in s.
+    """Return travel time plus the cost of tasks left, in s.
 
     Parameters
     ----------
@@ -65,7 +66,7 @@ def objective(data: Matching, robot: NDArray[np.int64]) -> float:
 
 
 def violations(data: Matching, robot: NDArray[np.int64]) -> list[str]:
-    """Say what is wrong with a choice of robots; empty if nothing is.
+    """Return what is wrong with a choice of robots; empty if it is feasible.
 
     Parameters
     ----------

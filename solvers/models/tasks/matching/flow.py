@@ -1,4 +1,4 @@
-"""The best matching by OR-Tools' minimum-cost flow."""
+"""The optimal matching by OR-Tools' minimum-cost flow."""
 
 from __future__ import annotations
 

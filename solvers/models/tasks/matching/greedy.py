@@ -1,4 +1,4 @@
-"""The nearest pair first."""
+"""Greedy matching: the pair that saves most first."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Match the pair that saves most against leaving the task, until none saves anything.
+    """Repeatedly match the pair that saves most compared with leaving the task.
 
-    Tasks that must be done come first. The bound lets robots do any number of tasks.
+    Tasks that must be done come first. For the bound, robots may do any number of tasks.
 
     Returns
     -------
-    The robot of each task, or `LEFT`, shape (T,); ties go to the lowest robot and task. Status
-    LIMIT if a task is left that must be done.
+    The robot of each task, or `LEFT`, shape (T,); ties go to the lowest robot and task. The status
+    is LIMIT if a task that must be done is left.
     """
     begin = perf_counter()
     robots, tasks = data.travel_s.shape

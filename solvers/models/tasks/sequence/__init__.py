@@ -1,4 +1,4 @@
-"""Several tasks in a row per robot: the return of one pod combined with the fetch of the next."""
+"""Task sequences per robot: the return of one pod is combined with the fetch of the next."""
 
 from rmfs.solvers.models.methods import Methods
 from rmfs.solvers.models.tasks.sequence import cp_sat, greedy

@@ -1,15 +1,15 @@
-r"""A bound by relaxing routes to pairs: every task needs somebody who comes from somewhere.
+r"""A bound that relaxes routes to pairs: every task needs a predecessor.
 
-Forget that places are used once, that chains must begin at a robot, and all times but the earliest
-ones. What is left is an assignment: task t follows robot r, or task o, or is left. With
-:math:`s_o = \min_l store_{ol}`, following o costs
+The relaxation ignores that places are used once, that chains must begin at a robot, and all times
+except the earliest ones. An assignment problem remains: task t follows robot r or task o, or is
+left. With :math:`s_o = \min_l store_{ol}`, following o costs
 
 .. math::
 
     \min_l (store_{ol} + fetch_{lt}) - s_o + bring_t + s_t + w \max(0, e_t - due_t)
 
-where :math:`e_t` is the earliest arrival over all chains. The first difference is what the drive
-to t adds to storing the pod of o somewhere; storing itself is counted with o.
+where :math:`e_t` is the earliest arrival over all chains. The first difference is what the drive to
+t adds to storing the pod of o at its nearest place; storing itself is counted with o.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _ROUNDING = 2.0**-40
 
 
 def relaxed_bound(data: TaskSequence) -> float:
-    """Bound the cost of all routes from below.
+    """Return a lower bound on the cost of all routes.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def relaxed_bound(data: TaskSequence) -> float:
 
     Returns
     -------
-    The bound, in s; +inf if it shows that there are no routes.
+    The bound, in s; +inf if it proves that there are no feasible routes.
     """
     first_s, first_extra_s, stowing_s = _from_robots(data)
     next_s, next_extra_s, storing_s = _from_tasks(data)

@@ -1,4 +1,4 @@
-"""Arcs considered by a search: all of them, or the shortest and those of a given plan."""
+"""Arcs considered by a search: all arcs, or the shortest ones and those of a given plan."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ class Ways:
     Attributes
     ----------
     first
-        Robots without a pod to their first tasks, shape (A, 2): robot, task.
+        Arcs of robots without a pod to their first tasks, shape (A, 2): robot, task.
     onward
-        From a station over a place to the next pod, shape (B, 3): owner, place, task.
+        Arcs from a station via a place to the next pod, shape (B, 3): owner, place, task.
     last
-        From a station to the place where a route ends, shape (C, 2): owner, place.
+        Arcs from a station to the place where a route ends, shape (C, 2): owner, place.
     complete
         Whether all arcs of the problem are included.
     """
@@ -52,8 +52,8 @@ def every_way(data: TaskSequence) -> Ways:
 def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> Ways:
     """Return the shortest arcs, together with those of a plan, which thus remains feasible.
 
-    For each owner, the nearest tasks over the best place are included, and for each task the
-    nearest owners, each over the best places. A route may end at the nearest places.
+    For each owner, the nearest tasks via the best place are included, and for each task the nearest
+    owners, each via the best places. A route may end at the nearest places.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> 
 
     Returns
     -------
-    The ways, without duplicates, sorted by index.
+    The arcs, without duplicates, sorted by index.
     """
     first_s, store_s = _first_s(data), _owners_s(data)
     first = np.argwhere(_among_nearest(first_s, tasks) & np.isfinite(first_s))
@@ -94,18 +94,18 @@ def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> 
 def shortest_over_places(
     to_place_s: NDArray[np.float64], from_place_s: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return the shortest ways over any place, row by row to keep the memory small.
+    """Return the shortest travel times via any place, computed row by row to save memory.
 
     Parameters
     ----------
     to_place_s
-        Ways to places, shape (M, L).
+        Travel times to places, shape (M, L), in s.
     from_place_s
-        Ways from places, shape (L, N).
+        Travel times from places, shape (L, N), in s.
 
     Returns
     -------
-    Ways over the best place, shape (M, N); infinite where there is none.
+    Travel times via the best place, shape (M, N), in s; infinite if there is none.
     """
     shortest = np.full((len(to_place_s), from_place_s.shape[1]), np.inf)
     for row, way_s in enumerate(to_place_s):

@@ -1,14 +1,14 @@
 r"""The CP-SAT model of routes: circuits through robots, tasks and places.
 
-The nodes are a depot, the robots, the tasks, and for every pod that is to be stored (that of a
-task, or one a robot carries) the places it may go to. A route leaves the depot by its robot, passes
-robot or task, place, task, place, ..., and returns to the depot; nodes that are not used loop on
-themselves. Every place is used once. An arc from a place to task t carries
+The nodes are a depot, the robots, the tasks, and for every pod to be stored (that of a task, or one
+that a robot carries) the places it may go to. A route runs from the depot via its robot, then
+place, task, place, ..., back to the depot; unused nodes have a loop to themselves. Every place is
+used at most once. An arc from a place to task t carries
 
 .. math:: arrive_t \ge arrive_o + service_o + store_{ol} + fetch_{lt} + bring_t
 
-where o is the task whose pod is stored there; so places need no times of their own. Times are
-whole milliseconds, which makes the solver's numbers exact.
+where o is the task whose pod is stored there; so places need no time variables. Times are whole
+milliseconds, so the solver's integers are exact.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ class Circuit:
     data
         The problem.
     ways
-        The ways routes may take.
+        The arcs that routes may use.
 
     Attributes
     ----------
     model
-        What to hand to the solver.
+        The model to be solved.
     """
 
     def __init__(self, data: TaskSequence, ways: Ways) -> None:
@@ -170,12 +170,12 @@ class Circuit:
     # --- in and out -----------------------------------------------------------------------------
 
     def hint(self, routes: Routes) -> None:
-        """Start the search from routes.
+        """Give the solver routes to start from.
 
         Parameters
         ----------
         routes
-            Feasible routes over the model's ways; what they do elsewhere is not hinted.
+            Feasible routes; parts that are not among the model's arcs are not hinted.
         """
         used = self._arcs_of(routes)
         touched = {node for arc in used for node in arc}
@@ -204,7 +204,7 @@ class Circuit:
         return used
 
     def read(self, solver: cp_model.CpSolver) -> Routes:
-        """Follow the arcs that the solver chose.
+        """Return the routes along the arcs that the solver chose.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Routes by CP-SAT, limited by deterministic time."""
+"""Routes by CP-SAT, limited in deterministic time."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from rmfs.solvers.models.tasks.sequence.data import NONE, TICKS_PER_S, Routes, T
 from rmfs.solvers.models.tasks.sequence.schedule import objective, violations
 
 ARC_ENTRIES = 14.0
-"""What an arc counts among `Solution.built`: it takes the time of as many nonzeros of a programme,
-which are handed over row by row."""
+"""Number of nonzeros of a programme that take as long to build as one arc; it converts arcs to
+`Solution.built`."""
 
 _STATUS = {
     cp_model.OPTIMAL: Status.OPTIMAL,
@@ -50,13 +50,14 @@ def solve(
     start
         Feasible routes to start from. Default: none.
     ways
-        Ways to look at; see `short_ways` for many tasks. Default: all.
+        Arcs to consider; see `short_ways` for many tasks. Default: all.
 
     Returns
     -------
-    The routes, never worse than the start. The bound is one for all ways: that of
-    `relaxed_bound`, or the solver's if it is better and has looked at all. With fewer ways the best
-    routes over them are FEASIBLE unless the bound proves more, and to find none is LIMIT.
+    The routes, never worse than the start. The bound is valid for all arcs: it is that of
+    `relaxed_bound`, or the solver's if that is better and all arcs were considered. With fewer
+    arcs, the best routes are FEASIBLE unless the bound proves them optimal, and the status is LIMIT
+    if there are none.
 
     Raises
     ------

@@ -1,13 +1,13 @@
 """The problem: robots, tasks and free places, with the times between them.
 
-A *task* is to fetch a pod from where it stands, to bring it to its station, to have it served, and
-to store it at a free place. A robot does tasks one after another; one that carries a pod at the
-beginning stores that first. Where a pod is stored decides how far it is to the next one, so places
-are chosen together with the order of the tasks: the generalised travelling-salesman view of
+A *task* consists of fetching a pod, bringing it to its station, having it served, and storing it at
+a free place. A robot does tasks one after another; a robot that initially carries a pod stores it
+first. The distance to the next pod depends on where the last one is stored, so places are chosen
+together with the sequence of tasks. This is a generalised travelling-salesman problem as in
 Gharehgozli and Zaerpour 2020, with several robots and time windows.
 
-Places that fetched pods leave behind are not offered within the same plan: the plan is remade
-before they matter (rolling horizon). Stations have no queue here; their rhythm is in the windows.
+Places vacated by fetched pods are not available within the same plan, which is made anew before
+they matter (rolling horizon). Queues at stations are not modelled; the time windows represent them.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from numpy.typing import NDArray
 from rmfs.solvers.models.checks import costs, flags, integers, reals
 
 NONE = -1
-"""The place of a pod that is not moved."""
+"""Marks the place of a pod that is not moved."""
 
 TICKS_PER_S = 1000
-"""Times are rounded to milliseconds at the door, so that all back ends solve the same problem."""
+"""Input times are rounded to milliseconds, so that all back ends solve the same problem."""
 
 SLACK_S = 1e-7
-"""Rounding of sums of whole milliseconds."""
+"""Tolerance for rounding errors in sums of whole milliseconds."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class TaskSequence:
     Parameters
     ----------
     ready_s
-        When each robot can begin, shape (R,), in s.
+        Time when each robot can begin, shape (R,), in s.
     carrying
         Whether each robot carries a pod, shape (R,).
     reach_s
@@ -56,14 +56,14 @@ class TaskSequence:
     store_s
         Drive from the station of each task to each place, set-down included, shape (T, L), in s.
     earliest_s, latest_s
-        Window for the arrival at the station, shape (T,), in s; robots wait for the earliest time,
-        and after the latest (+inf: never) the task cannot be done.
+        Time window for the arrival at the station, shape (T,), in s. Robots wait for the earliest
+        time; after the latest (+inf: no limit) the task cannot be done.
     due_s
-        When the pod should be there, shape (T,), in s; +inf without a due time.
+        Time when the pod should be at the station, shape (T,), in s; +inf without a due time.
     skip_s
-        Cost of postponing each task, shape (T,), in s; +inf where it must be done.
+        Cost of postponing each task, shape (T,), in s; +inf if it must be done.
     late_weight
-        Seconds of driving that a second of lateness is worth, whole. Default 1.
+        Weight of a second of lateness in seconds of driving, an integer. Default 1.
 
     Raises
     ------
@@ -129,12 +129,12 @@ class TaskSequence:
 
 @dataclass(frozen=True)
 class Routes:
-    """What the robots do.
+    """The tasks of each robot, and the places of the pods.
 
     Attributes
     ----------
     tasks
-        The tasks of each robot in their order, one tuple per robot.
+        The tasks of each robot in sequence, one tuple per robot.
     place
         Where the pod of each task is stored, or `NONE` if the task is left, shape (T,).
     robot_place

@@ -1,8 +1,7 @@
-"""Cheapest insertion: tasks by urgency, each where it adds least to a route.
+"""Cheapest insertion: tasks by urgency, each where it adds the least cost to a route.
 
-An insertion between a pod that is stored and the fetch that follows chooses two places anew: where
-the first pod is stored (on the way to the new task), and where the new one is (on the way to the
-next).
+An insertion between storing a pod and the next fetch chooses two places anew: that of the stored
+pod (on the way to the new task), and that of the new task's pod (on the way to the next).
 """
 
 from __future__ import annotations
@@ -42,14 +41,15 @@ def solve(
     data
         The problem.
     limits, seed
-        Not needed.
+        Not used.
     start
-        Routes to insert the remaining tasks into. Default: robots only store what they carry.
+        Routes into which the remaining tasks are inserted. Default: robots only store the pods they
+        carry.
 
     Returns
     -------
-    The routes; ties go to the lowest robot and place. Status LIMIT if a task is left that must be
-    done. The bound is that of `relaxed_bound`.
+    The routes; ties go to the lowest robot and place. The status is LIMIT if a task that must be
+    done is left. The bound is that of `relaxed_bound`.
 
     Raises
     ------

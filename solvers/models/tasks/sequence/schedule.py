@@ -1,4 +1,4 @@
-r"""When robots arrive, what their routes cost, and whether they may be driven.
+r"""Arrival times of robots, and the cost and feasibility of their routes.
 
 .. math::
 
@@ -17,16 +17,16 @@ from rmfs.solvers.models.tasks.sequence.data import NONE, SLACK_S, Routes, TaskS
 
 
 def approach_s(data: TaskSequence, robot: int, place: int, task: int) -> float:
-    """Return the empty drive to the pod of a task.
+    """Return the time of the empty drive to the pod of a task, in s.
 
     Parameters
     ----------
     data
         The problem.
     robot
-        Who drives.
+        The robot.
     place
-        Where it stored its last pod, or `NONE` if it comes from where it was.
+        Place where it stored its last pod, or `NONE` if it starts from its initial position.
     task
         The task.
     """
@@ -36,24 +36,24 @@ def approach_s(data: TaskSequence, robot: int, place: int, task: int) -> float:
 def follow(
     data: TaskSequence, robot: int, tasks: tuple[int, ...], place: NDArray[np.int64], stowed: int
 ) -> tuple[float, list[float]]:
-    """Drive one route.
+    """Compute the driving time and arrivals of one route.
 
     Parameters
     ----------
     data
         The problem.
     robot
-        Who drives.
+        The robot.
     tasks
-        Its tasks in their order.
+        Its tasks in sequence.
     place
-        Where the pod of each task is stored, shape (T,).
+        Place where the pod of each task is stored, shape (T,).
     stowed
-        Where the pod it carries at first is stored, or `NONE`.
+        Place where the pod that it initially carries is stored, or `NONE`.
 
     Returns
     -------
-    Driving time, in s, and the arrival at each task's station, in s.
+    Driving time, in s, and the arrival time at each task's station, in s.
     """
     time_s, driving_s = float(data.ready_s[robot]), 0.0
     if stowed != NONE:
@@ -71,7 +71,7 @@ def follow(
 
 
 def lateness_s(data: TaskSequence, task: int, arrival_s: float) -> float:
-    """Return the weighted lateness of a task; infinite after the end of its window.
+    """Return the weighted lateness of a task, in s; infinite after the end of its window.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def lateness_s(data: TaskSequence, task: int, arrival_s: float) -> float:
     task
         The task.
     arrival_s
-        When its pod is at the station, in s.
+        Time when its pod arrives at the station, in s.
     """
     if arrival_s > data.latest_s[task] + SLACK_S:
         return math.inf
@@ -88,14 +88,14 @@ def lateness_s(data: TaskSequence, task: int, arrival_s: float) -> float:
 
 
 def arrivals_s(data: TaskSequence, routes: Routes) -> NDArray[np.float64]:
-    """Return when the pod of each task is at its station, shape (T,), in s; nan if it is left.
+    """Return when the pod of each task arrives at its station, shape (T,), in s; nan if left.
 
     Parameters
     ----------
     data
         The problem.
     routes
-        What the robots do.
+        The routes.
     """
     arrive = np.full(data.tasks, np.nan)
     for robot, tasks in enumerate(routes.tasks):
@@ -105,14 +105,14 @@ def arrivals_s(data: TaskSequence, routes: Routes) -> NDArray[np.float64]:
 
 
 def objective(data: TaskSequence, routes: Routes) -> float:
-    """Return driving, weighted lateness and the cost of what is left, in s.
+    """Return the cost of driving, weighted lateness and tasks left, in s.
 
     Parameters
     ----------
     data
         The problem.
     routes
-        What the robots do.
+        The routes.
     """
     parts = [float(data.skip_s[task]) for task in np.flatnonzero(routes.place == NONE)]
     for robot, tasks in enumerate(routes.tasks):
@@ -124,14 +124,14 @@ def objective(data: TaskSequence, routes: Routes) -> float:
 
 
 def violations(data: TaskSequence, routes: Routes) -> list[str]:
-    """Say what is wrong with routes; empty if nothing is.
+    """Return what is wrong with routes; empty if they are feasible.
 
     Parameters
     ----------
     data
         The problem.
     routes
-        What the robots do.
+        The routes.
     """
     done = [task for tasks in routes.tasks for task in tasks]
     stored = np.concatenate([routes.place, routes.robot_place])
