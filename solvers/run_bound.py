@@ -1,7 +1,7 @@
 """The proven bound on the runs of a warehouse: its layout and SKUs as the model's input.
 
-What is put in depends on nothing a controller, a demand or a seed can change: kinematics, handling
-times, and what fits into pods. So one number holds for all runs of a layout with a set of SKUs.
+The input consists of kinematics, handling times and the capacity of pods, none of which depends on
+controllers, demand or seed. So one number holds for all runs of a layout with a set of SKUs.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ if TYPE_CHECKING:
     from rmfs.scenario import SkuSet
 
 _SAFE = 1.0 - 1e-6
-"""Travel times are sums of rounded microseconds: they are taken a little shorter."""
+"""Factor that shortens travel times slightly, as they are sums of rounded microseconds."""
 
 
 def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration_s: float) -> float:
-    """Return the units per hour that no run exceeds; infinite if some handling takes no time.
+    """Return an upper bound on units per hour; infinite if some handling takes no time.
 
     Parameters
     ----------
@@ -59,15 +59,15 @@ def units_per_h_keeping_stock(
     duration_s: float,
     fleets: Collection[int],
 ) -> dict[int, float]:
-    """Return, per fleet, the units per hour that no run exceeds that stores what it picks.
+    """Return, per fleet, an upper bound on units per hour for runs that store what they pick.
 
-    Whoever knew all orders to come could not do more either, nor choose better orders, pods or
-    places: the bound holds for any. A bundle has the units that its SKU says.
+    Not even a controller that knew all future orders could exceed it: the bound holds for any
+    choice of orders, pods and places. Each bundle has the number of units given by its SKU.
 
     Parameters
     ----------
     layout, skus, times, duration_s
-        As for `units_per_h_bound`; the robots of the layout do not matter, but for their kinds.
+        As for `units_per_h_bound`; of the layout's robots, only the kinds matter.
     fleets
         Numbers of robots.
     """
@@ -88,7 +88,7 @@ def units_per_h_keeping_stock(
 def run_bound(
     layout: Layout, skus: SkuSet, times: TravelTimes, duration_s: float
 ) -> RunBound | None:
-    """Return the model's input; nothing where some handling takes no time: there is no bound.
+    """Return the model's input; None if some handling takes no time, so that there is no bound.
 
     Parameters
     ----------

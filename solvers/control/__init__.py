@@ -1,1 +1,1 @@
-"""Controllers that use models: they state questions and turn solutions into decisions."""
+"""Controllers that use models: they ask questions and turn the solutions into decisions."""

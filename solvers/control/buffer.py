@@ -15,7 +15,7 @@ class Buffer:
     Parameters
     ----------
     view
-        Has the clock.
+        The view, which provides the clock.
     buffer_s
         Minimum number of seconds between two questions.
     """

@@ -96,7 +96,7 @@ class JointAllocation(TaskAllocation[P]):
         return self._heuristic.serves(pod, station)
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
-        """Return none: only this controller assigns tasks."""
+        """Return no pod, as only this controller assigns tasks."""
         return -1
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:

@@ -4,9 +4,9 @@ An order needs slots of the wall for all its totes but one. Their number is know
 line has a station, so each line without a station counts as a separate tote. An order that is split
 within this capacity therefore never finds the wall full, and no pick station is blocked.
 
-If the capacity does not suffice for all orders, those are split first for which pods under way
-serve most lines at one station per slot needed. Orders that such pods serve completely need no
-split, and orders that they do not serve at all would gain nothing by one now.
+If the capacity does not suffice for all orders, orders are ranked by the number of lines that pods
+under way serve at one station, per slot needed. Orders that such pods serve completely need no
+split, and orders that they do not serve at all would not benefit from one now.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class Splitting:
         return self._is_settled(order) or (self._orders >= 1 and self._slots >= self._need(order))
 
     def offers(self) -> Callable[[Order], bool]:
-        """Choose the orders that may be split now; return a function that tells whether one may."""
+        """Choose the orders that may be split now; return a test of whether one may."""
         if self._orders == self._slots == inf:
             return lambda order: self._is_settled(order) or self._is_worth_it(order)
         chosen: set[int] = set()

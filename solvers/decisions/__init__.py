@@ -1,7 +1,7 @@
-"""Decisions as files: questions to optimisers that travel, and everything done with them.
+"""Decisions as files: questions to optimisers, saved, solved, checked and compared outside a run.
 
-`schema` says what a question and its answer consist of, `files` reads and writes them, `recording`
-takes them down in a run, `checking` verifies answers without the models, `solving` asks the models,
-`exact` hands their formulations to any solver. The format is docs/decision-format.md, its use
-docs/decisions.md.
+`schema` defines the fields of questions and answers, `files` reads and writes them, `recording`
+saves them during a run, `checking` verifies answers without the models, `solving` solves them with
+the models, and `exact` exports exact formulations for any solver. The format is described in
+docs/decision-format.md, its use in docs/decisions.md.
 """

@@ -1,4 +1,4 @@
-"""How controllers ask: from a question in a run to a file, and from there to the same answer."""
+"""Conversion of a controller's question to a file, and solution of that file as in the run."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ ASKERS = {
     "stays": "storage.stays",
     "schedule": "charging.question",
 }
-"""Modules of `rmfs.solvers.control` with a `Question` and how it is solved, by name."""
+"""Modules of `rmfs.solvers.control` that define a `Question` and its `solve`, by name."""
 
 _MATCHING = "matching"
 """Dispatch that looks at pairs alone: its question is the matching that it makes of the data."""
@@ -47,7 +47,7 @@ _MADE: Mapping[str, Callable[[Any], Any]] = {
 
 
 def question_of(question: object) -> Decision | None:
-    """Make a file's content of a question in a run; None if no family has it."""
+    """Convert a question of a run to a `Decision`; None if it belongs to no family."""
     data = getattr(question, "data", None)
     family = family_of(data)
     if data is None or family is None:
@@ -63,12 +63,12 @@ def question_of(question: object) -> Decision | None:
 
 
 def asked_again(decision: Decision, where: str = "") -> Found:
-    """Answer a question as it was answered in the run.
+    """Solve a question in the same way as in the run.
 
     Raises
     ------
     InputError
-        If it was asked by nobody known here, or what went with it is not right.
+        If the asking controller is unknown, or the data saved with the question are invalid.
     """
     name, data = where or decision.name, model_data(decision, where)
     by = decision.asked.get("by")
@@ -88,7 +88,7 @@ def asked_again(decision: Decision, where: str = "") -> Found:
 
 
 def found_of(family: str, given: Answer) -> Found:
-    """Make an answer's content of what an optimiser returned in a run."""
+    """Convert an optimiser's answer in a run to a `Found`."""
     by = {"backend": given.backend, "status": given.status, "work": given.work}
     by |= {"wall_s": given.wall_s, "build_s": given.build_s, "built": given.built}
     values = None if given.found is None else plain_values(family, given.found)

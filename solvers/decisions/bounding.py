@@ -1,4 +1,4 @@
-"""Proven bounds of a question, by several ways; the best counts."""
+"""Proven bounds of a question by several methods; the best one counts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.files import Decision
 
 STEPS = 400
-"""Subgradient steps of Lagrangian bounds."""
+"""Number of subgradient steps of Lagrangian bounds."""
 
 _SEARCH = {"pile_on": "cp_sat", "planning": "cp_sat"}
 """Method whose own bound is used, where it is not the default one."""
@@ -40,7 +40,7 @@ def bounds(
     guard_s: float | None = None,
     search: bool = True,
 ) -> Iterator[tuple[str, float]]:
-    """Yield bounds with who proves them; those that say nothing are left out.
+    """Yield bounds with the names of their methods; infinite bounds are left out.
 
     Parameters
     ----------
@@ -49,11 +49,11 @@ def bounds(
     work
         Limit of work of the exact search.
     where
-        What the question is called in errors. Default: its name.
+        Name of the question in errors. Default: its name.
     guard_s
-        Wall time after which the relaxation, and the search, are given up. Default: none.
+        Wall time after which the relaxation and the search are given up, in s. Default: none.
     search
-        Whether the exact search is asked as well. Default: yes.
+        Whether the exact search is run as well. Default: yes.
     """
     guard = Limits(wall_guard_s=guard_s)
     data, family = model_data(decision, where), decision.family
@@ -86,7 +86,7 @@ def best(
     guard_s: float | None = None,
     search: bool = True,
 ) -> tuple[str, float]:
-    """Return the best bound and who proves it; nan and nobody if there is none.
+    """Return the best bound and the name of its method; nan and an empty name if there is none.
 
     Parameters
     ----------

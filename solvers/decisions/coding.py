@@ -1,9 +1,9 @@
-"""Fields to JSON and back, number by number, and the hash that names a question.
+"""Conversion of fields to and from JSON without loss, and the hash that names a question.
 
-A whole number stays one; another is written by the fewest digits that read back as the same double
-(Python's `repr`), and `"inf"` or `"-inf"` where it may be infinite. A large array of which most
-entries are equal, and one without rows, is written as `{"shape": [...], "all": V, "at": [...],
-"values": [...]}`, with the places counted row by row.
+Integers stay integers. Other numbers are written with the fewest digits that read back as the same
+double (Python's `repr`), and as `"inf"` or `"-inf"` if they are infinite. A large array with mostly
+equal entries, or one without rows, is written as `{"shape": [...], "all": V, "at": [...], "values":
+[...]}`, with positions counted row by row.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.schema import Field, Plain, Schema
 
 SPARSE_FROM = 64
-"""Entries from which on an array may be written by its exceptions."""
+"""Minimum number of entries of an array that may be written in the short form."""
 
 _REAL = {"real", "cost", "worth", "ms", "cost_ms", "space"}
 _INFINITE = {"cost": math.inf, "cost_ms": math.inf, "worth": -math.inf}
 _PARTS = {"ms": 1000, "cost_ms": 1000, "space": 16}
 _LARGEST = 2**53
-"""Largest whole number: what any reader of JSON can hold exactly."""
+"""Largest integer that every JSON reader represents exactly."""
 
 
 def content_hash(family: str, data: Plain) -> str:
@@ -45,9 +45,9 @@ def content_hash(family: str, data: Plain) -> str:
     Parameters
     ----------
     family
-        Its family.
+        The family of the question.
     data
-        Its fields.
+        The fields of the question.
     """
     full = encoded(SCHEMAS[family].data, data, sparse=False)
     text = json.dumps({"family": family, "data": full}, sort_keys=True, separators=(",", ":"))
@@ -82,20 +82,20 @@ def decoded(
     Parameters
     ----------
     where
-        What is read, for errors.
+        Name of the file or object, for errors.
     schema
         The family.
     part
         `data` or `values`.
     raw
-        As JSON has it.
+        The parsed JSON.
     known
         Sizes of dimensions that are known: those of the question, for an answer.
 
     Raises
     ------
     InputError
-        If a field is missing, unknown, of the wrong shape, or holds what it may not.
+        If a field is missing, unknown, of the wrong shape, or has an invalid value.
     """
     fields: tuple[Field, ...] = getattr(schema, part)
     if not isinstance(raw, dict):
@@ -281,5 +281,5 @@ def _check_shapes(
 
 
 def sizes_of(family: str, data: Plain) -> dict[str, int]:
-    """Return the sizes of a question by letter."""
+    """Return the sizes of a question's dimensions by letter."""
     return sizes(SCHEMAS[family], data)

@@ -193,7 +193,7 @@ def expanded(files: list[Path]) -> list[Path]:
     Raises
     ------
     InputError
-        If there are none.
+        If there are no decision files.
     """
     found: list[Path] = []
     for one in files:

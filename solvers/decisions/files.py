@@ -1,4 +1,4 @@
-"""Decision files and solution files: reading, checking on the way in, and writing whole."""
+"""Decision files and solution files: validated when read, and written atomically."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 QUESTION = "rmfs-decision/1"
 SOLUTION = "rmfs-decision-solution/1"
 NAMED_BY = 16
-"""Digits of the hash in the name of a file."""
+"""Number of digits of the hash in the name of a file."""
 _LARGEST_MIB = 256
 
 
@@ -36,9 +36,9 @@ class Found:
     values
         Its fields; None if there is no answer.
     objective, bound
-        As whoever found it says; nan for nothing.
+        As stated by the solver; nan if unknown.
     by
-        Who found it and how: method, seed, limits, status, work, ...
+        How it was found: method, seed, limits, status, work, ...
     """
 
     values: Plain | None
@@ -54,7 +54,7 @@ class Found:
 
 @dataclass(frozen=True, eq=False)
 class Decision:
-    """A question that travels.
+    """A saved question.
 
     Attributes
     ----------
@@ -65,10 +65,10 @@ class Decision:
     provenance
         Where it comes from: run, simulated time, decision problem, controller.
     asked
-        How the controller asked it: `by`, and what went with the question besides its data. Empty
-        for nobody.
+        How the controller asked it: `by`, and the settings passed along with the data. Empty if no
+        controller asked it.
     recorded
-        The answer in the run, if there was one.
+        The answer given in the run, if there was one.
     """
 
     family: str
@@ -79,36 +79,36 @@ class Decision:
 
     @property
     def schema(self) -> Schema:
-        """What its fields are."""
+        """Definition of its fields."""
         return SCHEMAS[self.family]
 
     @property
     def hash(self) -> str:
-        """What tells it from any other question, whoever asked it."""
+        """Hash that identifies the question, whoever asked it."""
         return content_hash(self.family, self.data)
 
     @property
     def name(self) -> str:
-        """What its file is called, without ending."""
+        """Name of its file, without the suffix."""
         return f"{self.family}-{self.hash[:NAMED_BY]}"
 
     @property
     def sizes(self) -> dict[str, int]:
-        """How large it is, by letter of the schema."""
+        """Sizes of its dimensions, by letter of the schema."""
         return sizes_of(self.family, self.data)
 
     @property
     def sign(self) -> int:
-        """1 where less is better, -1 where more is."""
+        """1 if the objective is minimised, -1 if it is maximised."""
         return -1 if self.schema.maximise else 1
 
 
 def write(decision: Decision, folder: Path) -> bool:
-    """Write a question into a folder, whole or not at all, compressed, named by its content.
+    """Write a question into a folder, atomically, compressed and named by its content.
 
     Returns
     -------
-    Whether it is new there. One that is there already is left alone.
+    Whether it is new. A question that already exists there is not changed.
     """
     path = folder / f"{decision.name}.json.gz"
     if path.exists():
@@ -145,7 +145,7 @@ def read(path: Path) -> Decision:
     Raises
     ------
     InputError
-        If the file is no question, or its content is not what its hash says.
+        If the file is not a question, or its content does not match its hash.
     """
     raw = _read(path, QUESTION)
     family = raw.get("family")
@@ -170,7 +170,7 @@ def read_solution(decision: Decision, path: Path) -> Found:
     Raises
     ------
     InputError
-        If the file is no answer, or one to another question.
+        If the file is not an answer, or is an answer to another question.
     """
     raw = _read(path, SOLUTION)
     if raw.get("family") != decision.family:
@@ -186,7 +186,7 @@ def question_named(path: Path) -> str:
     Raises
     ------
     InputError
-        If the file is no solution.
+        If the file is not a solution.
     """
     raw = _read(path, SOLUTION)
     return f"{raw.get('family')}-{str(raw.get('question'))[:NAMED_BY]}"

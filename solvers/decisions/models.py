@@ -1,4 +1,4 @@
-"""Between the plain fields of a file and the dataclasses of the models."""
+"""Conversion between the plain fields of a file and the dataclasses of the models."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ DATA = {
     "replenishment": "Replenishment",
     "run_bound": "RunBound",
 }
-"""Data class of each family."""
+"""Dataclass of the data of each family."""
 
 _VALUES = {
     "pile_on": "Assignment",
@@ -45,7 +45,7 @@ _VALUES = {
     "replenishment": "Stocking",
     "run_bound": "Throughput",
 }
-"""Class of the values; those of the others are one array."""
+"""Dataclass of the values; in other families the values are one array."""
 
 _PARTS = {
     "weights": "Weights",
@@ -57,7 +57,7 @@ _PARTS = {
 
 
 def family_of(data: object) -> str | None:
-    """Name the family of a data class's object; None if it is of none."""
+    """Return the name of the family to which model data belong; None if there is none."""
     for name, kind in DATA.items():
         if type(data).__name__ == kind and isinstance(data, getattr(model(name), kind)):
             return name
@@ -65,12 +65,12 @@ def family_of(data: object) -> str | None:
 
 
 def plain_data(family: str, data: object) -> Plain:
-    """Take the fields out of the data of a model."""
+    """Return the plain fields of a model's data."""
     return {field.name: _taken(data, field) for field in SCHEMAS[family].data}
 
 
 def plain_values(family: str, values: object) -> Plain:
-    """Take the fields out of the values of a model."""
+    """Return the plain fields of a model's values."""
     named = SCHEMAS[family].values
     if family not in _VALUES:
         return {named[0].name: np.asarray(values)}
@@ -78,12 +78,12 @@ def plain_values(family: str, values: object) -> Plain:
 
 
 def model_data(decision: Decision, where: str = "") -> Any:
-    """Make the data of the model.
+    """Build the model's data from plain fields.
 
     Raises
     ------
     InputError
-        If the model refuses them.
+        If the model rejects them.
     """
     module = model(decision.family)
     nested: dict[str, Any] = {}
@@ -102,7 +102,7 @@ def model_data(decision: Decision, where: str = "") -> Any:
 
 
 def model_values(decision: Decision, values: Plain) -> Any:
-    """Make the values of the model."""
+    """Build the model's values from plain fields."""
     if decision.family not in _VALUES:
         return np.asarray(next(iter(values.values())))
     kind = getattr(
@@ -139,7 +139,7 @@ def _taken(owner: Any, field: Field) -> Any:
 
 
 def plain_of(value: Any) -> Any:
-    """Write what goes with a question, such as limits, as JSON has it."""
+    """Convert settings passed along with a question, such as limits, to JSON."""
     if is_dataclass(value) and not isinstance(value, type):
         return {one.name: plain_of(getattr(value, one.name)) for one in fields(value)}
     if isinstance(value, np.ndarray):

@@ -1,11 +1,10 @@
-"""How answers get better with work: anytime profiles, primal gaps and primal integrals.
+"""Quality of answers over work: anytime profiles, primal gaps and primal integrals.
 
-A method is deterministic: what it has found after the work W is what it finds under the limit W.
-So a profile is a row of runs with limits that double, each timed by itself; nothing is restarted
-within one.
+Methods are deterministic: the best answer after the work W is the answer found under the limit W.
+So a profile is a sequence of separately timed runs with doubling limits.
 
 The primal gap of a value v against the best known one b is 0 if both are 0, 1 if their signs
-differ, and ``|v - b| / max(|v|, |b|)`` otherwise; it is 1 while there is none (Berthold 2013,
+differ, and ``|v - b| / max(|v|, |b|)`` otherwise; it is 1 while there is no value (Berthold 2013,
 Measuring the impact of primal heuristics). The primal integral is its integral over time up to the
 end of the longest run, as a share of that time: 0 is perfect, 1 is nothing found.
 """
@@ -25,12 +24,12 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.files import Decision
 
 FIRST = {"deterministic_s": 0.001, "nodes": 1, "iterations": 1}
-"""Smallest limit, by what a method counts."""
+"""Smallest limit, by the unit in which a method counts work."""
 
 UNLIMITED = frozenset(
     {"assignment", "flow", "greedy", "dynamic", "clarabel", "rounding"},
 )
-"""Methods that run to their end whatever the limit: one point is their profile."""
+"""Methods that ignore limits; their profile has one point."""
 
 
 def limits(method: str, most: float) -> list[float]:
@@ -39,9 +38,9 @@ def limits(method: str, most: float) -> list[float]:
     Parameters
     ----------
     method
-        Who solves.
+        The method.
     most
-        The last one; in the unit of the method.
+        The last limit, in the unit of the method.
     """
     if method in UNLIMITED:
         return [most]
@@ -56,18 +55,18 @@ def limits(method: str, most: float) -> list[float]:
 def points(
     decision: Decision, method: str, most: float, seeds: Sequence[int] = (0,)
 ) -> Iterator[dict[str, Any]]:
-    """Yield a row for every limit and seed.
+    """Solve a question under every limit and seed, and yield a row for each.
 
     Parameters
     ----------
     decision
         The question.
     method
-        Who solves.
+        The method.
     most
         Largest limit of work.
     seeds
-        Of the method. Default: 0.
+        Seeds of the method. Default: 0.
     """
     for seed in seeds:
         for work in limits(method, most):
@@ -97,7 +96,7 @@ def primal_gap(value: float, best: float) -> float:
     Parameters
     ----------
     value
-        What was found; nan for nothing.
+        The value found; nan if none was.
     best
         The best known value.
     """
@@ -116,9 +115,9 @@ def primal_integral(steps: Iterable[tuple[float, float]], end: float) -> float:
     Parameters
     ----------
     steps
-        Time, or work, and primal gap then; in any order.
+        Pairs of a time (or work) and the primal gap from then on, in any order.
     end
-        Where it ends; positive.
+        End of the integral; positive.
     """
     total, gap, since = 0.0, 1.0, 0.0
     for time, found in sorted(steps):

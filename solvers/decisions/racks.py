@@ -1,14 +1,15 @@
-"""Instances of Valle and Beasley (2021): racks, products and orders, as their files have them.
+"""Reader for files of Valle and Beasley (2021): racks, products and orders.
 
 A file names its sizes (`N` products, `R` racks, `O` orders, `RS` shelves of a rack), and then lists
 
-- below `Racks`, a row per rack: its index, and product and quantity of each of its shelves;
-- below `Orders`, a row per order: its index, its number of items, and the product of each item, as
-  often as it is wanted.
+- below `Racks`, one row per rack: its index, and the product and quantity on each of its shelves;
+- below `Orders`, one row per order: its index, its number of items, and the product of each item,
+  repeated for each unit.
 
-The description is theirs (homepages.dcc.ufmg.br/~arbex/mobileRacks/rackInstancesDescription.txt);
-their files are not here. Pickers, and the orders that each takes, are not in a file: a question is
-made for given ones.
+The format is described by the authors
+(homepages.dcc.ufmg.br/~arbex/mobileRacks/rackInstancesDescription.txt); their files are not
+included here. A file does not contain the number of pickers and the orders per picker, which are
+given to make a question.
 """
 
 from __future__ import annotations
@@ -34,21 +35,22 @@ _LARGEST = 100_000
 
 
 def read_racks(path: Path, pickers: int, orders_each: int) -> Decision:
-    """Make a question of the family `rack_allocation` of a file.
+    """Convert a file to a question of the family `rack_allocation`.
 
     Parameters
     ----------
     path
         The file.
     pickers
-        Pickers, 1 or more: our stations.
+        Number of pickers (stations here), at least 1.
     orders_each
-        Orders that each picker takes, 1 or more.
+        Number of orders per picker, at least 1.
 
     Raises
     ------
     InputError
-        If the file cannot be read or is not as described, or has fewer orders than are to be taken.
+        If the file cannot be read or is not as described, or has fewer orders than the pickers
+        take.
     """
     sizes: dict[str, int] = {}
     tables: dict[str, dict[int, tuple[int, list[int]]]] = {RACKS: {}, ORDERS: {}}

@@ -27,7 +27,7 @@ def with_gaps(table: pd.DataFrame, best: Mapping[str, float] | None = None) -> p
     table
         Rows of `profiling.points`.
     best
-        Best known value by question. Default, and where it has none: the best of the table.
+        Best known value by question. For questions without one: the best of the table.
     """
     known = dict(best or {})
     sign = np.where(table["family"].isin(MAXIMISED), -1.0, 1.0)
@@ -46,8 +46,8 @@ def with_gaps(table: pd.DataFrame, best: Mapping[str, float] | None = None) -> p
 def integrals(table: pd.DataFrame) -> pd.DataFrame:
     """Return the primal integral of every run over wall time and over work.
 
-    The end is that of the longest run on the question, over all methods, in seconds; over work it
-    is that of the method's own largest limit, as units differ.
+    The integral over time ends with the longest run on the question by any method; that over work
+    ends at the method's own largest limit, as units differ.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def integrals(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def times_to_gap(table: pd.DataFrame, gap: float) -> pd.DataFrame:
-    """Return when each method first is within a gap, by question; inf for never.
+    """Return when each method first reaches a gap on each question, in s; inf: never.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def times_to_gap(table: pd.DataFrame, gap: float) -> pd.DataFrame:
 
     Returns
     -------
-    A row per question and seed, a column per method.
+    One row per question and seed, one column per method.
     """
     reached = table["wall_s"].where(table["gap"] <= gap, np.inf)
     frame = table.assign(reached=reached)
@@ -99,15 +99,15 @@ def performance(times: pd.DataFrame, ratios: Sequence[float]) -> pd.DataFrame:
     Parameters
     ----------
     times
-        As `times_to_gap` returns it; a question without an entry for a method is not
-        counted for that method.
+        As `times_to_gap` returns it; a question without an entry for a method is not counted for
+        that method.
     ratios
-        Factors to the quickest method.
+        Multiples of the time of the quickest method.
 
     Returns
     -------
-    Per ratio (index) and method, the share of questions solved within that many times the time of
-    the quickest. Questions that no method has solved count as solved for none.
+    For each ratio (index) and method, the share of questions that the method solved within this
+    multiple of the quickest method's time. Questions that no method solved count as unsolved.
     """
     quickest = times.min(axis=1)
     ratio = times.div(quickest, axis=0).where(np.isfinite(times), np.inf)
@@ -122,7 +122,7 @@ def data_profile(times: pd.DataFrame, seconds: Sequence[float]) -> pd.DataFrame:
     times
         As `times_to_gap` returns it.
     seconds
-        Wall times.
+        Wall times in s.
     """
     return _shares(times, seconds)
 

@@ -1,4 +1,4 @@
-"""Every question of a run as a file."""
+"""Recording of every question of a run as a file."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
 
 
 class QuestionListener(Observer):
-    """Makes the content of a file of each question, with its answer, when the answer has come.
+    """Converts each question of a run, with its answer, to a `Decision` once it is answered.
 
     Parameters
     ----------
     run
-        What tells the run from others: layout, scenario, controllers, seed, ...
+        Description of the run: layout, scenario, controllers, seed, ...
 
     Attributes
     ----------
     strange
-        Questions of no family of ours: those of optimisers of a user's own.
+        Number of questions that belong to no known family, such as those of users' own optimisers.
     """
 
     def __init__(self, run: Mapping[str, Any]) -> None:
@@ -39,19 +39,19 @@ class QuestionListener(Observer):
 
     @abstractmethod
     def take(self, decision: Decision) -> None:
-        """Keep a question."""
+        """Handle a finished question."""
 
     def optimiser_asked(self, call: Call) -> None:
-        """Remember the question: its answer may never come."""
+        """Remember the question until its answer arrives."""
         self._open[call.number] = call
 
     def optimiser_answered(self, call: Call) -> None:
-        """Hand it on."""
+        """Convert the question and its answer, and pass them on."""
         self._open.pop(call.number, None)
         self._told(call)
 
     def run_ended(self, time_s: float) -> None:
-        """Hand on those whose answer has not taken effect."""
+        """Pass on the questions whose answers have not taken effect."""
         for call in self._open.values():
             self._told(call)
         self._open.clear()
@@ -87,14 +87,14 @@ class DecisionRecorder(QuestionListener):
     Parameters
     ----------
     folder
-        Where to; made if it is not there.
+        Folder for the files; created if it does not exist.
     run
         As for `QuestionListener`.
 
     Attributes
     ----------
     written
-        Files written, those that were there already not counted.
+        Number of files written, without those that already existed.
     """
 
     def __init__(self, folder: Path, run: Mapping[str, Any]) -> None:
@@ -103,10 +103,10 @@ class DecisionRecorder(QuestionListener):
         self.written = 0
 
     def take(self, decision: Decision) -> None:
-        """Write it."""
+        """Write a question to a file."""
         self.written += write(decision, self._folder)
 
     def summary(self) -> str:
-        """Say in one line what was written."""
+        """Return one line on what was written."""
         told = f"{self.written} questions written to {self._folder}"
         return f"{told}; {self.strange} of other families left out" if self.strange else told

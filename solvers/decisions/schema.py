@@ -1,7 +1,7 @@
-"""What the questions and answers of each family consist of (`rmfs-decision/1`).
+"""Definition of the questions and answers of each family (`rmfs-decision/1`).
 
-This is the format, and it stands alone: nothing here imports a model, so that who checks an answer
-trusts none.
+This is the definition of the format. It imports no model, so checking an answer does not rely on
+any.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Plain = dict[str, Any]
 """The fields of a question or an answer by name: NumPy arrays, numbers, texts, lists of lists."""
 
 Kind = Literal["whole", "real", "cost", "worth", "ms", "cost_ms", "space", "flag", "lists", "text"]
-"""What the entries of a field are; see `KINDS`."""
+"""Kind of the entries of a field; see `KINDS`."""
 
 KINDS: Mapping[Kind, str] = {
     "whole": "a whole number",
@@ -32,27 +32,27 @@ KINDS: Mapping[Kind, str] = {
     "lists": "lists of whole numbers, which may differ in length",
     "text": "one of the texts listed",
 }
-"""The kinds of entries, in words."""
+"""Description of each kind of entry."""
 
 
 @dataclass(frozen=True)
 class Field:
-    """One field.
+    """A field of a question or answer.
 
     Attributes
     ----------
     name
-        Its name; a dot leads into a part, as in `weights.travel`.
+        Its name; a dot separates the name of a part, as in `weights.travel`.
     kind
-        What its entries are.
+        Kind of its entries.
     shape
-        A letter per dimension; empty for a single value. For `lists`, how many there are.
+        One letter per dimension; empty for a single value. For `lists`, the letter of their number.
     optional
-        Whether it may be left out.
+        Whether it may be omitted.
     meaning
-        In words, with the unit.
+        Description, with the unit.
     texts
-        What a text may be.
+        Allowed values of a text.
     """
 
     name: str
@@ -72,9 +72,9 @@ class Schema:
     data, values
         Fields of a question, and of an answer.
     derived
-        Sizes that no field of the question has for a dimension.
+        Letters of dimensions that no field of the question has.
     maximise
-        Whether more is better.
+        Whether the objective is maximised.
     """
 
     data: tuple[Field, ...]
@@ -84,7 +84,7 @@ class Schema:
 
 
 def fields_of(text: str) -> tuple[Field, ...]:
-    """Read fields from lines `name | kind | shape | meaning`; a name with `?` is optional."""
+    """Parse fields from lines `name | kind | shape | meaning`; `?` marks optional fields."""
     found = []
     for line in text.strip().splitlines():
         name, kind, shape, meaning = (part.strip() for part in line.split("|"))
@@ -406,9 +406,9 @@ def sizes(schema: Schema, data: Plain) -> dict[str, int]:
     Parameters
     ----------
     schema
-        Its family.
+        The family of the question.
     data
-        Its fields.
+        The fields of the question.
     """
     found = {letter: count(data) for letter, count in schema.derived.items()}
     for field in schema.data:
@@ -424,7 +424,7 @@ def described(family: str) -> str:
     Parameters
     ----------
     family
-        Its name.
+        Name of the family.
     """
     schema = SCHEMAS[family]
     lines = ["| field | entries | shape | meaning |", "|---|---|---|---|"]

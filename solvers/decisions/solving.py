@@ -1,4 +1,4 @@
-"""Questions answered by our own models: method, limit of work, seed."""
+"""Solution of questions by the models of rmfs, given method, limit of work and seed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.files import Decision
 
 AS_ASKED = "asked"
-"""Method that answers a question as the controller had it answered in the run."""
+"""Name of the method that solves a question in the same way as in the run."""
 
 _COUNTED: dict[str, Literal["nodes", "iterations"]] = {
     "highs": "nodes",
@@ -31,23 +31,23 @@ _COUNTED: dict[str, Literal["nodes", "iterations"]] = {
 
 
 def methods(family: str) -> tuple[str, ...]:
-    """Return who can answer the questions of a family; the first is who does by default."""
+    """Return the methods for questions of a family, the default one first."""
     solve = families.family(family).solve
     return (solve.default, *(name for name in solve.names() if name != solve.default))
 
 
 def rule(family: str) -> str:
-    """Return the quick heuristic of a family; empty if there is none."""
+    """Return the name of the fast heuristic of a family; empty if there is none."""
     return families.family(family).solve.rule
 
 
 def limits_of(method: str, work: float | None) -> Limits:
-    """Turn a limit of work into what a method counts.
+    """Turn a limit of work into the unit in which a method counts.
 
     Parameters
     ----------
     method
-        Who solves.
+        The method.
     work
         Deterministic seconds; nodes of HiGHS; steps of local searches. None: no limit.
     """
@@ -69,30 +69,30 @@ def solve(
     guard_s: float | None = None,
     where: str = "",
 ) -> Found:
-    """Answer a question, and check the answer.
+    """Solve a question, and check the answer.
 
     Parameters
     ----------
     decision
         The question.
     method
-        Who answers: one of the family's methods, or `asked`. Default: `asked` if a controller of
-        ours has asked and nothing else is given, the family's default otherwise.
+        One of the family's methods, or `asked`. Default: `asked` if a shipped controller asked the
+        question and no other option is given, else the family's default.
     work
         Limit of work in the unit of the method. Default: none.
     seed
         Seed of the method. Default 0.
     start
-        Answer to begin from. Default: none.
+        Answer to start from. Default: none.
     guard_s
-        Wall time after which a method of ours gives up with an error. Default: none.
+        Wall time after which the method gives up with an error, in s. Default: none.
     where
-        What the question is called in errors. Default: its name.
+        Name of the question in errors. Default: its name.
 
     Raises
     ------
     InputError
-        If there is no such method, or the question is not one the model accepts.
+        If there is no such method, or the model rejects the question.
     WallGuardError
         If the guard ran out.
     """

@@ -34,7 +34,7 @@ class Forecast:
     view
         The world.
     window_s
-        How long counts are remembered.
+        Time for which counts are kept, in s.
     cases
         Number of cases (scenarios) of the forecast.
     """
@@ -47,7 +47,7 @@ class Forecast:
         self._queues = {s.index: set(view.layout.stations[s.index].queue) for s in view.stations}
 
     def look(self) -> None:
-        """Count the robots in use now."""
+        """Record the number of robots in use now."""
         self._seen.append(self._count())
         while self._seen[0].time_s < self._view.now_s - self._window_s:
             self._seen.popleft()

@@ -64,9 +64,9 @@ def groups_of(view: View, batteries: Batteries) -> list[Group]:
 
 
 def slot_s(groups: Sequence[Group], batteries: Batteries, share: float) -> float:
-    """Return how long a slot is: what a place needs to charge a share of a battery.
+    """Return the length of a slot: the time in which a place charges a share of a battery, in s.
 
-    Where batteries are only swapped, it is what a station needs for a swap in the long run.
+    If batteries are only swapped, it is the time per swap at one station in the long run.
     """
     power_w = max((group.power_w for group in groups), default=0.0)
     if power_w > 0:
@@ -81,7 +81,7 @@ def snapshot(
     wanted: NDArray[np.int64],
     given: ScheduleParameters,
 ) -> Charging:
-    """State the charging problem.
+    """Build the charging problem from the state of the world.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def snapshot(
     wanted
         Robots needed for work in each case, shape (Q,).
     given
-        Parameters of the controller.
+        The controller's parameters.
     """
     robots, slots = len(view.robots), given.slots
     length_s = slot_s(groups, batteries, given.slot_share)

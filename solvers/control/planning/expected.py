@@ -1,4 +1,4 @@
-"""Orders still to come, drawn from those that have come so far."""
+"""Forecast of future orders, drawn from those that have arrived so far."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from rmfs.world.orders import Order
 
 KEPT = 1000
-"""Orders of the past that are kept to draw from."""
+"""Number of past orders that are kept to draw from."""
 
 
 @dataclass(frozen=True)
 class ExpectedLine:
-    """A line of an order that has not come; attributes as those of an order line."""
+    """A line of a future order, with the attributes of an order line."""
 
     sku: int
     open_units: int
@@ -29,7 +29,7 @@ class ExpectedLine:
 
 @dataclass(frozen=True)
 class ExpectedOrder:
-    """An order that has not come; attributes as those of an order."""
+    """A future order, with the attributes of an order."""
 
     lines: tuple[ExpectedLine, ...]
     created_s: float
@@ -38,17 +38,17 @@ class ExpectedOrder:
 
 
 class ExpectedOrders:
-    """Draws orders that may come soon: past orders again, at the rate at which orders came.
+    """Draws orders that may arrive soon: past orders, at the rate at which orders arrived.
 
-    A controller does not know the process by which orders arrive, let alone what it will bring.
-    It knows the past orders of the scenario, the backlog it began with, and what has come since.
+    A controller knows neither the arrival process nor the orders it will generate. It knows the
+    past orders of the scenario, the initial backlog, and the orders that have arrived since.
 
     Parameters
     ----------
     view
         The world.
     rng
-        Draws the orders.
+        Random stream that draws the orders.
     """
 
     def __init__(self, view: View, rng: np.random.Generator) -> None:
@@ -63,19 +63,20 @@ class ExpectedOrders:
         self._come = 0
 
     def hear(self, order: Order) -> None:
-        """Take note of an order that has come."""
+        """Record an order that has arrived."""
         self._keep(order)
         self._come += 1
 
     def draw(self, horizon_s: float, scenarios: int) -> list[list[ExpectedOrder]]:
-        """Draw the orders of some scenarios; those that the stock cannot serve are left out.
+        """Draw future orders for some scenarios, without those that stock cannot serve.
 
         Parameters
         ----------
         horizon_s
-            How far ahead to look; in each scenario a Poisson number of orders comes.
+            Horizon in s; in each scenario, a Poisson-distributed number of orders arrives within
+            it.
         scenarios
-            How many to draw.
+            Number of scenarios to draw.
         """
         elapsed_s = self._view.now_s - self._begin_s
         if not self._come or elapsed_s <= 0:

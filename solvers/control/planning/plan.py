@@ -126,7 +126,7 @@ class Plan:
         return pods[0] if pods else -1
 
     def due(self, station: PickStation) -> Iterator[AssignOrder | AssignLines]:
-        """Yield items that should get a slot now; each gets it before the next is requested.
+        """Yield items for slots now; the caller assigns each before requesting the next.
 
         These are orders whose first pod is under way. One slot is reserved for orders that the pod
         at the head serves alone.
@@ -149,7 +149,7 @@ class Plan:
                 yield planned.item.decision(station.index)
 
     def streams(self, pod: int, station: int) -> bool:
-        """Whether orders wait that a pod serves alone."""
+        """Whether there are waiting orders that a single pod serves."""
         return any(list(planned.units) == [pod] for planned in self._orders[station])
 
     def units(self, station: PickStation) -> int:

@@ -144,7 +144,7 @@ def ask(
     seed
         Seed of the search.
     expected
-        Orders still to come, per scenario.
+        Future orders, per scenario.
     """
     coming = [under_way(view, station) for station in stations]
     others = [station.index for station in view.pick_stations if station not in stations]

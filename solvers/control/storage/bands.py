@@ -12,7 +12,7 @@ def bands(values: NDArray[np.float64], count: int) -> NDArray[np.int64]:
     Parameters
     ----------
     values
-        Shape (N,).
+        Value of each thing, shape (N,).
     count
         Maximum number of bands, positive.
 
@@ -32,11 +32,11 @@ def means(values: NDArray[np.float64], band: NDArray[np.int64]) -> NDArray[np.fl
     Parameters
     ----------
     values, band
-        Of each thing, shape (N,).
+        Value and band of each thing, shape (N,).
 
     Returns
     -------
-    Shape (bands,).
+    The mean of each band, shape (bands,).
     """
     mean: NDArray[np.float64] = np.bincount(band, weights=values) / np.bincount(band)
     return mean

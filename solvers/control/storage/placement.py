@@ -30,7 +30,7 @@ class Question:
     Attributes
     ----------
     waypoint
-        Of each place, shape (L,).
+        Waypoint of each place, shape (L,).
     """
 
     data: Placement

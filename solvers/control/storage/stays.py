@@ -75,9 +75,9 @@ class StaysControl(Ahead[StaysParameters]):
     """Assigns zones to pods by the times at which they and others will be fetched.
 
     Every pod is assumed to be fetched after its expected stay, at the latest after the horizon:
-    pods in stock then leave their zone, and returning pods need a place until then. An integer
-    programme finds the zones of least robot time in which there is always room. Within its zone a
-    pod takes the empty place nearest to its station.
+    stored pods then leave their zone, and returning pods need a place until then. An integer
+    programme finds the zones with the least robot time in which there is always room. Within its
+    zone a pod takes the empty place nearest to its station.
     """
 
     parameters_model = StaysParameters

@@ -34,7 +34,7 @@ class Ways:
 
     @cached_property
     def fetch_s(self) -> NDArray[np.float64]:
-        """Times from each place to a pick station, loaded, mean over stations, shape (L,), s."""
+        """Mean loaded travel time from each place to the pick stations, shape (L,), in s."""
         view = self._view
         places = view.storage.places
         times = [view.travel.to(s.waypoint, loaded=True)[places] for s in view.pick_stations]
@@ -43,13 +43,16 @@ class Ways:
 
     @cached_property
     def home_s(self) -> NDArray[np.float64]:
-        """Times from a pick station to each place, loaded, mean over stations, shape (L,), s."""
+        """Mean loaded travel time from the pick stations to each place, shape (L,), in s."""
         stations = [self.store_s(s.waypoint) for s in self._view.pick_stations]
         mean_s: NDArray[np.float64] = np.mean(stations, axis=0)
         return np.minimum(mean_s, UNREACHABLE_S)
 
     def store_s(self, waypoint: int) -> NDArray[np.float64]:
-        """Return times from a waypoint to each place, loaded, shape (L,), s; inf if unreachable."""
+        """Return loaded travel times from a waypoint to each place, shape (L,), in s.
+
+        Unreachable places have inf.
+        """
         times = self._stored.get(waypoint)
         if times is None:
             view = self._view
@@ -58,5 +61,5 @@ class Ways:
         return times
 
     def storing_s(self, robots: Sequence[Robot]) -> NDArray[np.float64]:
-        """Return times of each robot from where it is served to each place, shape (R, L), s."""
+        """Return times from each robot's place of service to each place, shape (R, L), in s."""
         return np.stack([self.store_s(robot.waypoint) for robot in robots])

@@ -66,7 +66,7 @@ class Asking(TaskAllocation[P]):
 
     @abstractmethod
     def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Any]:
-        """Ask what robots should do, each of which is without a task or at rest."""
+        """Ask what robots without a task, or at rest, should do."""
 
     @abstractmethod
     def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:

@@ -27,7 +27,7 @@ class Worth:
     Attributes
     ----------
     unit_s, order_s, bundle_s
-        A unit picked, an order completed, a bundle stored.
+        Value of a unit picked, of an order completed, and of a bundle stored.
     """
 
     unit_s: float
@@ -41,14 +41,16 @@ class Job:
 
     Attributes
     ----------
-    Time of the loaded trip to the station. bring_s
-        Service time at the station.
+    pod, station
+        The pod and the station.
+    bring_s
+        Time of the loaded trip to the station, in s.
     service_s
-        When the station will have run out of work, from now.
+        Service time at the station, in s.
     due_s
-        Value of its work.
+        Time from now until the station runs out of work, in s.
     worth_s
-        What its work is worth.
+        Value of the pod's work, in s of robot time.
     """
 
     pod: int

@@ -1,7 +1,8 @@
-"""Answers verified from the plain fields of a question, without the models.
+"""Verification of answers from the plain fields of a question, without the models.
 
-A module per family states the rules of the problem anew, with loops where the models have arrays,
-and recomputes the value. Nothing here imports `rmfs.solvers.models` or `rmfs.solvers.control`.
+One module per family implements the rules of the problem a second time, with loops instead of
+arrays, and recomputes the value. Nothing here imports `rmfs.solvers.models` or
+`rmfs.solvers.control`.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.files import Decision, Found
 
 TOLERANCE = 1e-6
-"""How far, relative to the value, a stated objective may be off, and a bound beyond it."""
+"""Tolerance, relative to the value, of a stated objective, and by which a bound may exceed it."""
 
 
 def check(decision: Decision, found: Found) -> float:
@@ -36,7 +37,7 @@ def check(decision: Decision, found: Found) -> float:
     Raises
     ------
     WrongError
-        If a rule is broken, the stated objective is another one, or the stated bound is beyond it.
+        If a rule is broken, the stated objective is wrong, or the stated bound is beyond it.
     """
     if found.values is None:
         raise WrongError("values: there are none")

@@ -1,4 +1,4 @@
-"""Robots to tasks with queues and due times."""
+"""Check of balanced dispatch: robots to tasks, with queues and due times."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Add up travel, lateness, waits behind others, and the cost of what is left."""
+    """Return the sum of travel, lateness, waits behind other robots, and costs of tasks left."""
     robot = values["robot"].tolist()
     within("robot", robot, -1, len(data["arrive_s"]))
     once("robot", (one for one in robot if one >= 0))

@@ -1,4 +1,4 @@
-"""Stays of robots at places with energy."""
+"""Check of charging: stays of robots at places with energy."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ NONE = -1
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Follow every robot slot by slot, and add up energy, ways and work that misses robots."""
+    """Simulate robots slot by slot; return the cost of energy, drives and missing robots."""
     group, begin, length = (values[name].tolist() for name in ("group", "begin", "length"))
     cases, slots = data["wanted"].shape
     within("group", group, NONE, len(data["gain"]))

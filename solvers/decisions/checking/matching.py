@@ -1,4 +1,4 @@
-"""Robots to tasks."""
+"""Check of matching: robots to tasks."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Add up travel and the cost of what is left."""
+    """Return the sum of travel and costs of tasks left."""
     robot = values["robot"].tolist()
     travel = data["travel_s"]
     within("robot", robot, -1, len(travel))

@@ -1,4 +1,4 @@
-"""Returning pods to free places."""
+"""Check of placement: returning pods to free places."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Add up the ways now and the ways expected later."""
+    """Return the robot time of drives now and of drives expected later."""
     place = values["place"].tolist()
     within("place", place, 0, len(data["access_s"]))
     once("place", place)

@@ -1,4 +1,4 @@
-"""Orders and pods to stations, with the fewest pods."""
+"""Check of rack allocation: orders and pods to stations."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Count the pods used."""
+    """Return the number of pods used."""
     order_station, pod_station = values["order_station"].tolist(), values["pod_station"].tolist()
     slots = data["slots"].tolist()
     within("order_station", order_station, -1, len(slots))

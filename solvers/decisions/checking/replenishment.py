@@ -1,4 +1,4 @@
-"""Bundles to pods, and these pods to stations."""
+"""Check of replenishment: bundles to pods, and these pods to stations."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Add up trips and the cost of what is left, less the worth of what is stored."""
+    """Return the costs of trips and of bundles left, less the worth of bundles stored."""
     pod, station = values["pod"].tolist(), values["station"].tolist()
     within("pod", pod, -1, len(data["pod_space"]))
     within("station", station, -1, len(data["station_space"]))

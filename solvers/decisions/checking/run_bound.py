@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.schema import Plain
 
 TOLERANCE = 1e-9
-"""Relative error of sums of times and units."""
+"""Relative error allowed in sums of times and units."""
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return units per hour, if the counts satisfy all inequalities."""
+    """Return the units per hour, after checking that the counts satisfy all inequalities."""
     given = {name: array.tolist() for name, array in values.items()}
     window, robots = float(data["duration_s"]), data["robots"]
     slack = TOLERANCE * max(1.0, window * max(1, robots))

@@ -1,4 +1,4 @@
-"""Routes of robots over stores and fetches."""
+"""Check of routes: sequences of storing and fetching pods."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.schema import Plain
 
 SLACK_S = 1e-6
-"""Rounding of sums of milliseconds."""
+"""Tolerance for rounding errors in sums of milliseconds."""
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Drive every route; add up driving, lateness and the cost of what is left."""
+    """Follow every route; return the sum of driving, lateness and costs of tasks left."""
     place, first = values["place"].tolist(), values["robot_place"].tolist()
     places, count = len(data["fetch_s"]), len(place)
     within("place", place, -1, places)

@@ -1,4 +1,4 @@
-"""Visits of pods at one station, and when its orders are opened."""
+"""Check of sequencing: visits of pods at one station, and when its orders are opened."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Go through the visits one after the other; the same pod twice in a row is one visit."""
+    """Simulate the visits, and return their number; consecutive visits of one pod count once."""
     pods, start = values["pods"].tolist(), values["start"].tolist()
     holds = [set(row.nonzero()[0].tolist()) for row in data["holds"]]
     missing = [set(row.nonzero()[0].tolist()) for row in data["needs"]]

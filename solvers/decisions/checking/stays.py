@@ -1,4 +1,4 @@
-"""Stays of pods in zones of places."""
+"""Check of stays: pods in zones of places over time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Add up the robot time of all stays; a place that is left at an instant is free at it."""
+    """Return the robot time of all stays; a place is free from the instant when a pod leaves it."""
     zone = values["zone"].tolist()
     capacity = data["capacity"].tolist()
     within("zone", zone, 0, len(capacity))

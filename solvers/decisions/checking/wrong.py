@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class WrongError(ValueError):
-    """An answer breaks a rule; the message says which, and where."""
+    """An answer breaks a rule; the message says which rule, and where."""
 
 
 def require(condition: object, problem: str) -> None:

@@ -1,4 +1,4 @@
-"""Classes of pods in zones of places, in the steady state."""
+"""Check of zones: classes of pods in zones of places, in the steady state."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.schema import Plain
 
 TOLERANCE = 1e-9
-"""How far counts of pods may be off, as a share of all pods."""
+"""Tolerance for counts of pods, as a share of all pods."""
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Compute robot seconds per hour: travel, and delays that grow with the traffic of a zone."""
+    """Return robot seconds per hour: travel, and delays that grow with the traffic of a zone."""
     standing = values["standing"].tolist()
     pods, places = data["pods"].tolist(), data["places"].tolist()
     rate = data["rate_per_h"].tolist()

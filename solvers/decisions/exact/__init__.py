@@ -1,9 +1,9 @@
-"""Questions as mixed-integer programmes that any solver takes, and its solutions as answers.
+"""Questions as mixed-integer programmes for any solver, and its solutions as answers.
 
-- `formulation`: the exact programme of each family; `pairs` and `routes` are those that the models
-  have no matrix of, because they solve these families in other ways;
+- `formulation`: the exact programme of each family; `pairs` and `routes` contain the programmes of
+  families that the models solve without a matrix;
 - `writing`: MPS and LP files; `reading`: solution files of solvers;
-- `external`: solvers as commands.
+- `external`: runs other solvers as commands.
 """
 
 from rmfs.solvers.decisions.exact.formulation import Exact as Exact

@@ -1,8 +1,8 @@
-"""Other people's solvers as commands: a programme in, a solution file out.
+"""External solvers as commands, which read a programme and write a solution file.
 
-None is required. A solver is known by a name, if its command is on the path, or given as a command
-with `{program}`, `{solution}` and `{seconds}` in it, which is split like a shell's but run without
-one. What it finds counts only as far as `checking` accepts it.
+None is required. A solver is given by its name, if its command is on the path, or as a command with
+the placeholders `{program}`, `{solution}` and `{seconds}`, which is split as by a shell but run
+without one. Its solution counts only if `checking` accepts it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.files import Decision
 
 HIGHS = "highs"
-"""HiGHS as it comes with rmfs, with its own settings but one thread."""
+"""HiGHS as installed with rmfs, with its default settings but one thread."""
 
 COMMANDS = {
     "scip": 'scip -q -c "read {program}" -c "set limits time {seconds}" -c optimize '
@@ -37,20 +37,20 @@ COMMANDS = {
     '"write {solution}"',
     "cbc": "cbc {program} seconds {seconds} solve solution {solution}",
 }
-"""Command of each known solver, as its manual has it."""
+"""Command of each known solver, according to its manual."""
 
 _GRACE_S = 30.0
-"""So much longer than it may a command takes before it is ended: reading is not always counted."""
+"""Seconds beyond its limit after which a command is ended, as solvers may not count reading."""
 
 
 def available() -> tuple[str, ...]:
-    """Return the names of the solvers that can be called here."""
+    """Return the names of the solvers that can be called on this machine."""
     there = (name for name, command in COMMANDS.items() if shutil.which(command.split()[0]))
     return HIGHS, *there
 
 
 def solve_externally(decision: Decision, solver: str, seconds: float, where: str = "") -> Found:
-    """Let a solver answer a question by its exact programme.
+    """Solve the exact programme of a question with an external solver.
 
     Parameters
     ----------
@@ -59,18 +59,19 @@ def solve_externally(decision: Decision, solver: str, seconds: float, where: str
     solver
         A name in `COMMANDS`, `highs`, or a command.
     seconds
-        Wall time that it gets.
+        Time limit, in s of wall time.
     where
-        What the question is called in errors. Default: its name.
+        Name of the question in errors. Default: its name.
 
     Returns
     -------
-    The answer, without a bound: a solution file has none. `by` tells building and solving apart.
+    The answer, without a bound, as solution files contain none. `by` states the times of building
+    and solving separately.
 
     Raises
     ------
     InputError
-        If the solver is not there, fails, or leaves no allowed solution.
+        If the solver is not available, fails, or writes no feasible solution.
     """
     name = where or decision.name
     command = COMMANDS.get(solver, solver)

@@ -1,4 +1,4 @@
-"""The exact programme of a question: columns with names, and the way back to an answer."""
+"""The exact programme of a question, with named columns, and the conversion back to an answer."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Exact:
     Attributes
     ----------
     program
-        The programme, which is to be minimised.
+        The programme, to be minimised.
     names
         Names of its columns.
     answer
@@ -38,7 +38,7 @@ class Exact:
     factor
         Factor by which the programme's objective is multiplied to give the question's value.
     square
-        Additional cost of the square of each column, shape (n,); empty if there is none.
+        Cost coefficient of the square of each column, shape (n,); empty if there are none.
     """
 
     program: LinearProgram
@@ -49,19 +49,19 @@ class Exact:
 
 
 def exact(decision: Decision, where: str = "") -> Exact:
-    """State the exact programme of a question.
+    """Formulate the exact programme of a question.
 
     Parameters
     ----------
     decision
         The question.
     where
-        What it is called in errors. Default: its name.
+        Name of the question in errors. Default: its name.
 
     Raises
     ------
     InputError
-        If the question has no answer at all, where the programme would need one.
+        If the question is infeasible in a way that the programme cannot express.
     """
     made: Exact = _STATED[decision.family](model_data(decision, where), where or decision.name)
     return made

@@ -1,4 +1,4 @@
-"""Programmes of the families that the models solve as assignments, flows and by Clarabel."""
+"""Programmes of the families that the models solve as assignments, as flows or by Clarabel."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Stated = tuple[LinearProgram, Names, Callable[[Reals], Plain]]
 
 
 def placement(data: Placement) -> Stated:
-    """Give every pod one place, and every place one pod at most."""
+    """Assign each pod one place, and each place at most one pod."""
     cost = data.cost_s
     pods, places = cost.shape
     allowed = np.isfinite(cost)
@@ -39,14 +39,14 @@ def placement(data: Placement) -> Stated:
 
 
 def matching(data: Matching) -> Stated:
-    """Give every task one robot or none, and every robot one task at most."""
+    """Assign each task at most one robot, and each robot at most one task."""
     builder = ProgramBuilder()
     x, left = _robots(builder, data)
     return _named(builder, x, left)
 
 
 def balance(data: Balance) -> Stated:
-    """Matching with stations: the k-th robot of a station takes its k-th seat, which costs more."""
+    """Matching with stations: the k-th robot at a station takes its k-th seat, at rising cost."""
     builder = ProgramBuilder()
     x, left = _robots(builder, data.pairs)
     stations = len(data.room)
@@ -89,7 +89,7 @@ def _named(builder: ProgramBuilder, x: NDArray[np.int64], left: NDArray[np.int64
 
 
 def zones(data: Zones) -> tuple[LinearProgram, Names, Callable[[Reals], Plain], Reals]:
-    """Let pods stand in zones, with the square of each zone's traffic in the cost."""
+    """Distribute pods over zones, with the square of each zone's traffic in the cost."""
     classes, count = data.visit_s.shape
     builder = ProgramBuilder()
     rate = data.rate_per_h[:, np.newaxis]

@@ -1,4 +1,4 @@
-"""Solution files of solvers, back to answers."""
+"""Conversion of solvers' solution files to answers."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ _XML = re.compile(r'<variable\s[^>]*?name="([^"]+)"[^>]*?value="([^"]+)"')
 def read_columns(stated: Exact, path: Path) -> NDArray[np.float64]:
     """Read the value of each column from a solution file.
 
-    Known are files in which a line holds a name and, behind it, a value (HiGHS, SCIP, Gurobi, CBC,
-    GLPK), and the XML of CPLEX. A column that is not named is 0, or at its bound next to 0.
+    Supported are files whose lines contain a name followed by a value (HiGHS, SCIP, Gurobi, CBC,
+    GLPK), and the XML of CPLEX. A column that is not named is 0, or at its bound nearest to 0.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def read_columns(stated: Exact, path: Path) -> NDArray[np.float64]:
 
 
 def answer_of(decision: Decision, stated: Exact, path: Path, by: dict[str, object]) -> Found:
-    """Make an answer of a solver's solution file; it is one only if it is allowed.
+    """Convert a solver's solution file to an answer, which must be feasible.
 
     Parameters
     ----------
@@ -71,12 +71,12 @@ def answer_of(decision: Decision, stated: Exact, path: Path, by: dict[str, objec
     path
         The solution file.
     by
-        Who found it.
+        Description of the solver, for the answer.
 
     Raises
     ------
     InputError
-        If the file is no solution, or not an allowed one.
+        If the file contains no solution, or an infeasible one.
     """
     values = stated.answer(read_columns(stated, path))
     try:

@@ -1,8 +1,8 @@
 r"""The routes of robots as a mixed-integer programme with times.
 
-Columns: whether a robot without a pod begins with task t (first), whether after owner o, at place
-l, task t comes next (onward) or nothing (last), whether t is left, and when its pod is at its
-station. An *owner* of a pod is robot r, or task R + t.
+Columns: whether a robot without a pod begins with task t (first); whether after owner o has stored
+its pod at place l, task t comes next (onward) or the route ends (last); whether t is left; and when
+its pod arrives at its station. An *owner* of a pod is robot r, or task R + t.
 
 .. math::
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 def routes(
     data: TaskSequence,
 ) -> tuple[LinearProgram, Names, Callable[[NDArray[np.float64]], Plain]]:
-    """State the programme.
+    """Formulate the programme.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""MPS and LP files. Numbers have the digits that read back as the same double.
+"""MPS and LP files, in which numbers have enough digits to read back as the same double.
 
-A constant of the objective is the cost of a column `one` that is fixed at 1, because solvers do
-not agree on where a constant stands. A row bounded on both sides is written as two.
+A constant of the objective is written as the cost of a column `one` that is fixed at 1, because
+solvers read constants differently. A row with bounds on both sides is written as two rows.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ FORMATS = ("mps", "lp")
 
 
 def write_program(stated: Exact, path: Path) -> None:
-    """Write a programme; the ending of the file says whether as MPS or LP.
+    """Write a programme as MPS or LP, depending on the suffix of the file.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def write_program(stated: Exact, path: Path) -> None:
 
 
 def write_map(decision: Decision, stated: Exact, path: Path) -> None:
-    """Write what the columns decide (`rmfs-decision-map/1`).
+    """Write the decisions that the columns stand for (`rmfs-decision-map/1`).
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
-"""The tracked library of decisions: how it is drawn, what is known of it, how that gets better.
+"""The library of decisions: drawing its questions, best known results, and improving them.
 
-- `drawing`: the procedure by which its questions are drawn from runs;
-- `table`: best known values and bounds, with who found them;
-- `improving`: searches that go on from there.
+- `drawing`: draws its questions from runs;
+- `table`: holds best known values and bounds, and how they were found;
+- `improving`: searches for better ones.
 """

@@ -1,4 +1,4 @@
-"""Questions that no controller asks, made of those that are asked, and of sites."""
+"""Questions that no controller asks, derived from other questions and from sites."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 ORDERS = {"small": 8, "medium": 16, "real": 32, "double": 64}
-"""Orders of a sequencing question: the first of the backlog that pods at hand can serve."""
+"""Number of orders of a sequencing question: the first in the backlog that can be served."""
 
 SLOTS = {"small": 3, "medium": 6, "real": 6, "double": 6}
-"""Orders open at a time there."""
+"""Maximum number of open orders in a sequencing question."""
 
 ROBOTS = {
     "small": (2, 3, 4, 5, 6, 7, 8, 9, 10, 12),
@@ -25,11 +25,11 @@ ROBOTS = {
     "real": (15, 20, 24, 26, 30, 35, 45, 60),
     "double": (40, 60, 90, 120),
 }
-"""Robots of the questions for the bound on a run, an hour each."""
+"""Numbers of robots in the questions for the run bound, of one hour each."""
 
 
 def derived(family: str, size: str, asked: Iterable[Decision]) -> Iterator[Decision]:
-    """Make questions of a family.
+    """Derive questions of a family.
 
     `rack_allocation`: orders, free slots and pods of a pile-on question; a station without a free
     slot takes one order. `sequencing`: one station and the first orders of its backlog, with the
@@ -38,7 +38,7 @@ def derived(family: str, size: str, asked: Iterable[Decision]) -> Iterator[Decis
     Parameters
     ----------
     family
-        One of these three.
+        Name of one of these three families.
     size
         As for `drawing.draw`.
     asked

@@ -1,10 +1,9 @@
-"""The questions of the library: drawn from runs by one seeded procedure.
+"""The questions of the library, drawn from runs by a seeded procedure.
 
-For each size, kind of demand and seed a site is simulated under each set of controllers that asks
-the family. Its time is cut into thirds: early, middle, late. Of each third one question is drawn,
-with equal chances, from its largest tenth (by the entries of its arrays), because many questions
-are about one robot or one slot. Families that no controller asks are made of others, or of the
-site, as `derived` says.
+For each size, kind of demand and seed, a site is simulated under each set of controllers that asks
+questions of the family. Its time is divided into thirds: early, middle, late. From each third, one
+question is drawn uniformly from the largest tenth (by array entries), because many questions
+concern only one robot or one slot. `derived` makes questions of families that no controller asks.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
 
 MOMENTS = ("early", "middle", "late")
 _STREAM = 20171
-"""Sets these draws apart from others with the same seed."""
+"""Stream name that separates these draws from others with the same seed."""
 
 
 CONTROLLERS: Mapping[str, tuple[str, ...]] = {
@@ -42,7 +41,7 @@ CONTROLLERS: Mapping[str, tuple[str, ...]] = {
     "replenishment": ("stocking",),
     "charging": ("ca-schedule",),
 }
-"""Shipped sets of controllers that ask a family; seeds take turns where there are several."""
+"""Shipped sets of controllers that ask each family; seeds alternate between them."""
 
 _PARAMETERS: Mapping[str, Mapping[str, Any]] = {
     "psa-prices": {"controllers.psa.period_s": 60.0},
@@ -59,10 +58,10 @@ _PARAMETERS: Mapping[str, Mapping[str, Any]] = {
         "scenario.energy.battery.initial_most_share": 0.8,
     },
 }
-"""What is changed so that a set asks often enough in the time."""
+"""Parameters changed so that a set asks often enough during the run."""
 
 _AS_NEEDED = frozenset({"poisson"})
-"""Scenarios whose bundles come as SKUs run low: there are no shares of stock to set."""
+"""Scenarios that order bundles when SKUs run low, so that no stock levels need to be set."""
 
 _EASIER: Mapping[tuple[str, str], Mapping[str, Any]] = {
     ("planning", "small"): {
@@ -73,7 +72,7 @@ _EASIER: Mapping[tuple[str, str], Mapping[str, Any]] = {
     ("sequence", "small"): {"layout.robots": 3, "controllers.ta.pods_per_station": 1},
     ("replenishment", "small"): {"controllers.rps.bundles": 8},
 }
-"""What is changed so that small questions can be solved to proven optimality."""
+"""Parameters changed so that small questions can be solved to proven optimality."""
 
 _PLACES: Mapping[tuple[str, str], Mapping[str, Any]] = {
     ("charging", "small"): {
@@ -97,7 +96,7 @@ _PLACES: Mapping[tuple[str, str], Mapping[str, Any]] = {
         "layout.other_stations.charger.south": 4,
     },
 }
-"""Plug-in places at the sides of a site; at the large ones they take those of pick stations."""
+"""Plug-in places at the sides of a site; at large sites they replace pick stations."""
 
 _FEW: Mapping[str, Mapping[str, Any]] = {
     "backlog": {"scenario.demand.orders": 10},
@@ -131,7 +130,7 @@ def draw(family: str, size: str) -> Iterator[Decision]:
 
     Yields
     ------
-    The questions; `provenance["drawn"]` says size, demand, moment and seed.
+    The questions; `provenance["drawn"]` states size, demand, moment and seed.
     """
     assert family in SCHEMAS
     seen: set[str] = set()

@@ -1,4 +1,4 @@
-"""Searches that go on from what is known, with more work in every round."""
+"""Searches for better values and bounds, with more work in every round."""
 
 from __future__ import annotations
 
@@ -36,34 +36,34 @@ METHODS = {
     "replenishment": ("greedy", "rounding", "cp_sat", "highs"),
     "run_bound": ("highs",),
 }
-"""Who searches for answers, in this order."""
+"""Methods that search for answers, in this sequence."""
 
 STEPS = {"lns": 20_000.0, "beam": 400.0, "hadgs": 400.0, "highs": 100.0}
-"""Limit of the first round of those who count steps or nodes; the others get `work` seconds."""
+"""Limit of the first round for methods that count steps or nodes; others get `work` seconds."""
 
 STEPS_OF = {"planning": {"lns": 40_000.0, "highs": 10.0}}
-"""The same where a step of a family takes microseconds, or a node seconds."""
+"""Exceptions to `STEPS`, for families whose steps take microseconds or whose nodes take seconds."""
 
 LARGEST_EXACT = {"planning": 60_000}
-"""Entries (pods times lines times stations) beyond which nobody searches in the exact programme."""
+"""Size (pods times lines times stations) above which the exact programme is not searched."""
 
 
 @dataclass(frozen=True)
 class Effort:
-    """How much is spent.
+    """Effort of the search.
 
     Attributes
     ----------
     work
-        Deterministic seconds of a search in the first round; four times as many in each further.
+        Deterministic seconds of each search in the first round; each further round quadruples them.
     rounds
-        Their number.
+        Number of rounds.
     seconds
-        Wall time in all.
+        Total wall time, in s.
     guard_s
-        Wall time of one search, beyond which it is given up.
+        Wall time after which a search is given up, in s.
     load
-        Load of the machine above which nothing is begun; infinite for no care.
+        Load of the machine above which no search is started; infinite: no limit.
     """
 
     work: float = 1.0
@@ -80,22 +80,22 @@ def improve(
     sizes: Collection[str] = (),
     tell: Callable[[str], None] = print,
 ) -> int:
-    """Search for better values and bounds of the questions that are open.
+    """Search for better values and bounds of open questions.
 
     Parameters
     ----------
     library
-        Where.
+        The library.
     effort
-        How much.
+        The effort.
     families, sizes
-        Which questions. Default: all.
+        Families and sizes of the questions. Default: all.
     tell
         Called with each improvement.
 
     Returns
     -------
-    How many values and bounds got better.
+    Number of values and bounds that were improved.
     """
     until, count = monotonic() + effort.seconds, 0
     for number in range(effort.rounds):

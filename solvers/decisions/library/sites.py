@@ -1,4 +1,4 @@
-"""The sites that the questions of the library are drawn from."""
+"""The sites from whose runs the questions of the library are drawn."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class Site:
     layout
         Shipped layout.
     scenarios
-        Shipped scenario per kind of demand.
+        Shipped scenario for each kind of demand.
     set
         Overridden parameters.
     duration_s
-        Simulated time.
+        Simulated time in s.
     seeds
         Seeds of its runs.
     """
@@ -64,4 +64,4 @@ TWICE: Mapping[str, Mapping[str, Any]] = {
     "backlog": {"scenario.demand.orders": 400, "scenario.replenishment.bundles": 1200},
     "arrivals": {"scenario.demand.orders_per_h": 3200, "scenario.demand.initial_orders": 400},
 }
-"""What twice as large a site is asked for."""
+"""Parameters of a site twice as large."""

@@ -1,8 +1,8 @@
-"""Best known values and bounds: a row per question, and the best answer as a file beside it.
+"""Best known values and bounds: one row per question, and the best answer as a file.
 
 `FAMILY/SIZE/NAME.json.gz` is a question, `NAME.solution.json.gz` its best known answer, and
-`best.csv` the table. A value or a bound gets in by `Library.enter` alone, which accepts nothing
-that `checking` does not, and no bound beyond a value that somebody has.
+`best.csv` the table. Values and bounds are entered only by `Library.enter`, which accepts an answer
+only if `checking` does, and refuses a bound that contradicts a known value.
 """
 
 from __future__ import annotations
@@ -33,25 +33,25 @@ TABLE = "best.csv"
 LOCK = ".lock"
 OPTIMAL, OPEN = "optimal", "open"
 PROVEN = 1e-4
-"""Relative gap that counts as none: CP-SAT has costs in whole parts, of 1/1024 s and the like."""
+"""Relative gap that counts as zero, as CP-SAT rounds costs to multiples of, say, 1/1024 s."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """What is known of one question.
+    """Best known results of one question.
 
     Attributes
     ----------
     question
         Its name.
     family, size, load, moment
-        As it was drawn.
+        Family, size, kind of demand and time at which it was drawn.
     value, bound
-        Best known; nan for none.
+        Best known value and bound; nan if there is none.
     value_by, bound_by
-        Who found it: method and limit, or a solver, or a person.
+        How it was found: method and limit, or the name of a solver or a person.
     value_when, bound_when
-        Day, and version and commit of rmfs with which it was entered.
+        Day of entry, and version and commit of rmfs.
     """
 
     question: str
@@ -68,13 +68,13 @@ class Row:
 
     @property
     def gap(self) -> float:
-        """Distance of value and bound relative to the greater of them; nan without one of them."""
+        """Difference of value and bound, relative to the larger; nan if either is missing."""
         apart = abs(self.value - self.bound)
         return 0.0 if apart == 0.0 else apart / max(abs(self.value), abs(self.bound))
 
     @property
     def status(self) -> str:
-        """`optimal` if value and bound are the same but for `PROVEN`, `open` otherwise."""
+        """`optimal` if value and bound agree within `PROVEN`, else `open`."""
         near = abs(self.value - self.bound) <= PROVEN * max(1.0, abs(self.value))
         return OPTIMAL if near else OPEN
 
@@ -86,9 +86,9 @@ class Library:
     Attributes
     ----------
     folder
-        Where it is.
+        Path of the library.
     rows
-        By name of the question.
+        Rows by name of the question.
     """
 
     folder: Path
@@ -96,12 +96,12 @@ class Library:
 
     @classmethod
     def load(cls, folder: Path) -> Library:
-        """Read the table, and list the questions that it does not know yet.
+        """Read the table, and add questions that it does not contain yet.
 
         Raises
         ------
         InputError
-            If there is no question.
+            If the folder contains no question.
         """
         known = {row.question: row for row in _rows(folder / TABLE)}
         rows = {}
@@ -124,29 +124,29 @@ class Library:
     def enter(
         self, decision: Decision, found: Found | None, by: str, bound: float = math.nan
     ) -> list[str]:
-        """Take an answer, a bound or both, if they are better than what is known, and save.
+        """Enter an answer, a bound or both if they are better than the known ones, and save.
 
         Parameters
         ----------
         decision
             A question of the library.
         found
-            The answer; its own bound is not looked at.
+            The answer; its own bound is ignored.
         by
-            Who found it.
+            How it was found, for the table.
         bound
             A proven bound.
 
         Returns
         -------
-        What got better: `value`, `bound`.
+        The names of what was improved: `value`, `bound`.
 
         Raises
         ------
         WrongError
-            If the answer is not allowed.
+            If the answer is infeasible.
         InputError
-            If the question is not of the library, or the bound is beyond the best value.
+            If the question is not in the library, or the bound contradicts the best value.
         """
         if decision.name not in self.rows:
             raise InputError(f"{decision.name}: is not in {self.folder}")
@@ -188,7 +188,7 @@ class Library:
             yield
 
     def save(self) -> None:
-        """Write the table, whole or not at all."""
+        """Write the table atomically."""
         write_text(self.folder / TABLE, self.frame().to_csv(index=False))
 
     def frame(self) -> pd.DataFrame:
@@ -205,7 +205,7 @@ def questions(folder: Path) -> Iterator[Path]:
 
 
 def stamp() -> str:
-    """Say when and with what something was found: day, version and commit."""
+    """Return the day, version and commit to record with an entry."""
     head = commit()["git_commit"]
     return f"{datetime.now(UTC):%Y-%m-%d} rmfs {version()} {(head or 'no commit')[:12]}"
 
