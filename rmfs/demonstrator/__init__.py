@@ -1,1 +1,1 @@
-"""Robots outside the simulation in place of simulated ones (paper, section 4)."""
+"""Physical or emulated robots in place of simulated ones (paper, section 4)."""

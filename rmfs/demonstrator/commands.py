@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 app = typer.Typer()
 
 EMULATED = "emulated"
-"""What is given for the address of robots in a room that is started along."""
+"""Value of the address option that starts an emulated room along with the server."""
 
 GIVEN_UP = 1
 TRUTH = "room.json"
@@ -107,7 +107,7 @@ def demonstrate(
 ) -> None:
     """Run a warehouse with real robots and write a run folder.
 
-    Killed and called again in the same way, it goes on where it was.
+    If it is killed, calling it again with the same arguments resumes the demonstration.
     """
     from rmfs.cli.simulate import conclude, default_name
     from rmfs.cli.terminal import progress, step

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
 
 TCP, ROOM = "tcp", "room"
-"""Schemes of addresses: real time, and the time of an emulated room."""
+"""Address schemes for real time and for the time of an emulated room."""
 
 SECRET = "RMFS_SECRET"
-"""Environment variable of the secret."""
+"""Environment variable that contains the secret."""
 
 SHORTEST_SECRET = 8
 
@@ -27,7 +27,7 @@ def address(url: str, option: str) -> tuple[str, str, int]:
     Raises
     ------
     InputError
-        If it is not one.
+        If the text is not a valid address.
     """
     try:
         parts = urlsplit(url)
@@ -43,12 +43,12 @@ def address(url: str, option: str) -> tuple[str, str, int]:
 
 
 def secret(file: Path | None) -> bytes:
-    """Return the secret of a file, or of the environment.
+    """Return the secret from a file, or from the environment variable.
 
     Raises
     ------
     InputError
-        If there is none, or it is too short.
+        If there is no secret, or it is too short.
     """
     try:
         given = os.environ.get(SECRET, "") if file is None else file.read_text(encoding="utf-8")
@@ -69,9 +69,9 @@ def robots(layout: Layout, chosen: str | None, option: str = "--real") -> dict[s
     Parameters
     ----------
     layout
-        Robot 3 of it is called `robot-3`.
+        The layout, whose robot 3 is called `robot-3`.
     chosen
-        Their indices, separated by commas; None for all.
+        Indices of the robots, separated by commas; None for all.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def tags(layout: Layout, file: Path | None) -> list[str]:
     Raises
     ------
     InputError
-        If the file does not give each waypoint a tag of its own.
+        If the file does not give each waypoint a different tag.
     """
     if file is None:
         return [f"W{waypoint}" for waypoint in range(layout.waypoints)]

@@ -1,6 +1,6 @@
-"""RAWSim-O at the edge: what turns its files into ours.
+"""Conversion of RAWSim-O's files to those of rmfs.
 
-Layouts, scenarios and controllers of its formats are read here, whole folders of them are converted
-(`folder`), and its columns are matched with ours (`footprint`). The simulator imports nothing of
-it: files are read through `rmfs.foreign`, by their ending.
+This package reads layouts, scenarios and controllers in RAWSim-O's formats, converts whole folders
+(`folder`), and maps its measures to those of rmfs (`footprint`). The simulator does not import it;
+files are read through `rmfs.foreign`, by their suffix.
 """

@@ -1,8 +1,8 @@
-"""RAWSim-O's files, one or a folder of them, as files of ours.
+"""Import of one file or a folder of RAWSim-O's files.
 
-Layouts, scenarios, controllers and SKU sets go into folders of these names, below which the folders
-of the source are kept. What each file was, what is left out of it or done differently, and what is
-refused and why, is listed in `import.md`.
+Layouts, scenarios, controllers and SKU sets go into folders of these names, which keep the
+subfolders of the source. The file `import.md` lists for each file what it was, what was left out or
+differs, and why it was refused.
 """
 
 from __future__ import annotations
@@ -35,20 +35,20 @@ LIST = "import.md"
 
 @dataclass
 class Imported:
-    """What became of one file.
+    """The result of importing one file.
 
     Attributes
     ----------
     source
-        The file, from the folder that was imported.
+        Path of the file, relative to the imported folder.
     kind
-        What it is; empty if it is none of RAWSim-O's.
+        Kind of the file; empty if it is not a file of RAWSim-O.
     written
-        The files made of it, from the folder they are in.
+        Paths of the files written for it, relative to the target folder.
     notes
-        What was left out, or is done differently here.
+        What was left out, or differs in rmfs.
     refused
-        Why nothing was made of it, or nothing.
+        Why it was refused; empty if it was not.
     """
 
     source: Path
@@ -58,7 +58,7 @@ class Imported:
     refused: str = ""
 
     def lines(self) -> list[str]:
-        """Say it in lines, the first of which names the file."""
+        """Return the result as lines, the first of which names the file."""
         if not self.kind:
             return [f"{self.source.as_posix()}: not a file of RAWSim-O's that is imported"]
         if self.refused:
@@ -71,28 +71,28 @@ class Imported:
 def import_files(
     source: Path, target: Path, tell: Callable[[Imported], None] = lambda _: None
 ) -> list[Imported]:
-    """Import a file, or every file of a folder and of those in it.
+    """Import a file, or all files of a folder and its subfolders.
 
-    Files that are refused do not keep the others from being imported.
+    If a file is refused, the others are imported all the same.
 
     Parameters
     ----------
     source
         The file or folder.
     target
-        The folder to make; one that an earlier import made, or an empty one, is replaced.
+        The folder to create; an empty one, or one from an earlier import, is replaced.
     tell
-        Called for every file when it is done.
+        Function called after each file.
 
     Returns
     -------
-    What became of each file, by name.
+    The result for each file, sorted by name.
 
     Raises
     ------
     InputError
-        If the source is not there or holds nothing that can be imported, or the target cannot be
-        written. Then nothing is.
+        If the source does not exist or contains nothing that can be imported, or the target cannot
+        be written. Then nothing is written.
     """
     if not source.exists():
         raise InputError(f"{source}: no such file or folder")
@@ -143,7 +143,7 @@ def _move(files: list[Path], goal: Path, folder: Path) -> None:
 
 
 Written = tuple[list[Path], list[str]]
-"""The files made of one, and remarks."""
+"""The files written for one file, and remarks."""
 
 
 def _layout(path: Path, target: Path) -> Written:
@@ -201,4 +201,4 @@ _KINDS: dict[str, tuple[str, str, str, Callable[[Path, Path], Written]]] = {
     ".xgenc": ("SKU set", "skus", ".json", _sku_set),
     ".xitem": ("list of orders and bundles", "skus", ".json", _order_list),
 }
-"""What a file is, the folder and the ending of ours, and what writes it."""
+"""Kind of a file, target folder and suffix, and the function that writes it."""

@@ -1,7 +1,8 @@
-"""RAWSim-O's footprint columns and files, and where to find the same here.
+"""RAWSim-O's footprint columns and files, and their counterparts in rmfs.
 
-What stands in backticks is a column of our footprint, or `table.column` of another table; the rest
-is prose. Wrong columns of theirs are computed right here; what we leave out says why.
+Text in backticks is a column of the footprint, or `table.column` of another table; the rest is
+prose. Columns that RAWSim-O computes incorrectly are computed correctly here; for columns that rmfs
+omits, the reason is given.
 """
 
 from __future__ import annotations
@@ -15,9 +16,9 @@ class Mapped(NamedTuple):
     Attributes
     ----------
     theirs
-        Its name.
+        Its name in RAWSim-O.
     ours
-        Where the same is found here, or why it is not.
+        Its counterpart in rmfs, or the reason why there is none.
     """
 
     theirs: str
@@ -334,7 +335,7 @@ COLUMNS: tuple[Mapped, ...] = (
     *_timings(),
     *_free(),
 )
-"""Their footprint, in the order of their file, which has no header."""
+"""RAWSim-O's footprint columns, in the order of its file, which has no header."""
 
 FILES: tuple[Mapped, ...] = (
     Mapped("instance.txt", "run.json: layout"),
@@ -384,11 +385,11 @@ FILES: tuple[Mapped, ...] = (
     Mapped("exception.txt", "the error stream and the exit code"),
     Mapped("debug.xinst", "none: overlaps do not happen; the checker names the first"),
 )
-"""Their files."""
+"""RAWSim-O's output files."""
 
 
 def markdown() -> str:
-    """Return the part on measures of the page for those who know RAWSim-O."""
+    """Return the section on measures for the page for users of RAWSim-O."""
     lines = [
         "## Measures",
         "",

@@ -1,9 +1,9 @@
-"""Reading RAWSim-O's XML files from anybody's hands.
+"""Safe reading of RAWSim-O's XML files of unknown origin.
 
-The standard library's parser expands entities; a file that declares a document type is refused
-where the declaration stands, so that none can be defined and nothing outside the file is read. The
-size of the file, the number of its elements and the length of a tag are bounded, and with them the
-memory. What a reader does not know is noted, never silently dropped.
+The standard library's parser expands entities. A file that declares a document type is therefore
+refused at the declaration, so that it cannot define entities or cause other files to be read.
+Limits on the size of the file, the number of its elements and the length of a tag bound the memory.
+Unknown elements are noted, never silently dropped.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 SCHEMA_NAMESPACE = "{http://www.w3.org/2001/XMLSchema-instance}"
 
 LARGEST_MIB = 64
-"""The largest published file takes 4 MiB."""
+"""Maximum size of a file in MiB; the largest published one has 4 MiB."""
 
 MOST_ELEMENTS = 2_000_000
-"""The largest published file has 60 000."""
+"""Maximum number of elements; the largest published file has 60,000."""
 
 LARGEST_GAP = 1 << 20
-"""Bytes between the starts of two elements, so that no tag or text is longer."""
+"""Maximum number of bytes between the starts of two elements, which limits tags and texts."""
 
 _CHUNK_BYTES = 1 << 16
 
@@ -60,7 +60,7 @@ def read_root(path: Path, root: str) -> Element:
     Parameters
     ----------
     root
-        The name the root element must have.
+        Required name of the root element.
 
     Raises
     ------
@@ -106,25 +106,26 @@ def _parsed(path: Path, root: str) -> Element:
 
 
 class Unknown:
-    """Counts elements and attributes that a reader does not know.
+    """Counts unknown elements and attributes.
 
     Attributes
     ----------
     names
-        How often each was met, for example `Bot.Colour` (attribute) or `Waypoints/Note` (element).
+        Number of occurrences of each, such as `Bot.Colour` (attribute) or `Waypoints/Note`
+        (element).
     """
 
     def __init__(self) -> None:
         self.names: Counter[str] = Counter()
 
     def attributes(self, element: Element, known: Collection[str]) -> None:
-        """Count the attributes of an element that are not known."""
+        """Count the unknown attributes of an element."""
         for name in element.attrib:
             if name not in known and not name.startswith(SCHEMA_NAMESPACE):
                 self.names[f"{element.tag}.{name}"] += 1
 
     def children(self, element: Element, known: Collection[str]) -> None:
-        """Count the children of an element that are not known."""
+        """Count the unknown children of an element."""
         for child in element:
             if child.tag not in known:
                 self.names[f"{element.tag}/{child.tag}"] += 1

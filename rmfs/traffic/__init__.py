@@ -1,7 +1,7 @@
-"""What moves: robots on a waypoint graph, planned without conflict in continuous time.
+"""Traffic: robots on a waypoint graph, with conflict-free plans in continuous time.
 
-A thin face of the compiled core. Traffic knows nothing of orders, SKUs or tasks: it takes programs
-("drive there, lift this pod, go to that station") and yields events.
+This is a thin interface to the compiled core. It knows nothing of orders, SKUs or tasks: it accepts
+programs ("drive there, lift this pod, go to that station") and yields events.
 """
 
 from __future__ import annotations

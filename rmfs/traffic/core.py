@@ -22,7 +22,7 @@ _FORMAT = "rmfs-traffic"
 
 
 class Options(NamedTuple):
-    """How traffic is built; see `rmfs.traffic.Traffic`."""
+    """Options of the traffic core; see `rmfs.traffic.Traffic`."""
 
     record_trace: bool
     cost_table_bytes: int
@@ -31,7 +31,7 @@ class Options(NamedTuple):
 
 
 def build(layout: Layout, options: Options) -> Core:
-    """Build the core of a layout, at its start."""
+    """Build the core of a layout in its initial state."""
     planner = options.planner
     return Core(
         layout.x_m,
@@ -76,14 +76,14 @@ def build(layout: Layout, options: Options) -> Core:
 
 
 def fork(core: Core, options: Options, memo: dict[int, Any]) -> tuple[Core, Options]:
-    """Copy a core in the middle of a run; a planner written in Python is copied deeply."""
+    """Copy a core during a run; a planner written in Python is deep-copied."""
     code = copy.deepcopy(options.planner.code, memo)
     options = options._replace(planner=options.planner._replace(code=code))
     return core.fork(_conversation(options.planner)), options
 
 
 def to_bytes(core: Core, options: Options) -> bytes:
-    """Save a core: a line of JSON, a pickled planner if it is written in Python, and the rest."""
+    """Save a core: a line of JSON, the pickled planner if it is in Python, and the state."""
     planner = options.planner
     code = b"" if planner.code is None else pickle.dumps(planner.code)
     head = {
@@ -98,12 +98,12 @@ def to_bytes(core: Core, options: Options) -> bytes:
 
 
 def from_bytes(layout: Layout, saved: bytes) -> tuple[Core, Options]:
-    """Build a core and let it go on from what `to_bytes` has saved.
+    """Build a core from bytes saved by `to_bytes`.
 
     Raises
     ------
     ValueError
-        If these are not such bytes, or those of another layout or version.
+        If the bytes are not a saved core, or belong to another layout or version.
     """
     line, _, rest = saved.partition(b"\n")
     try:

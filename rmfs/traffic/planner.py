@@ -1,4 +1,4 @@
-"""Planners in Python: their interface, the state they see, and the questions they may ask.
+"""Path planners in Python: their interface, the state they see, and the questions they may ask.
 
 A planner in Python is a rolling planner: called for all driving robots, it returns a desired path
 for each, and the core grants as much of it as is free. A planner therefore cannot cause a

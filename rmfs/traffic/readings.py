@@ -32,9 +32,10 @@ class Readings:
     def energy(self) -> dict[str, NDArray[Any]]:
         """Energy per robot, up to now, each of shape (R,).
 
-        Since the last reset, in J: `drive_j`, `turn_j`, `lift_j`, `standby_j`, less
-        `recuperated_j` make `used_j`; `charged_j`, and `charging_s`. Since time zero: `initial_j`
-        + `ever_charged_j` - `ever_used_j` = `level_j`.
+        Since the last reset: `drive_j`, `turn_j`, `lift_j`, `standby_j`, `recuperated_j`,
+        `charged_j` and `charging_s`; `used_j` is the sum of the first four minus `recuperated_j`.
+        Since time zero: `initial_j`, `ever_charged_j` and `ever_used_j`; `level_j` is the sum of
+        the first two minus the last. Energies are in J.
 
         Raises
         ------
@@ -44,21 +45,21 @@ class Readings:
         return self._core.energy()
 
     def used_j(self, robot: int) -> float:
-        """Energy drawn by a robot since time zero, J."""
+        """Energy drawn by a robot since time zero, in J."""
         return self._core.used(robot)
 
     def level_j(self, robot: int) -> float:
-        """Energy in the battery of a robot, J."""
+        """Energy in the battery of a robot, in J."""
         return self._core.level(robot)
 
     def heat(self) -> dict[str, NDArray[Any]]:
         """Count visits and standing time of robots that are not idle, since the last reset.
 
-        Per waypoint, shape (N,): `visits`, `waiting_s`, and of these with a pod `loaded_visits`,
-        `loaded_waiting_s`. A row for each waypoint and purpose for which robots were there, shape
-        (M,): `stays_waypoint`, `stays_purpose`, `stays_visits`, `stays_waiting_s`. The purpose is
-        the station a robot is bound for or stands at (on the way to the pod, too), S for storing or
-        fetching a pod otherwise, S + 1 for the rest.
+        Per waypoint, shape (N,): `visits` and `waiting_s`, and the part of them with a pod,
+        `loaded_visits` and `loaded_waiting_s`. Per pair of waypoint and purpose that occurred,
+        shape (M,): `stays_waypoint`, `stays_purpose`, `stays_visits` and `stays_waiting_s`. The
+        purpose is the number of the station for which a robot works, also on its way to the pod; S
+        for storing or fetching a pod otherwise; S + 1 for everything else.
         """
         counted: dict[str, NDArray[Any]] = self._core.heat()
         at, waypoints = counted["stays_waypoint"], len(counted["loaded_visits"])
@@ -67,26 +68,26 @@ class Readings:
         return {"visits": visits, "waiting_s": waiting_s, **counted}
 
     def edges(self) -> dict[str, NDArray[Any]]:
-        """Edges and elevator rides used since the last reset, by their ends.
+        """Edges and elevator rides used since the last reset, by their end points.
 
-        `from_wp`, `to_wp`, `passages`, and of these `loaded_passages` with a pod.
+        The columns are `from_wp`, `to_wp`, `passages`, and `loaded_passages` for those with a pod.
         """
         return self._core.edges()
 
     def trips(self) -> dict[str, NDArray[Any]]:
         """Return the trips finished since the last reset, ordered by their end.
 
-        `robot`, `kind` (`TripKind`), `t0_us`, `t1_us` (a trip to a station ends at its queue
-        zone), `from_wp`, `to_wp`, `loaded`, `distance_m`, `unhindered_s` (lower bound of the
-        time from rest to rest), `energy_j` (0 if energy is not counted).
+        The columns are `robot`, `kind` (`TripKind`), `t0_us`, `t1_us` (a trip to a station ends at
+        its queue zone), `from_wp`, `to_wp`, `loaded`, `distance_m`, `unhindered_s` (lower bound of
+        the time from rest to rest), `energy_j` (0 if energy is not counted).
         """
         return self._core.trips()
 
     def trace(self) -> dict[str, NDArray[Any]]:
-        """Every piece of motion so far, sorted by robot and time.
+        """All pieces of motion so far, sorted by robot and time.
 
-        `robot`, `t0_us`, `t1_us`, `kind` (`Piece`), `from_wp`, `to_wp`, `heading0_rad`,
-        `heading1_rad`, `pod` (carried, -1 without).
+        The columns are `robot`, `t0_us`, `t1_us`, `kind` (`Piece`), `from_wp`, `to_wp`,
+        `heading0_rad`, `heading1_rad`, `pod` (carried, -1 without).
 
         Raises
         ------
@@ -104,13 +105,12 @@ class Readings:
 
         Parameters
         ----------
-        The number returned by the previous call; 0 at first.
-            The number returned by the call before; 0 at first.
+        known
+            The number returned by the previous call; 0 at first.
 
         Returns
         -------
         The columns of `trace`, and the number to pass to the next call.
-            The columns of `trace`, and the number to give next time.
 
         Raises
         ------
@@ -122,9 +122,10 @@ class Readings:
     def counters(self) -> dict[str, float]:
         """Return counters of path planning.
 
-        `plans` (legs), `plan_failures`, `replans`, `refusals` (runs a rolling planner wanted that
-        were not free), `improvements`, `expansions`, `cost_tables`, and wall time, `planning_s`.
-        Where motions can be late: `motions`, `late_motions`, `lateness_s` in all, and `repairs`.
+        They are `plans` (legs), `plan_failures`, `replans`, `refusals` (runs requested by a rolling
+        planner that were not free), `improvements`, `expansions`, `cost_tables`, and the wall time
+        `planning_s`. If motions can be late, also `motions`, `late_motions`, the total
+        `lateness_s`, and `repairs`.
         """
         counts: dict[str, float] = dict(self._core.counters())
         counts["planning_s"] = counts.pop("planning_ns") / 1e9
@@ -143,5 +144,5 @@ class Readings:
         self._core.reset_statistics()
 
     def state_report(self) -> str:
-        """Return one line per robot, for a report when nothing can move any more."""
+        """Return one line per robot, for a report in case no robot can move any more."""
         return self._core.state_report()

@@ -13,12 +13,12 @@ EXPANSION_BUDGET = 50_000
 
 
 class PlannerSettings(NamedTuple):
-    """A planner of the core.
+    """Settings of a path planner of the core.
 
     Attributes
     ----------
     name
-        As in a controllers file.
+        Name of the planner, as in a controllers file.
     parameters
         All its parameters; durations in seconds, switches as 0 and 1.
     seed

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def joined_holds(trace: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Return a trace in which each uninterrupted stand of a robot has one row.
+    """Merge consecutive rows in which a robot stands still into one.
 
     This makes the trace independent of how often it, or statistics, were requested during the run.
 

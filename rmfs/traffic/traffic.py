@@ -1,4 +1,4 @@
-"""The robots of one layout: a thin face of the compiled core."""
+"""The robots of one layout: a thin interface to the compiled core."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ class Traffic(Readings):
     Parameters
     ----------
     layout
-        The warehouse; its stations' common numbering names the queues.
+        The warehouse; queues are named by the common numbering of its stations.
     record_trace
         Whether every piece of motion is kept (see `trace`).
     cost_table_bytes
-        Memory for tables of unhindered times; the least recently used are dropped.
+        Memory for tables of unhindered travel times, in bytes; the least recently used are dropped.
     planner
-        Who plans the ways.
+        Settings of the path planner.
     slow_shares
         Shares of its top speed to which a robot may be slowed down.
 
@@ -64,15 +64,15 @@ class Traffic(Readings):
         self.__dict__.update(_of(build(layout, options), options))
 
     def fork(self, memo: dict[int, Any] | None = None) -> Self:
-        """Copy the traffic: both go on independently, and bit for bit alike with the same commands.
+        """Copy the traffic; with the same commands both continue identically, bit for bit.
 
-        What never changes is shared, and what has been recorded so far; so a copy costs
-        milliseconds. A planner written in Python is copied deeply. `copy.deepcopy` does the same.
+        Constant data and past records are shared, so a copy takes milliseconds. A planner written
+        in Python is deep-copied. `copy.deepcopy` does the same.
 
         Parameters
         ----------
         memo
-            Of the deep copy of which this is a part.
+            Memo of the enclosing deep copy.
         """
         copy = type(self).__new__(type(self))
         core, options = fork(self._core, self._options, {} if memo is None else memo)
@@ -84,7 +84,7 @@ class Traffic(Readings):
         return self.fork(memo)
 
     def to_bytes(self) -> bytes:
-        """Save the traffic as it is, without the layout; a planner written in Python is pickled.
+        """Save the state of the traffic without the layout; a planner in Python is pickled.
 
         Raises
         ------
@@ -95,14 +95,15 @@ class Traffic(Readings):
 
     @classmethod
     def from_bytes(cls, layout: Layout, saved: bytes) -> Self:
-        """Go on from what `to_bytes` has saved, on the same layout.
+        """Restore the traffic from bytes saved by `to_bytes`, on the same layout.
 
-        A planner written in Python is unpickled, which can run any code: only load what you trust.
+        A planner written in Python is unpickled, which can run arbitrary code: load only files that
+        you trust.
 
         Raises
         ------
         ValueError
-            If these are not such bytes, are damaged, or are those of another version or layout.
+            If the bytes are not saved traffic, are damaged, or belong to another version or layout.
         """
         traffic = cls.__new__(cls)
         traffic.__setstate__((layout, saved, {}))
@@ -124,52 +125,52 @@ class Traffic(Readings):
         return self._core.now
 
     def rest_waypoint(self, robot: int) -> int:
-        """Where the robot stands, or where its plan ends."""
+        """Waypoint at which the robot stands, or at which its plan ends."""
         return self._core.rest_waypoint(robot)
 
     def robot_waypoint(self, robot: int) -> int:
-        """Where the robot stands, or the next waypoint at which it stops."""
+        """Waypoint at which the robot stands, or the next one at which it stops."""
         return self._core.next_stop(robot)
 
     def blocked(self) -> list[int]:
-        """Robots that want to drive and have found no way yet."""
+        """Robots that need to drive but have found no path yet."""
         return self._core.blocked()
 
     def travel_times_to(self, waypoint: int, loaded: bool, robot: int = 0) -> NDArray[np.float64]:
-        """Unhindered times from every waypoint to one, from rest to rest, best start heading.
+        """Return unhindered times from every waypoint to one, from rest to rest.
 
         Returns
         -------
-        Seconds, shape (N,); infinite where there is no way.
+        Times in s with the best initial heading, shape (N,); infinite if there is no path.
         """
         kind = int(self._layout.robot_kind[robot])
         return self._core.travel_times_to(waypoint, kind, loaded)
 
     def travel_times_from(self, waypoint: int, loaded: bool, robot: int = 0) -> NDArray[np.float64]:
-        """Unhindered times from one waypoint to every other, from rest to rest, any start heading.
+        """Return unhindered times from one waypoint to every other, from rest to rest.
 
         Returns
         -------
-        Seconds, shape (N,); infinite where there is no way.
+        Times in s with the best initial heading, shape (N,); infinite if there is no path.
         """
         kind = int(self._layout.robot_kind[robot])
         return self._core.travel_times_from(waypoint, kind, loaded)
 
     def plan(self, robot: int) -> list[PlannedMove]:
-        """Pieces of motion a robot will do, from rest to rest, the present one included."""
+        """Return a robot's planned pieces of motion from rest to rest, with the present one."""
         return [PlannedMove(*move) for move in self._core.plan(robot)]
 
     def delay(self, robot: int, by_us: int, *, begun: bool = False) -> bool:
-        """Shift what is left of a robot's plan; the order in which waypoints are used stays.
+        """Postpone the rest of a robot's plan; the sequence in which robots use waypoints is kept.
 
-        Whoever is to use a waypoint after this robot enters it later if need be, and so on.
+        Robots that use a waypoint after this one are postponed in turn if necessary.
 
         Parameters
         ----------
         robot
-            Whose plan.
+            Index of the robot.
         by_us
-            Microseconds, not negative.
+            Delay in microseconds, not negative.
         begun
             Whether motion in progress may be shifted too, as it must be when robots outside the
             simulation are late. Otherwise nothing happens if that would be needed.
@@ -181,14 +182,14 @@ class Traffic(Readings):
         return self._core.delay(robot, by_us, begun)
 
     def clearance(self, robot: int) -> list[int]:
-        """Waypoints of the robot's present or next run, not passed, that it may drive to at once.
+        """Return the next waypoints of the robot's run to which it may drive at once.
 
-        In order; whoever was to use them before has left them.
+        They are in the sequence of the run, and all robots planned to use them earlier have left.
         """
         return self._core.clearance(robot)
 
     def regroup(self, rests: Sequence[tuple[int, float, int] | None]) -> None:
-        """Give up plans, put the robots where they really are, and plan their programs anew.
+        """Discard plans, set robots to their actual positions, and plan their programs anew.
 
         Parameters
         ----------
@@ -206,14 +207,14 @@ class Traffic(Readings):
         self._core.regroup(list(rests))
 
     def hold(self, robot: int, by_us: int) -> int | None:
-        """Let a robot stand still for a while where it next comes to rest: a breakdown.
+        """Simulate a breakdown: let a robot stand still for a while at its next stop.
 
-        Others who are to use a waypoint after it wait; all keep their ways and their order.
+        Robots that are to use a waypoint after it wait; all keep their paths and their sequence.
 
         Returns
         -------
-        When it goes on, in microseconds; None, and nothing has changed, if somebody is already
-        driving who would have to wait: try again a moment later.
+        Time at which it continues, in microseconds. None if a robot that is already driving would
+        have to wait; then nothing is changed, and the call can be repeated a moment later.
         """
         return self._core.hold(robot, by_us)
 
@@ -229,24 +230,24 @@ class Traffic(Readings):
         Parameters
         ----------
         probability
-            Of a motion to be late.
+            Probability that a motion is late.
         least_us, most_us
-            Shortest and longest delay; all between are equally likely.
+            Shortest and longest delay in microseconds, uniformly distributed.
         repair
-            Whether those who are made to wait are planned again, alone or in front of the robot
-            that is late, if that is better for both.
+            Whether robots that are made to wait are replanned, alone or ahead of the late robot, if
+            that is better for both.
         seed
-            What is drawn with: below 2^64.
+            Seed of the draws, below 2^64.
 
         Raises
         ------
         ValueError
-            If the probability or the delays cannot be; nothing has changed then.
+            If the probability or the delays are invalid; then nothing is changed.
         """
         self._core.set_lateness(probability, least_us, most_us, repair, seed)
 
     def reseed_lateness(self, seed: int) -> None:
-        """Draw with another seed from now on; nothing happens if motions are never late."""
+        """Draw with another seed from now on; without effect if motions are never late."""
         self._core.reseed_lateness(seed)
 
     def slow_down(self, robot: int, level: int) -> bool:
@@ -266,41 +267,42 @@ class Traffic(Readings):
         return self._core.change_kind(robot, kind)
 
     def close(self, waypoints: Sequence[int]) -> list[int]:
-        """Close waypoints from now on: nobody enters them until they are opened again.
+        """Close waypoints from now on: no robot enters them until they are reopened.
 
-        Who is on one, or can no longer stop before it, goes on and leaves; whose plan leads there
-        later gets another, or stops before it and waits. A robot that stands there without anything
-        to do stays. Close all waypoints of an elevator to put it out of service.
+        A robot on a closed waypoint, or that can no longer stop before one, continues and leaves
+        it. A robot whose plan leads there later gets another plan, or stops before it and waits. An
+        idle robot on a closed waypoint stays. Close all waypoints of an elevator to put it out of
+        service.
 
         Parameters
         ----------
         waypoints
-            Which; may be closed already.
+            The waypoints; they may already be closed.
 
         Returns
         -------
-        Robots that still drive through one: they cannot stop, or every place where they could is
-        needed by others.
+        Robots that still drive through a closed waypoint because they cannot stop, or because other
+        robots need every place where they could.
 
         Raises
         ------
         ValueError
-            If a waypoint does not exist; nothing has changed then.
+            If a waypoint does not exist; then nothing is changed.
         """
         return self._core.close(list(waypoints))
 
     def reopen(self, waypoints: Sequence[int]) -> None:
-        """Open closed waypoints again.
+        """Reopen closed waypoints.
 
         Raises
         ------
         ValueError
-            If a waypoint does not exist; nothing has changed then.
+            If a waypoint does not exist; then nothing is changed.
         """
         self._core.reopen(list(waypoints))
 
     def cut_off(self) -> CutOff:
-        """Say what cannot be served with what is closed: robots bound there would wait."""
+        """Return what closed waypoints cut off; robots bound for it would wait."""
         return CutOff(*self._core.cut_off())
 
     def count_energy(
@@ -317,32 +319,34 @@ class Traffic(Readings):
         Parameters
         ----------
         model
-            Eleven numbers in the order of `Model` in src/energy.rs: kg of a robot, rolling
-            resistance per weight, share that turning parts add to inertia, efficiency of the drive,
-            share of the work of braking that comes back, torque against turning per weight (m),
-            radius of gyration (m), height (m) and efficiency of a lift, W without and with a pod.
+            Eleven numbers in the order of `Model` in src/energy.rs: mass of a robot (kg), rolling
+            resistance per weight, share that rotating parts add to inertia, efficiency of the
+            drive, share of braking energy that is recuperated, resistance to turning per weight
+            (m), radius of gyration (m), height (m) and efficiency of a lift, standby power without
+            and with a pod (W).
         pods_kg
             Mass of each pod with its stock, shape (P,).
         initial_j
-            What is in each battery, shape (R,). Default: 0.
+            Initial energy in each battery in J, shape (R,). Default: 0.
         battery
-            Capacity (J), and the share of it from which the power of a charger falls.
+            Capacity (J), and the level, as a share of it, above which the power of a charger falls.
         power_w
-            What each waypoint gives to a robot that stands there, shape (N,). Default: nothing.
+            Power in W that each waypoint supplies to a robot that stands there, shape (N,).
+            Default: 0.
         """
         level = [0.0] * self._layout.robots if initial_j is None else list(initial_j)
         self._core.count_energy(list(model), list(pods_kg), battery, list(power_w), level)
 
     def set_pod_mass(self, pod: int, kg: float) -> None:
-        """Say what a pod weighs with its stock from now on."""
+        """Set the mass of a pod with its stock, in kg, from now on."""
         self._core.set_pod_mass(pod, kg)
 
     def set_power(self, waypoint: int, watts: float) -> None:
-        """Let a waypoint give another power to a robot that stands there."""
+        """Set the power in W that a waypoint supplies to a robot that stands there."""
         self._core.set_power(waypoint, watts)
 
     def exchange_battery(self, robot: int, level_j: float) -> None:
-        """Give a robot that stands still another battery; the difference counts as charged."""
+        """Exchange the battery of a robot that stands still; the gain counts as charged."""
         self._core.exchange_battery(robot, level_j)
 
 

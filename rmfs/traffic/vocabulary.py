@@ -16,16 +16,16 @@ class Step(IntEnum):
 
 
 class EventKind(IntEnum):
-    """What traffic reports; the value of the event is named in brackets."""
+    """Kinds of events of traffic, with the meaning of each event's value in brackets."""
 
     ARRIVED = 0
-    """A drive ended (waypoint)."""
+    """The robot has finished a drive (waypoint)."""
     LIFT_STARTED = 1
     """The robot stands beneath the pod and lifts it (pod)."""
     LIFTED = 2
-    """The pod is up (pod)."""
+    """The robot has lifted the pod (pod)."""
     DEPARTED = 3
-    """A plan that leaves a storage place was accepted (the waypoint left)."""
+    """A plan by which the robot leaves a storage place was accepted (the waypoint left)."""
     QUEUE_ENTERED = 4
     """The robot reached a queue zone (station); not reported at present."""
     AT_HEAD = 5
@@ -33,9 +33,9 @@ class EventKind(IntEnum):
     SET_DOWN_STARTED = 6
     """The robot starts to set its pod down (pod)."""
     SET_DOWN = 7
-    """The pod stands (pod)."""
+    """The robot has set the pod down (pod)."""
     IDLE = 8
-    """The program is done (waypoint)."""
+    """The robot has completed its program (waypoint)."""
 
 
 class Piece(IntEnum):
@@ -50,7 +50,7 @@ class Piece(IntEnum):
 
 
 class TripKind(IntEnum):
-    """What a trip was for."""
+    """Purpose of a trip."""
 
     TO_POD = 0
     TO_STATION = 1
@@ -79,13 +79,13 @@ class PlannedMove(NamedTuple):
 
 
 class CutOff(NamedTuple):
-    """What cannot be served while waypoints are closed.
+    """Storage places and stations that closed waypoints cut off.
 
     Attributes
     ----------
     storage
-        Storage places (waypoints) that are closed, or from or to which no pod can be carried to or
-        from one of the stations left.
+        Storage places (waypoints) that are closed, or that a pod cannot be carried to or from for
+        one of the remaining stations.
     stations
         Stations (numbers) that are closed or that no pod can reach or leave.
     """

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rmfs.trips.streams import Command, TripStream
 
 STALL_S = 1800.0
-"""Driving is given up if nothing has happened for this long while robots wait for a path."""
+"""Time without events, while robots wait for a path, after which driving is given up, in s."""
 
 
 @dataclass(frozen=True)
@@ -52,12 +52,12 @@ class TripRun:
 
     @property
     def trips_per_h(self) -> float:
-        """Trips finished per hour: to a pod, to a station, to a storage place, to a point."""
+        """Finished trips per hour: to pods, stations, storage places and points."""
         return len(self.delays_s) / (self.end_s - self.warmup_s) * 3600.0
 
     @property
     def delays_s(self) -> NDArray[np.float64]:
-        """Return how much longer each trip took than without other robots."""
+        """Return how much longer each trip took than without other robots, in s."""
         trips = self.traffic.trips()
         taken: NDArray[np.float64] = (trips["t1_us"] - trips["t0_us"]) / 1e6
         unhindered: NDArray[np.float64] = trips["unhindered_s"]

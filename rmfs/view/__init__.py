@@ -1,6 +1,6 @@
-"""The browser viewer: replays of recorded runs, and single files to send.
+"""The browser viewer, which replays recorded runs, shows live ones, and exports single files.
 
-`scene` turns a run into the arrays a page draws, `container` is how they travel, `server` serves
-them on loopback, `export` writes one file. The page is written in TypeScript (`web`); its tracked
-build (`static`) is what is served, so that nobody needs Node to look at a run.
+`scene` turns a run into the arrays that the page draws, `container` packs them, `server` serves
+them on the loopback interface, and `export` writes a single file. The page is written in TypeScript
+(`web`); its tracked build (`static`) is served, so that users do not need Node.
 """

@@ -1,4 +1,4 @@
-"""What the servers of recorded runs and of a live one answer."""
+"""The servers of recorded runs and of a live run."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def replay_server(
 ) -> Server:
     """Return a server of recorded runs, side by side if there are several.
 
-    With a starter, its page has a form that starts runs; without runs, that form is all it has.
+    With a starter, the page has a form that starts runs; without runs, it has only that form.
 
-    A run is read each time it is asked for, so that a page loaded anew shows what is there now;
-    one that cannot be read is answered with the reason.
+    A run is read again for each request, so that a reloaded page shows its present state. If it
+    cannot be read, the answer is the reason.
     """
     session = {"runs": len(runs), "live": False, "form": starter is not None}
     gets = {f"/runs/{number}": _scene(run) for number, run in enumerate(runs)}
@@ -41,7 +41,7 @@ def replay_server(
 
 
 def live_server(run: LiveRun, port: int = 0) -> Server:
-    """Return a server of a run that happens now."""
+    """Return a server of a live run."""
     session = {"runs": 1, "live": True, "form": False}
     problems = {name: one for name, one in forms.problems().items() if name not in FIXED}
 

@@ -1,4 +1,4 @@
-"""What pages ask of a run, and what they are known by: numbers and names within bounds."""
+"""Requests of pages to a live run, with validation of their numbers and names."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ if TYPE_CHECKING:
     from rmfs.control.choices import Choice
 
 MOST_ROWS = 1 << 48
-"""More than any trace has."""
+"""Maximum number of rows, more than any trace has."""
 
 LONGEST_NAME = 64
-"""Characters of the name under which a page is known."""
+"""Maximum length of the name of a page."""
 
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """What a page knows already: rows of the trace, and events.
+    """The number of rows of the trace, and of events, that a page already has.
 
     Raises
     ------
     InputError
-        If these are no numbers of rows.
+        If these are not valid numbers of rows.
     """
 
     motion: int = 0
@@ -45,26 +45,26 @@ class Known:
 
 @dataclass(eq=False)
 class Request:
-    """Something the run's thread does for a page; if it fails, the page receives the error."""
+    """A task that the run's thread does for a page; if it fails, the page receives the error."""
 
     done: threading.Event = field(default_factory=threading.Event)
     error: Exception | None = None
 
     def wait(self) -> None:
-        """Wait until it is done; raise the error if it failed."""
+        """Wait until the task is done; raise its error if it failed."""
         self.done.wait()
         if self.error is not None:
             raise self.error
 
     def fail(self, error: Exception) -> None:
-        """Give it up."""
+        """Mark the task as failed."""
         self.error = error
         self.done.set()
 
 
 @contextmanager
 def concern_of(request: Request) -> Iterator[None]:
-    """Do what a page has asked for: an error is passed to the page and does not stop the run."""
+    """Execute a page's request; an error is passed to the page and does not stop the run."""
     try:
         yield
     except Exception as error:
@@ -74,7 +74,7 @@ def concern_of(request: Request) -> Iterator[None]:
 
 @dataclass(eq=False)
 class News(Request):
-    """What a page asks for, and what the run's thread copied for it."""
+    """A request for news, and the data that the run's thread copied for it."""
 
     known: Known = field(default_factory=Known)
     motion: dict[str, NDArray[Any]] = field(default_factory=dict)
@@ -84,18 +84,18 @@ class News(Request):
 
 @dataclass(eq=False)
 class Exchange(Request):
-    """A controller that a page wants to be installed."""
+    """A request to install another controller."""
 
     choice: Choice = field(kw_only=True)
 
 
 def page_name(page: object) -> str:
-    """Return the name of a page, if it is one.
+    """Validate and return the name of a page.
 
     Raises
     ------
     InputError
-        If it is not.
+        If it is not a valid name.
     """
     if not isinstance(page, str) or not 0 < len(page) <= LONGEST_NAME:
         raise InputError(f"page: must be a name of at most {LONGEST_NAME} characters")

@@ -1,4 +1,4 @@
-"""What `rmfs view` and `rmfs run --live` do: serve recorded runs, or one that happens now."""
+"""Implementation of `rmfs view` and `rmfs run --live`: serving recorded runs or a live one."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ if TYPE_CHECKING:
 MOST_RUNS = 2
 
 PAGE_PATIENCE_S = 10.0
-"""Wall time a run waits for the page that was opened to watch it."""
+"""Wall time that a run waits for the page opened to watch it, in s."""
 
 FAREWELL_S = 3.0
-"""Wall time the pages have to see how a run ended."""
+"""Wall time for which pages can still load the end of a run, in s."""
 
 
 def serve_runs(paths: list[Path], *, port: int = 0, open_browser: bool = True) -> None:
-    """Serve runs on loopback until interrupted; without any, the form that starts one.
+    """Serve runs on loopback until interrupted; without runs, serve the form that starts one.
 
     Raises
     ------
     InputError
-        If a run cannot be shown, or the port is taken: noticed before anything is served.
+        If a run cannot be shown, or the port is in use; this is checked before serving.
     """
     runs = _loaded(paths)
     for run in runs:
@@ -62,23 +62,23 @@ def watched(
     open_browser: bool = True,
     await_page: bool = False,
 ) -> Iterator[LiveRun]:
-    """Serve a run on loopback while it happens; yields what is to observe it.
+    """Serve a live run on loopback; yields the observer to pass to the simulation.
 
     Parameters
     ----------
     inputs
         Layout, scenario and controllers as the user named them.
     title
-        What the page calls the run.
+        Title of the run on the page.
     speed
-        Simulated seconds per wall second to begin with; default: as fast as it goes.
+        Initial speed in simulated seconds per wall second. Default: as fast as possible.
     await_page
-        Whether to wait a moment for a page before the run begins, even if none was opened here.
+        Whether to wait a moment for a page before the run begins, even if this call opens none.
 
     Raises
     ------
     InputError
-        If the port is taken, or the speed is not positive.
+        If the port is in use, or the speed is not positive.
     """
     live = LiveRun(inputs, title=title, speed=speed)
     with live_server(live, port) as server:
@@ -96,7 +96,7 @@ def watched(
 
 
 def export_runs(paths: list[Path], target: Path) -> None:
-    """Write runs into one file; raises as `serve_runs` does."""
+    """Export runs to one file; raises errors as `serve_runs` does."""
     export(_loaded(paths), target)
 
 

@@ -1,7 +1,7 @@
-"""The container in which a scene travels to the page: a JSON header and arrays behind it.
+"""The binary container in which a scene is sent to the page: a JSON header and arrays.
 
-Eight bytes of magic, the length of the header (8 bytes, little-endian), the header, and the arrays,
-each beginning at a multiple of eight bytes, so that the page uses them where they lie.
+It consists of eight magic bytes, the length of the header (8 bytes, little-endian), the header, and
+the arrays, each starting at a multiple of eight bytes so that the page can use them in place.
 """
 
 from __future__ import annotations
@@ -21,16 +21,17 @@ FORMAT = "rmfs-scene/1"
 MIME = "application/vnd.rmfs.scene"
 
 TYPES = {"|u1": "u1", "<i4": "i4", "<f4": "f4", "<f8": "f8"}
-"""Element types a page knows, by NumPy's name."""
+"""Supported element types, by NumPy's name."""
 
 
 def pack(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> bytes:
-    """Put a header and arrays into one container.
+    """Pack a header and arrays into one container.
 
     Parameters
     ----------
     header
-        What JSON can say; `format`, `size` and `arrays` (type, offset, length of each) are added.
+        Values that JSON can represent; `format`, `size` and `arrays` (type, offset and length of
+        each) are added.
     arrays
         One-dimensional arrays of unsigned bytes, 32-bit integers, and 32- or 64-bit reals.
     """
@@ -63,7 +64,7 @@ def unpack(content: bytes) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     Raises
     ------
     ValueError
-        If it is none, or cut off.
+        If the bytes are not a container, or it is truncated.
     """
     if content[:8] != MAGIC:
         raise ValueError("not a scene")

@@ -1,4 +1,4 @@
-"""One self-contained HTML file with a run, or two, to send to somebody."""
+"""Export of one or two runs to a self-contained HTML file, which can be shared."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def export(runs: Sequence[RunFolder], path: Path) -> None:
-    """Write the page with the scenes of some runs into one file.
+    """Write the page with the scenes of one or two runs to one file.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""The form that starts a run: what may be chosen, from the parameters as they are declared.
+"""The data of the form that starts a run, derived from the declared parameters.
 
-A parameter is declared once, in a model of layout, scenario or rule; its name, meaning, bounds and
-default reach the page as JSON Schema.
+A parameter is declared once, in the model of a layout, scenario or rule; its name, meaning, bounds
+and default are sent to the page as JSON Schema.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ def names() -> dict[str, list[str]]:
 
 
 def shipped(part: str, name: str) -> str:
-    """Return a name if something of that name is shipped: a page may name no files.
+    """Return a name after checking that it is shipped, as a page may not name files.
 
     Raises
     ------
     InputError
-        If nothing is.
+        If nothing of that name is shipped.
     """
     known = instances.names(PARTS[part])
     if name not in known:
@@ -50,18 +50,18 @@ def shipped(part: str, name: str) -> str:
 
 
 def form(chosen: dict[str, str]) -> dict[str, Any]:
-    """Return what a form shows when these files are chosen.
+    """Return the contents of the form for the chosen files.
 
     Parameters
     ----------
     chosen
-        Layout, scenario and controllers by name; default of each: `default`.
+        Names of layout, scenario and controllers. Default of each: `default`.
 
     Returns
     -------
     dict
-        `names`: what could be chosen; `chosen`; per part the `schema` and the `values` of the file,
-        and the problems with their rules.
+        `names`: the possible choices; `chosen`: the present ones; for each part, the `schema` and
+        the `values` of its file; and the decision problems with their rules.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def form(chosen: dict[str, str]) -> dict[str, Any]:
 
 
 def problems() -> dict[str, Any]:
-    """Return every decision problem with its rules: what each does, and its parameters."""
+    """Return every decision problem with its rules, their descriptions and their parameters."""
     return {
         str(problem): {
             "meaning": problem.meaning,

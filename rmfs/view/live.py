@@ -1,8 +1,8 @@
-"""A run that is watched while it happens: where its thread meets those of the pages.
+"""A live run, and the exchange of requests and data between its thread and those of its pages.
 
-Only the run's own thread touches the simulation. Pages leave their questions and wishes here; the
-run looks here between two instants, and only if somebody has asked for something. What a page wants
-to know is copied in the run's thread and packed in the page's.
+Only the run's own thread accesses the simulation. Pages leave their requests here, and the run
+processes them between two instants. Data for a page are copied in the run's thread and packed in
+the page's thread.
 """
 
 from __future__ import annotations
@@ -31,38 +31,39 @@ if TYPE_CHECKING:
     from rmfs.simulation.kernel import Kernel
 
 ABSENT_S = 90.0
-"""A page that has not asked for so long is gone; one that nobody sees may ask once a minute."""
+"""Time without a request after which a page counts as gone, in s; a hidden page may ask only once a
+minute."""
 
 BETWEEN_NEWS_S = 0.15
-"""Processor time that a run which goes as fast as it can has for itself between two answers."""
+"""Processor time that a run without a speed limit gets between two answers, in s."""
 
 LONGEST_WAIT_S = 1.0
-"""Wall time after which a page is answered all the same."""
+"""Wall time after which a page is answered in any case, in s."""
 
 MOST_PAGES = 1000
-"""Pages of one run: more than one browser opens."""
+"""Maximum number of pages of one run."""
 
 FIXED = frozenset({Problem.PP})
-"""Problems whose controllers cannot be exchanged: the robots' plans are theirs."""
+"""Problems whose controllers cannot be exchanged, as they own the robots' plans."""
 
 
 class LiveRun:
-    """Follows a run for pages, and passes on what they want of it.
+    """A live run: provides pages with its state, and applies their requests.
 
     Parameters
     ----------
     names
         Layout, scenario and controllers as the user named them.
     title
-        What the page calls the run.
+        Title of the run on the page.
     speed
-        Simulated seconds per wall second at the beginning, and whenever no page is left that said
-        otherwise; by default as fast as it goes.
+        Simulated seconds per wall second at the beginning, and when no page with another request is
+        left. Default: as fast as possible.
 
     Attributes
     ----------
     events
-        What happens; to be handed to `rmfs.simulate`.
+        The observer to pass to `rmfs.simulate`.
     """
 
     def __init__(self, names: Mapping[str, str], *, title: str, speed: float | None = None) -> None:
@@ -86,7 +87,7 @@ class LiveRun:
     def drive(
         self, simulation: Kernel, progress: Callable[[float, float], None] | None = None
     ) -> None:
-        """Let a run go on as the pages want it; what is asked at its end is answered."""
+        """Advance a run as the pages request, and answer their requests at its end."""
         with self._meeting:
             self._simulation = simulation
             self._brake(on=True)
@@ -98,7 +99,7 @@ class LiveRun:
         return self.limit_us(now_us) if self._braking else NEVER_US
 
     def limit_us(self, now_us: int) -> int:
-        """Latest time that may be simulated now; waits as long as a page wants."""
+        """Return the latest time that may be simulated now; wait while the run is paused."""
         with self._meeting:
             while True:
                 self._attend(now_us)
@@ -161,7 +162,7 @@ class LiveRun:
     # --- the pages' threads ---------------------------------------------------------------------
 
     def scene(self) -> bytes:
-        """Pack everything so far, the warehouse included."""
+        """Pack the scene of the whole run so far, including the warehouse."""
         with self._meeting:
             self._visited = True
             self._meeting.notify_all()
@@ -188,7 +189,7 @@ class LiveRun:
         )
 
     def news(self, known: Known, page: str = "") -> bytes:
-        """Pack what has come since; a row of motion takes the place of what was known from it on.
+        """Pack the news; a row of motion replaces what the page knew from its time on.
 
         Parameters
         ----------
@@ -208,14 +209,14 @@ class LiveRun:
         )
 
     def control(self, wish: Table) -> None:
-        """Pause, step or go on: `{"do": "pause" | "step" | "run", "by_s": ..., "speed": ...}`.
+        """Pause, step or resume: `{"do": "pause" | "step" | "run", "by_s": ..., "speed": ...}`.
 
-        `page` may say who wishes so: what comes late from a closed page counts for nothing.
+        `page` may name the sender, so that late requests from a closed page are ignored.
 
         Raises
         ------
         InputError
-            If that is not what is wished for.
+            If the request is invalid.
         """
         by_s, speed = float(wish.get("by_s", 0)), wish.get("speed")
         speed = None if speed is None else float(speed)
@@ -234,17 +235,17 @@ class LiveRun:
             self._disturb()
 
     def exchange(self, problem: str, table: Table) -> None:
-        """Have another controller installed at the instant the run has reached.
+        """Install another controller at the present instant of the run.
 
         Parameters
         ----------
         table
-            As in a controllers file: `name`, and parameters.
+            Table as in a controllers file: `name`, and parameters.
 
         Raises
         ------
         InputError
-            If there is no such rule, it does not go with the others, or the run has ended.
+            If there is no such rule, it is incompatible with the others, or the run has ended.
         """
         if problem not in set(Problem) - FIXED:
             raise InputError(f"{problem}: cannot be exchanged while a run goes on")
@@ -261,14 +262,14 @@ class LiveRun:
         wish.wait()
 
     def leave(self, page: str) -> None:
-        """Take note that a page was closed: the run goes on as if it had never been there."""
+        """Record that a page was closed, and drop its requests for pace."""
         with self._meeting:
             if page_name(page) in self._pages or len(self._left) < MOST_PAGES:
                 self._left.add(page)
                 self._leave(page)
 
     def close(self, reason: str) -> None:
-        """Answer what is asked, and say from now on that nothing more comes."""
+        """Answer pending requests, and from now on report that the run has ended."""
         with self._meeting:
             if self._ended:
                 return
@@ -282,12 +283,12 @@ class LiveRun:
             self._meeting.notify_all()
 
     def await_page(self, patience_s: float) -> None:
-        """Wait until a page asks for the run, but not for long."""
+        """Wait a limited time until a page requests the run."""
         with self._meeting:
             self._meeting.wait_for(lambda: self._visited, patience_s)
 
     def await_farewell(self, patience_s: float) -> None:
-        """Give the pages that are there a moment to see the end."""
+        """Give open pages a moment to load the end of the run."""
         end_s = time.monotonic() + patience_s
         # a page that is still being built has not said yet that it is there
         while (self._pages or (self._visited and not self._left)) and time.monotonic() < end_s:

@@ -1,4 +1,4 @@
-"""How fast a run that is watched may go: as fast as it can, at a speed, in steps, or not at all."""
+"""The pace of a live run: as fast as possible, at a given speed, in steps, or paused."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from rmfs.errors import InputError
 from rmfs.simulation.agenda import NEVER_US
 
 QUANTUM_S = 0.02
-"""Wall time by which a run that is held back goes on at a time."""
+"""Wall time between two advances of a run with limited speed, in s."""
 
 LAGGING_S = 0.5
-"""A run that is behind by more wall time than this does not hurry to make up for it."""
+"""Lag in wall time, in s, beyond which a run does not try to catch up."""
 
 FASTEST = 1e6
-"""Simulated seconds per wall second; whoever wants more wants no limit."""
+"""Maximum speed limit in simulated seconds per wall second; higher means no limit."""
 
 LONGEST_STEP_S = 1e9
-"""Simulated time of one step: 30 years."""
+"""Maximum simulated time of one step, in s (30 years)."""
 
 
 class Pace:
-    """Says up to which simulated time a run may go on.
+    """Determines up to which simulated time a run may advance.
 
     Parameters
     ----------
     speed
-        Simulated seconds per wall second; by default as fast as it goes.
+        Simulated seconds per wall second. Default: as fast as possible.
 
     Raises
     ------
@@ -45,24 +45,24 @@ class Pace:
 
     @property
     def is_free(self) -> bool:
-        """Whether nothing holds the run back."""
+        """Whether the run is neither paused nor limited in speed."""
         return self.speed is None and not self.paused
 
     def run(self, speed: float | None) -> None:
-        """Go on, at a speed or as fast as it goes."""
+        """Resume, at a given speed or as fast as possible."""
         _check(speed)
         self.speed, self.paused = speed, False
         self._since = self._until_us = None
         self._one_event = False
 
     def pause(self) -> None:
-        """Stay where it is."""
+        """Pause the run."""
         self.paused = True
         self._until_us = None
         self._one_event = False
 
     def step(self, now_us: int, by_s: float = 0.0) -> None:
-        """Go on by so much simulated time, or to the next event if that is 0, and pause there."""
+        """Advance by some simulated time (0: to the next event), then pause."""
         if not 0 <= by_s <= LONGEST_STEP_S:
             raise InputError(f"step {by_s}: must be 0 to {LONGEST_STEP_S:.0f} seconds")
         self.pause()
@@ -72,16 +72,16 @@ class Pace:
             self._one_event = True
 
     def let_go(self) -> None:
-        """Go on as in the beginning: nobody watches any more."""
+        """Resume at the initial speed, as no page is left."""
         self.run(self._usual)
 
     def limit_us(self, now_us: int, wall_s: float) -> int | None:
-        """Up to which simulated time the run may go now; nothing if it has to wait.
+        """Return the simulated time to which the run may advance now; None if it must wait.
 
         Parameters
         ----------
         wall_s
-            Time on a clock that never goes back.
+            Time on a monotonic clock, in s.
         """
         if self._one_event:
             self._one_event = False
@@ -98,7 +98,7 @@ class Pace:
         return paid_us if paid_us >= now_us + self._quantum_us(self.speed) else None
 
     def wait_s(self, now_us: int, wall_s: float) -> float | None:
-        """How long to wait at most before `limit_us` may say something else; nothing: for ever."""
+        """Return the wall time in s until `limit_us` may change; None: never by itself."""
         if self.paused or self.speed is None:
             return None
         missing_us = (

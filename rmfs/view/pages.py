@@ -1,4 +1,4 @@
-"""The built page: its files, as they are served and as they go into one file."""
+"""The files of the built page, to be served or combined into one file."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ FILES = {
     "/app.js": ("app.js", "text/javascript; charset=utf-8"),
     "/app.css": ("app.css", "text/css; charset=utf-8"),
 }
-"""What is served, by path: nothing else is."""
+"""The only files that are served, by path."""
 
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
-"""Content security policy of the served page: nothing from anywhere else."""
+"""Content security policy of the served page, which permits no external content."""
 
 
 def content(name: str) -> bytes:

@@ -1,4 +1,4 @@
-"""What the form shows of a layout before a run is started: the warehouse as it would be built."""
+"""The preview of a layout that the form shows before a run is started."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""What a page draws: a run's layout, motion and events as a header and flat arrays.
+"""The scene that a page draws: layout, motion and events of a run, as a header and flat arrays.
 
-Nothing is sampled: the page has every piece of motion and computes positions by the same
+Nothing is sampled: the page gets every piece of motion, and computes positions with the same
 kinematics as the traffic core.
 """
 
@@ -78,14 +78,14 @@ def head(
     details: list[str],
     sku_names: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """Return the header of a scene: its texts and single numbers.
+    """Return the header of a scene, with its texts and scalar values.
 
     Parameters
     ----------
     details
-        The texts that the column `detail` of the events points at.
+        The texts to which the column `detail` of the events refers.
     sku_names
-        Names of all SKUs; none if they are the numbers.
+        Names of all SKUs; empty if they are the numbers.
     """
     return {
         "title": title,
@@ -138,7 +138,7 @@ def _of_visits(layout: Layout) -> dict[str, str]:
 
 
 def describe(layout: Layout, sku_space: NDArray[np.float64]) -> Arrays:
-    """Return the layout as arrays; `sku_space` has the space units of one unit of each SKU."""
+    """Return the layout as arrays; `sku_space` gives the space units of one unit of each SKU."""
     return {
         "x_m": layout.x_m.astype(np.float64),
         "y_m": layout.y_m.astype(np.float64),
@@ -157,9 +157,9 @@ def describe(layout: Layout, sku_space: NDArray[np.float64]) -> Arrays:
 
 
 def motion(trace: Mapping[str, NDArray[Any]], robots: int) -> Arrays:
-    """Return a trace, sorted by robot and time, as arrays: rows of robot r begin at start[r].
+    """Return a trace, sorted by robot and time, as arrays; the rows of robot r begin at start[r].
 
-    A row ends where the robot's next one begins; `motion.end_us` is the end of the last ones.
+    A row ends when the robot's next row begins; `motion.end_us` is the end of the last rows.
     """
     start = np.searchsorted(trace["robot"], np.arange(robots + 1)).astype(np.int32)
     end = np.zeros(robots)

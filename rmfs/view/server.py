@@ -1,13 +1,12 @@
-"""The server behind the page: loopback only, and nothing but the page and its runs.
+"""The server of the page and its runs, on the loopback interface only.
 
-What can be asked for is a fixed table of paths: none of them is looked up in a file system, so no
-path leads out of the run folder. Requests that name another host (a page elsewhere that had its
-name point here) or come from another origin are refused. What changes something takes a token,
-which is in the address that is printed: others on this machine, who can reach the port, do not have
-it; they may look, but no run waits for them. What a page elsewhere has its browser ask for is
-refused, too, as browsers tell where a request comes from (`Sec-Fetch-Site`, `Origin`).
-Connections are few, requests small, and who takes long to send one is hung up on. Whatever goes
-wrong with a request is answered; it ends nothing.
+Valid paths are a fixed table and are never looked up in the file system, so no path leads out of
+the run folder. Requests that name another host (DNS rebinding) or come from another origin
+(`Sec-Fetch-Site`, `Origin`) are refused. Requests that change something need a token, which is part
+of the printed address. Other users of the machine can reach the port but do not have the token:
+they can watch, but no run waits for them. The number of connections and the size of requests are
+limited, and slow clients are disconnected. An error in a request is answered and does not affect
+other requests.
 """
 
 from __future__ import annotations
@@ -33,19 +32,19 @@ if TYPE_CHECKING:
 
 HOST = "127.0.0.1"
 LONGEST_REQUEST = 1_000_000
-"""Bytes a request may bring along."""
+"""Maximum size of a request body in bytes."""
 MOST_CONNECTIONS = 64
-"""Connections that may be open at once; a page takes six at most. Those that ask for nothing give
-way to new ones."""
+"""Maximum number of open connections; a page uses at most six. Idle connections are closed in
+favour of new ones."""
 PATIENCE_S = 20.0
-"""Wall time a connection has to send a request, or to say nothing."""
+"""Wall time after which a connection that has not sent a request is closed, in s."""
 
 JSON = "application/json"
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What a request is answered with."""
+    """The answer to a request."""
 
     body: bytes
     kind: str = JSON
@@ -54,29 +53,29 @@ class Answer:
 
     @classmethod
     def json(cls, value: object, status: HTTPStatus = HTTPStatus.OK) -> Answer:
-        """Answer with a value as JSON."""
+        """Create an answer from a value, as JSON."""
         return cls(json.dumps(value).encode(), JSON, status)
 
     @classmethod
     def scene(cls, packed: bytes) -> Answer:
-        """Answer with a container."""
+        """Create an answer from a container."""
         return cls(packed, container.MIME)
 
 
 class Server(ThreadingHTTPServer):
-    """Serves the page, and what it asks for, on loopback.
+    """Serves the page and its requests on the loopback interface.
 
     Parameters
     ----------
     get, post
-        What is answered, by path: functions of the query and of the JSON sent.
+        Handlers by path: functions of the query, or of the JSON sent.
     port
-        Default any free one.
+        Port to use. Default: any free one.
 
     Attributes
     ----------
     token
-        Whoever has it may change something.
+        Token that permits requests that change something.
     """
 
     daemon_threads = True
@@ -101,12 +100,12 @@ class Server(ThreadingHTTPServer):
 
     @property
     def url(self) -> str:
-        """Where the page is, for those who may change something."""
+        """Address of the page, including the token."""
         return f"http://{HOST}:{self.server_port}/?token={self.token}"
 
     @property
     def cookie(self) -> str:
-        """Name of the cookie with the token: cookies of a host are those of all its ports."""
+        """Name of the cookie with the token; it contains the port, as ports share cookies."""
         return f"rmfs-{self.server_port}"
 
     def process_request(self, request: Any, client_address: Any) -> None:
@@ -127,7 +126,7 @@ class Server(ThreadingHTTPServer):
         super().process_request(request, client_address)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Serve a connection, and forget it."""
+        """Serve a connection, then remove it from the list."""
         try:
             super().process_request_thread(request, client_address)
         finally:
@@ -136,7 +135,7 @@ class Server(ThreadingHTTPServer):
                 self._reading.pop(request, None)
 
     def reads(self, request: socket.socket, *, over: bool = False) -> None:
-        """Take note that a request is awaited on a connection, or has come."""
+        """Record that a request is awaited on a connection, or has arrived."""
         with self._lock:
             if over:
                 self._reading.pop(request, None)
@@ -144,7 +143,7 @@ class Server(ThreadingHTTPServer):
                 self._reading[request] = time.monotonic()
 
     def service_actions(self) -> None:
-        """Hang up on those who take long to send a request; called twice a second."""
+        """Disconnect clients that take too long to send a request; called twice a second."""
         limit = time.monotonic() - PATIENCE_S
         with self._lock:
             slow = [request for request, since in self._reading.items() if since < limit]

@@ -1,4 +1,4 @@
-"""Starting runs from a form: each is a process of its own, watched on a page of its own."""
+"""Starting runs from a form, each as a separate process with a page of its own."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
     from rmfs.config import Table
 
 MOST_RUNS = 4
-"""So many runs that were started here may go on at once."""
+"""Maximum number of simultaneous runs started from the form."""
 
 PATIENCE_S = 60.0
 
 
 class Starter:
-    """Starts runs as `rmfs run --live` does, and stops those that still go on when it is closed.
+    """Starts runs as `rmfs run --live` does, and stops unfinished ones when it is closed.
 
     Parameters
     ----------
     results
-        Folder below which the run folders are made.
+        Folder in which the run folders are created.
     """
 
     def __init__(self, results: Path = Path("results")) -> None:
@@ -44,13 +44,13 @@ class Starter:
         ----------
         wish
             `layout`, `scenario`, `controllers` (shipped names), `seed`, `out` (name of the run
-            folder), `speed` (nothing: as fast as it goes), `trace`, and `set`: values by key, such
-            as `{"layout.robots": 16}`.
+            folder), `speed` (None: as fast as possible), `trace`, and `set`: values by key, such as
+            `{"layout.robots": 16}`.
 
         Raises
         ------
         InputError
-            If something of that is wrong, or too many runs go on.
+            If a value is invalid, or too many runs are in progress.
         """
         arguments = _arguments(wish, self._results)
         with self._lock:
@@ -68,7 +68,7 @@ class Starter:
         return _address(run)
 
     def close(self) -> None:
-        """Stop the runs that still go on; none leaves a half-written folder."""
+        """Stop unfinished runs; none leaves a half-written folder."""
         for run in self._running:
             if run.poll() is None:
                 run.terminate()  # as Ctrl-C: what is half-written goes

@@ -1,8 +1,8 @@
-"""The colours of the page, on a light floor and on a dark one.
+"""The colours of the page, for a light and a dark theme.
 
-Stations, the tasks of robots and delay are distinguished by hue and lightness: stations are deeper
-than robots in the light and paler in the dark, and delay has a scale of its own. A test holds that
-they stay apart for the common kinds of colour blindness, and stand out from the floor.
+Stations, tasks of robots and delay are distinguished by hue and lightness: stations are darker than
+robots in the light theme and lighter in the dark one, and delay has its own scale. A test ensures
+that they can be told apart with common kinds of colour blindness and contrast with the floor.
 """
 
 from __future__ import annotations
@@ -20,18 +20,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Theme:
-    """Colours on one floor.
+    """The colours of one theme.
 
     Attributes
     ----------
     floor
-        What all is drawn on.
+        Colour of the background.
     towards, share
-        A station of another kind is drawn in the colour of its kind, moved so far towards this one.
+        The colour of a station of another kind is that of its kind, mixed with this share of
+        `towards`.
     stations, tasks
-        By the words for kinds of station and for tasks.
+        Colours by kind of station and by task.
     delay
-        From none to much.
+        Colours from no delay to long delay.
     """
 
     floor: str
@@ -81,7 +82,7 @@ THEMES = {
 
 
 def themes_of(layout: Layout, visits: Mapping[str, str]) -> dict[str, Any]:
-    """Return the colours of a layout by theme: for each station, each task, pods and delay.
+    """Return the colours for a layout by theme: of each station, each task, pods and delay.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""A room with robots that are as unkind as real ones; they run the robots' own program."""
+"""An emulated room whose robots have the imperfections of real ones and run the same program."""

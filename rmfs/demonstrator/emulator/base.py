@@ -1,4 +1,4 @@
-"""An emulated iRobot Create 2: the other end of its serial port, and how its wheels roll."""
+"""An emulated iRobot Create 2: its serial interface, and the motion of its wheels."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ WHEEL_ACCELERATION_M_S2 = 1.5
 
 @dataclass
 class EmulatedBase:
-    """An emulated base: its true position on the floor, and what its serial port does.
+    """An emulated base, with its true position on the floor and its serial interface.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class EmulatedBase:
     slip
         Largest share of a wheel's travel that may be lost to slip.
     rng
-        Draws the slip.
+        Random stream that draws the slip.
     """
 
     x_m: float
@@ -53,7 +53,7 @@ class EmulatedBase:
     # --- serial port ---------------------------------------------------------------------------
 
     def write(self, data: bytes) -> int:
-        """Obey commands of the Open Interface."""
+        """Execute commands of the Open Interface."""
         self._inbox += data
         while (size := self._command_size()) and len(self._inbox) >= size:
             command, self._inbox = self._inbox[:size], self._inbox[size:]
@@ -61,7 +61,7 @@ class EmulatedBase:
         return len(data)
 
     def read(self, size: int) -> bytes:
-        """Return answers."""
+        """Return up to `size` bytes of answers."""
         answer, self._outbox = self._outbox[:size], self._outbox[size:]
         return answer
 
@@ -102,11 +102,11 @@ class EmulatedBase:
     # --- floor ---------------------------------------------------------------------------------
 
     def stop(self) -> None:
-        """Stop, as the guard of the robot's program makes it when the program dies."""
+        """Stop, as the guard does when the robot's program dies."""
         self._wanted_left = self._wanted_right = 0.0
 
     def roll(self, seconds: float) -> None:
-        """Let time pass."""
+        """Advance the motion of the wheels by some time."""
         if self.battery <= 0:
             self.stop()
         change = WHEEL_ACCELERATION_M_S2 * seconds

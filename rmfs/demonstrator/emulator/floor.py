@@ -20,9 +20,9 @@ MARGIN_M = 0.5
 _FLOOR, _TAPE = 170, 35
 
 NEAR_M, DEEP_M, WIDE_M = 0.17, 0.12, 0.24
-"""What a camera shows: from so far ahead of the robot's middle, so deep, so wide."""
+"""Field of view of a camera: distance ahead of the robot's centre, depth and width, in m."""
 IMAGE = (64, 32)
-"""Pixels of an image, width and height."""
+"""Width and height of an image, in pixels."""
 
 
 class Floor:
@@ -31,11 +31,11 @@ class Floor:
     Parameters
     ----------
     layout
-        Where tape lies: along every edge.
+        The layout; tape lies along every edge.
     unkindness
-        Glare, noise, gaps.
+        Imperfections; those used are glare, noise and gaps.
     rng
-        Draws the noise.
+        Random stream for the imperfections of the floor.
     """
 
     def __init__(self, layout: Layout, unkindness: Unkindness, rng: np.random.Generator) -> None:
@@ -51,14 +51,14 @@ class Floor:
     def view(
         self, x_m: float, y_m: float, heading_rad: float, rng: np.random.Generator
     ) -> NDArray[np.uint8]:
-        """Return what a robot's camera sees: shape (height, width, 3), the robot below.
+        """Return a camera image, shape (height, width, 3), with the robot below its lower edge.
 
         Parameters
         ----------
         x_m, y_m, heading_rad
-            Of the robot; 0 looks along x, anticlockwise.
+            Position and heading of the robot; heading 0 points along x, anticlockwise.
         rng
-            Draws what spoils the image.
+            Random stream for glare and noise.
         """
         # one pixel to the right, and one down, in the picture; its rows run against y
         right = WIDE_M / IMAGE[0] / PIXEL_M

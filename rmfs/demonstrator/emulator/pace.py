@@ -1,4 +1,4 @@
-"""Time in an emulated room: in step with the server, or by the wall clock."""
+"""Timing of an emulated room: synchronised with the server, or by the wall clock."""
 
 from __future__ import annotations
 
@@ -15,47 +15,47 @@ if TYPE_CHECKING:
 
 
 class Pace(Protocol):
-    """Says when a tick is over."""
+    """Determines when each tick of the room ends."""
 
     has_ended: bool
     """Whether the demonstration is over."""
 
     def begin(self) -> None:
-        """Return when the first tick may begin."""
+        """Wait until the first tick may begin."""
 
     def tick(self, room: Room) -> bool:
-        """Return when what belongs to the present tick has been done; false if nothing follows."""
+        """Wait for the end of the present tick; return whether another one follows."""
 
     def close(self) -> None:
         """End the connection, if there is one."""
 
 
 class RealTime:
-    """A tick lasts as long as it says; the server has a clock of its own."""
+    """A tick takes its nominal time; the server has its own clock."""
 
     def __init__(self) -> None:
         self.has_ended = False
 
     def begin(self) -> None:
-        """Begin now."""
+        """Begin immediately."""
         self._zero = time.monotonic()
 
     def tick(self, room: Room) -> bool:
-        """Sleep until it is time."""
+        """Sleep until the end of the tick."""
         time.sleep(max(0.0, self._zero + room.now_us / 1e6 - time.monotonic()))
         return True
 
     def close(self) -> None:
-        """Nothing to end."""
+        """Do nothing, as there is no connection."""
 
 
 class InStep:
-    """The room keeps the clock, and the server does at each tick what belongs to it.
+    """The room keeps the clock, and the server processes each tick in step with it.
 
     Parameters
     ----------
     address
-        Of the server.
+        Address of the server.
     """
 
     def __init__(self, address: Address) -> None:
@@ -66,12 +66,12 @@ class InStep:
         self.has_ended = False
 
     def begin(self) -> None:
-        """Wait for the server: time begins when it is there."""
+        """Connect to the server, waiting until it is available."""
         while not self._link.is_up:
             self._greet(0)
 
     def tick(self, room: Room) -> bool:
-        """Tell the server the time and wait until it has done what belongs to it."""
+        """Send the time to the server, and wait until it has processed the tick."""
         if not self._link.is_up:
             self._greet(room.now_us)  # nobody there: time goes on as it does
             return True

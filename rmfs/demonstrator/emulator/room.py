@@ -1,4 +1,4 @@
-"""The emulated room: floor, robots and clock, in step with the server."""
+"""The emulated room: floor, robots and clock, synchronised with the server."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _PARTS = 2  # physics steps in a tick
 
 @dataclass
 class Address:
-    """Where the server is, and what it wants to hear."""
+    """The address of the server, and the secret."""
 
     host: str
     port: int
@@ -43,7 +43,7 @@ class Address:
 
 
 class EmulatedRobot:
-    """A robot: its base on the floor, and its program, if one is running."""
+    """An emulated robot: its base on the floor, and its program, if that is running."""
 
     def __init__(
         self,
@@ -85,33 +85,33 @@ class EmulatedRobot:
 
 
 class Room:
-    """All that is not the server.
+    """An emulated room: everything outside the server.
 
     Parameters
     ----------
     layout
-        Whose floor it is.
+        The layout whose edges are the lines on the floor.
     robots
         Names of the robots in the room, and their indices in the layout.
     tags
         The tag of every waypoint.
     address
-        Of the server.
+        Address of the server.
     unkindness
-        What goes wrong.
+        Imperfections of the room.
     seed
-        Of everything that is drawn.
+        Seed of all random draws.
     memory
-        A folder where programs remember their orders; default: one that is removed at the end.
+        Folder in which programs save their orders. Default: a temporary one.
     pace
-        How it keeps time; default: in step with the server.
+        Timing of the room. Default: synchronised with the server.
 
     Attributes
     ----------
     now_us
-        Present time.
+        Present time in microseconds.
     truth
-        What really happens on the floor.
+        Measurements of the true motion on the floor.
     """
 
     def __init__(
@@ -141,14 +141,14 @@ class Room:
         }
 
     def run(self, until_us: int | None = None, each: Callable[[Room], None] | None = None) -> None:
-        """Let time pass; it begins when the server is there.
+        """Run the room; time starts when the server is available.
 
         Parameters
         ----------
         until_us
-            When to end, if the server does not end the demonstration before.
+            End time, if the server does not end the demonstration earlier.
         each
-            Called once a tick; may do mischief.
+            Function called once per tick, such as to cause failures.
         """
         if self.now_us == 0:
             self._pace.begin()
@@ -163,7 +163,7 @@ class Room:
             self.now_us += TICK_US
 
     def stop(self) -> None:
-        """Let no more time pass."""
+        """Stop the room after the present tick."""
         self._pace.has_ended = True
 
     def close(self) -> None:
@@ -177,12 +177,12 @@ class Room:
     # --- what goes over the wires -------------------------------------------------------------
 
     def sent(self) -> dict[str, int]:
-        """Return how many bytes each robot with a connection has sent over it."""
+        """Return the number of bytes that each connected robot has sent."""
         wires = {name: robot.wire for name, robot in self.robots.items()}
         return {name: wire.written for name, wire in wires.items() if wire and not wire.is_closed}
 
     def fetch(self, sizes: dict[str, int]) -> None:
-        """Wait until robots have received a number of bytes over their connections."""
+        """Wait until robots have received the given numbers of bytes."""
         for name, size in sizes.items():
             wire = self.robots[name].wire if name in self.robots else None
             if wire is not None:

@@ -18,30 +18,30 @@ REACH_M = 0.02
 
 @dataclass(frozen=True)
 class FloorCamera:
-    """A camera over the floor."""
+    """An emulated camera above the floor."""
 
     floor: Floor
     base: EmulatedBase
     rng: np.random.Generator
 
     def frame(self) -> NDArray[np.uint8]:
-        """Return what it sees now."""
+        """Return the present image."""
         return self.floor.view(self.base.x_m, self.base.y_m, self.base.heading_rad, self.rng)
 
 
 class FloorTags:
-    """A tag reader over the floor.
+    """An emulated tag reader above the floor.
 
     Parameters
     ----------
     tags, x_m, y_m
-        The tags, and where they are; shape (N,).
+        The tags and their positions, shape (N,).
     base
-        The robot above them.
+        The base of the robot that carries the reader.
     missed
-        Share of passages in which nothing is found.
+        Share of passages in which the tag is missed.
     rng
-        Draws them.
+        Random stream that draws the missed passages.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class FloorTags:
         self._found: str | None = None
 
     def look(self) -> None:
-        """Notice a tag that has come into reach; called whenever the robot has moved."""
+        """Detect a tag that has come into range; called whenever the robot has moved."""
         here = (self._base.x_m, self._base.y_m)
         if here == self._here:
             return
@@ -73,6 +73,6 @@ class FloorTags:
         self._above = above
 
     def read(self) -> str | None:
-        """Return a tag that was not there the last time, or None."""
+        """Return a tag detected since the previous call, or None."""
         found, self._found = self._found, None
         return found

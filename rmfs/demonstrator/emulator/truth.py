@@ -1,4 +1,4 @@
-"""The true state of an emulated room, which none of its parts knows."""
+"""Measurements of the true motion in an emulated room, which neither robots nor server know."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ class Truth:
     Attributes
     ----------
     lines_x_m, lines_y_m
-        Where lines along y and along x lie.
+        Positions of the lines along y, and of those along x.
     nearest_m
-        The smallest distance there has been between the middles of two robots, at any time:
-        between two looks they are taken to move straight.
+        Smallest distance so far between the centres of two robots; between two measurements robots
+        are assumed to move in a straight line.
     driven_m
-        By all robots together.
+        Total distance driven by all robots.
     lateral_mean_m, lateral_max_m
-        How far robots that drive are from the line they are on.
+        Mean and maximum distance of driving robots from their line.
     """
 
     lines_x_m: list[float]
@@ -46,16 +46,16 @@ class Truth:
 
     @classmethod
     def of(cls, layout: Layout) -> Truth:
-        """Return the truth of a floor with lines along all edges of a layout."""
+        """Create the measurements for a floor with lines along all edges of a layout."""
         return cls(np.unique(layout.x_m).tolist(), np.unique(layout.y_m).tolist())
 
     @property
     def lateral_mean_m(self) -> float:
-        """Mean distance from the line."""
+        """Mean distance of driving robots from their line."""
         return self._lateral_sum / self._looks if self._looks else 0.0
 
     def look(self, bases: Sequence[EmulatedBase], seconds: float) -> None:
-        """Measure, `seconds` after the last time."""
+        """Measure all robots, `seconds` after the previous call."""
         now = [(base.x_m, base.y_m, base.heading_rad) for base in bases]
         before = self._before or now
         self._before = now

@@ -7,22 +7,22 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Unkindness:
-    """What goes wrong, and how often.
+    """Imperfections, and how often they occur.
 
     Attributes
     ----------
     speed_error
-        Each robot's wheels are up to this share too slow or too fast, for good.
+        Maximum relative error of the speed of a robot's wheels, constant over time.
     slip
-        Up to this share of a wheel's way is lost, anew at each step.
+        Maximum share of a wheel's travel lost to slip, drawn at each step.
     missed_tags
-        Share of passages in which the reader does not find the tag.
+        Share of passages in which the reader misses the tag.
     lost_messages
-        Share of frames that never arrive, each way.
+        Share of frames lost in each direction.
     delay_us
-        Frames arrive up to this much later.
+        Maximum delay of a frame.
     glare, noise
-        Share of images with a bright spot; grey values of noise (standard deviation).
+        Share of images with a bright spot; standard deviation of the noise in grey values.
     gap_m
         Length of a gap in the tape in the middle of every third edge.
     """
@@ -38,4 +38,4 @@ class Unkindness:
 
 
 KIND = Unkindness(0.0, 0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0)
-"""A room in which nothing goes wrong."""
+"""A room without imperfections."""

@@ -1,4 +1,4 @@
-"""A wire on which frames are late or never arrive."""
+"""A connection that loses and delays frames."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ _HEAD = 36  # bytes of a frame before its text
 
 
 class UnkindWire:
-    """A TCP connection that loses and delays whole frames, each way, except each side's first.
+    """A TCP connection that loses and delays whole frames, except the first of each side.
 
     Parameters
     ----------
     tcp
         The connection.
     unkindness
-        How many frames are lost and how late the others are.
+        Share of frames lost, and delay of the others.
     rng
-        Draws that.
+        Random stream that draws losses and delays.
 
     Attributes
     ----------
     now_us
         Present time; set by the room.
     written, received
-        Bytes that have gone over the connection.
+        Number of bytes written to and received from the connection.
     """
 
     def __init__(
@@ -49,14 +49,14 @@ class UnkindWire:
         self._frames_in = self._frames_out = 0
 
     def write(self, frame: bytes) -> None:
-        """Send a frame, perhaps."""
+        """Send a frame, unless it is lost."""
         self._frames_out += 1
         if self._frames_out == 1 or not self._is_lost():
             self._out.append((self._arrival_us(self._out), frame))
         self.pump()
 
     def read(self) -> bytes | None:
-        """Return what has arrived by now."""
+        """Return the bytes that have arrived by now."""
         self.fetch()
         due = []
         while self._in and self._in[0][0] <= self.now_us:
@@ -69,14 +69,14 @@ class UnkindWire:
         self._tcp.close()
 
     def pump(self) -> None:
-        """Write what is due to the connection."""
+        """Write the frames that are due to the connection."""
         while self._out and self._out[0][0] <= self.now_us and not self.is_closed:
             frame = self._out.popleft()[1]
             self._tcp.write(frame)
             self.written += len(frame)
 
     def fetch(self, upto: int | None = None, timeout_s: float = 5.0) -> None:
-        """Read from the connection, until a number of bytes has been received in all."""
+        """Read from the connection until a total number of bytes has been received."""
         while not self.is_closed:
             data = self._tcp.read()
             if data is None:
@@ -89,7 +89,7 @@ class UnkindWire:
                 return
 
     def await_frame(self, timeout_s: float = 5.0) -> None:
-        """Read until a first frame has come, or the time is over."""
+        """Read until the first frame has arrived or time has run out."""
         self.fetch(_HEAD, timeout_s)
         while not self.is_closed and not self._frames_in:
             before = self.received

@@ -1,4 +1,4 @@
-"""What runs on a robot's computer.
+"""The software that runs on a robot's computer.
 
 The client library (`protocol`, `channel`, `client`) and the control program (`order`, `program`,
 `pid`, `create2`, `tags`) need nothing but the standard library: this folder can be copied to a

@@ -1,12 +1,12 @@
-"""A session in which every message arrives once and in order, whatever is lost on the way.
+"""A session in which every message arrives exactly once and in order despite losses.
 
-Both sides number their messages and say which number they have seen last. What is not acknowledged
-within a time is sent again, it and all after it. Nothing here reads a clock or a socket: time and
-bytes come from outside.
+Both sides number their messages and acknowledge the last number received. A message that is not
+acknowledged in time is sent again, with all later ones. This module reads neither clock nor socket;
+the caller passes time and bytes.
 
     message := {"n": number or absent, "ack": number, "clock": microseconds, "type": name, ...}
 
-A message without number only acknowledges and shows that the sender lives.
+A message without a number only acknowledges and shows that the sender is alive.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from collections import deque
 from .protocol import Message, ProtocolError, Unpacker, pack, whole
 
 RESEND_US = 300_000
-"""After so long without acknowledgement a message is sent again."""
+"""Time after which an unacknowledged message is sent again."""
 HEARTBEAT_US = 500_000
-"""So often a side shows that it lives."""
+"""Interval at which each side shows that it is alive."""
 SILENCE_US = 3_000_000
-"""After so long without a sign the other side counts as silent."""
+"""Time without a message after which the other side counts as silent."""
 MOST_WAITING = 10_000
-"""Messages that may wait for acknowledgement; more is a defect of the other side."""
+"""Maximum number of unacknowledged messages; more indicate a defect of the other side."""
 
 
 class Channel:
@@ -31,9 +31,9 @@ class Channel:
     Parameters
     ----------
     key, own, other
-        Key of the session, and labels of what this side writes and of what it reads.
+        Key of the session, and the labels of frames that this side writes and reads.
     now_us
-        Present time.
+        Present time in microseconds.
     rest
         Bytes that have arrived already.
     """
@@ -48,7 +48,7 @@ class Channel:
         self._sent_us = self.heard_us = self.clock_us = now_us
 
     def send(self, message: Message) -> None:
-        """Take a message for the other side."""
+        """Queue a message for the other side."""
         if len(self._waiting) >= MOST_WAITING:
             raise ProtocolError(f"{MOST_WAITING} messages without acknowledgement")
         self._number += 1
@@ -60,7 +60,7 @@ class Channel:
         Raises
         ------
         ProtocolError
-            If the other side does not keep the protocol.
+            If the other side violates the protocol.
         """
         new = []
         for message in self._unpacker.feed(data, self._key, self._other):
@@ -95,5 +95,5 @@ class Channel:
         return [pack({**message, **stamp}, self._key, self._own) for message in due]
 
     def is_silent(self, now_us: int) -> bool:
-        """Say whether the other side has given no sign for too long."""
+        """Return whether the other side has been silent for too long."""
         return now_us - self.heard_us > SILENCE_US

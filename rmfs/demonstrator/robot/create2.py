@@ -1,4 +1,4 @@
-"""The iRobot Create 2: two wheels driven over its serial port (Create 2 Open Interface)."""
+"""Driver of the iRobot Create 2 over its serial port (Create 2 Open Interface)."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 TRACK_M = 0.235
-"""Distance between the wheels."""
+"""Distance between the wheels, in m."""
 METRES_PER_COUNT = math.pi * 0.072 / 508.8
-"""A wheel of 72 mm turns once in 508.8 counts."""
+"""Distance per count: a wheel of 72 mm diameter turns once in 508.8 counts."""
 FASTEST_MM_S = 500
 
 _START, _SAFE, _STOP, _DRIVE_DIRECT, _QUERY_LIST = 128, 131, 173, 145, 149
@@ -19,13 +19,13 @@ _BATTERY = bytes([_QUERY_LIST, 2, _CHARGE, _CAPACITY])
 
 
 class SerialPort(Protocol):
-    """Bytes to and from the robot's base."""
+    """A serial port connected to the robot's base."""
 
     def write(self, data: bytes) -> object:
         """Send bytes."""
 
     def read(self, size: int) -> bytes:
-        """Return `size` bytes, or fewer when the time to wait for them is over."""
+        """Return `size` bytes, or fewer if the time limit has passed."""
 
 
 class BaseError(Exception):
@@ -33,13 +33,13 @@ class BaseError(Exception):
 
 
 class Counts(NamedTuple):
-    """The counters of the wheels; they have 16 bits and run over after 29 m."""
+    """The counters of the wheels, of 16 bits, which overflow after 29 m."""
 
     left: int
     right: int
 
     def rolled_m(self, since: Counts) -> tuple[float, float]:
-        """Return the metres the wheels have rolled since, left and right."""
+        """Return how far the left and the right wheel have rolled since a reading, in m."""
         return _metres(self.left, since.left), _metres(self.right, since.right)
 
 
@@ -50,13 +50,13 @@ class Create2:
     Parameters
     ----------
     port
-        Its serial port (115,200 baud), with a time limit for reading.
+        Serial port of the base (115,200 baud), with a time limit for reading.
     """
 
     port: SerialPort
 
     def start(self) -> None:
-        """Wake the base; from now on it obeys, and stops by itself at a cliff."""
+        """Wake the base, in a mode in which it accepts commands and stops by itself at a cliff."""
         self.port.write(bytes([_START, _SAFE]))
 
     def drive(self, left_m_s: float, right_m_s: float) -> None:
@@ -84,7 +84,7 @@ class Create2:
         return Counts(*self._ask(_COUNTS))
 
     def charge(self) -> float:
-        """Return the share of the battery that is left.
+        """Return the charge level of the battery, as a share.
 
         Raises
         ------

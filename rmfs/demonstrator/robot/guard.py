@@ -1,7 +1,7 @@
 """A guard that stops the motors when the robot's program dies or hangs.
 
-The base keeps the speed it was last given, whatever happens to the computer's program. Therefore
-the program runs as a child of the guard and signals after each step that it is alive.
+The base keeps its last commanded speed even if the program on the computer fails. Therefore the
+program runs as a child process of the guard and signals after each step that it is alive.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import traceback
 from collections.abc import Callable
 
 PATIENCE_S = 0.5
-"""So long the program may take for a step; at 0.21 m/s the robot then has driven 10 cm."""
+"""Maximum time of a step, in s; at 0.21 m/s the robot drives 10 cm in that time."""
 
 
 def guarded(
@@ -23,16 +23,16 @@ def guarded(
     stop: Callable[[], None],
     patience_s: float = PATIENCE_S,
 ) -> int:
-    """Run a program and stop the robot when it ends, however it ends.
+    """Run a program, and stop the robot when it ends for whatever reason.
 
     Parameters
     ----------
     program
-        Is given a function that it has to call after each step.
+        The program; its argument is a function that it must call after each step.
     stop
-        Stops the robot; called when the program no longer runs.
+        Function that stops the robot, called when the program has ended.
     patience_s
-        After so long without a step the program is killed.
+        Time without a step after which the program is killed, in s.
 
     Returns
     -------

@@ -1,7 +1,7 @@
-"""The line on the floor, found in a camera image (paper, section 4).
+"""Detection of the line on the floor in a camera image (paper, section 4).
 
-Colours in a range are kept, specks are eroded away, the largest contour is taken for the line, and
-the middle of its lower end says where it is.
+Pixels within a colour range are kept, small specks are removed by erosion, and the largest contour
+is taken as the line. The middle of its lower end gives its position.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 class Camera(Protocol):
-    """Looks at the floor in front of the robot."""
+    """A camera that sees the floor in front of the robot."""
 
     def frame(self) -> NDArray[np.uint8]:
-        """Return an image, shape (height, width, 3), blue, green, red; the robot is below it."""
+        """Return an image, shape (height, width, 3), in blue, green, red; the robot is below it."""
 
 
 class VideoCamera:
@@ -29,7 +29,7 @@ class VideoCamera:
     Raises
     ------
     OSError
-        If there is none, or it gives no image.
+        If there is no such camera, or it returns no image.
     """
 
     def __init__(self, number: int) -> None:
@@ -48,20 +48,21 @@ class VideoCamera:
 
 @dataclass(frozen=True)
 class LineSettings:
-    """What a line looks like.
+    """Appearance of a line.
 
     Attributes
     ----------
     lowest, highest
         Range of hue (0-179), saturation and value (0-255) of the tape.
     erode_px
-        Side of the square that has to fit into what is kept.
+        Side of the square used for erosion, in pixels.
     smallest_share
-        Of the image, for a contour to count.
+        Smallest area of a contour, as a share of the image.
     widest_share
-        Of the image's width; a lower end wider than this is a crossing line.
+        Largest width of the lower end, as a share of the image's width; a wider one is a crossing
+        line.
     lower_share
-        The line has to reach into this part of the image, from below.
+        The line must reach into this lower share of the image.
     """
 
     lowest: tuple[int, int, int] = (0, 0, 0)
@@ -73,14 +74,14 @@ class LineSettings:
 
 
 def line_offset(image: NDArray[np.uint8], settings: LineSettings) -> float | None:
-    """Return where the line is: from -1 (right edge) to 1 (left edge); None where none is seen.
+    """Return the position of the line, from -1 (right edge) to 1 (left edge); None if not found.
 
     Parameters
     ----------
     image
-        Shape (height, width, 3), blue, green, red.
+        The image, shape (height, width, 3), in blue, green, red.
     settings
-        What a line looks like.
+        Appearance of a line.
     """
     height, width = image.shape[:2]
     hsv = cv2.cvtColor(image, cv2.COLOR_BGR2HSV)
@@ -110,11 +111,11 @@ class CameraLine:
     Attributes
     ----------
     camera
-        Where images come from.
+        The camera.
     half_width_m
-        Half of what the lower edge of an image shows of the floor.
+        Half the width of floor that the lower edge of an image shows, in m.
     settings
-        What a line looks like.
+        Appearance of a line.
     """
 
     camera: Camera
@@ -122,6 +123,6 @@ class CameraLine:
     settings: LineSettings = LineSettings()
 
     def offset_m(self) -> float | None:
-        """Return how far left of the middle the line is; None where none is seen."""
+        """Return how far to the left of the centre the line is, in m; None if not found."""
         offset = line_offset(self.camera.frame(), self.settings)
         return None if offset is None else offset * self.half_width_m

@@ -1,4 +1,4 @@
-"""The order that a robot carries out, and its progress."""
+"""The drive order that a robot carries out, and its progress."""
 
 from __future__ import annotations
 
@@ -11,34 +11,34 @@ from .create2 import Counts
 from .protocol import Message, ProtocolError
 
 TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "around": math.pi}
-"""Radians, anticlockwise, of the actions that turn."""
+"""Turning angle of each turning action, in radians, anticlockwise."""
 STRAIGHT = "straight"
 
 
 @dataclass
 class Order:
-    """A turn on the spot, possibly none, and a straight run over waypoints.
+    """A drive order: an optional turn on the spot, then a straight run over waypoints.
 
     Attributes
     ----------
     number
-        Of the order.
+        Number of the order.
     turn_rad
-        Anticlockwise.
+        Angle of the turn, anticlockwise.
     start
         Tag of the waypoint where it begins.
     tags, metres
-        Of the waypoints ahead; how far each is from the one before.
+        Tags of the waypoints ahead, and the distance of each from the previous one.
     granted
-        How many of them the robot may drive to.
+        Number of these waypoints to which the robot may drive.
     turned
         Whether the turn is done.
     passed
-        How many waypoints have been reached.
+        Number of waypoints reached.
     since
-        The wheels' counters when the turn began, or at the last waypoint.
+        Wheel counters at the beginning of the turn, or at the last waypoint.
     ahead_m
-        How far the robot was past that waypoint then (negative: before it).
+        Distance of the robot past that waypoint at that time (negative: before it).
     """
 
     number: int
@@ -54,12 +54,12 @@ class Order:
 
     @classmethod
     def of(cls, message: Message) -> Order:
-        """Return the order of a message.
+        """Create the order from a message.
 
         Raises
         ------
         ProtocolError
-            If it is not one.
+            If the message is not a valid order.
         """
         try:
             actions = [str(action) for action in message["actions"]]
@@ -83,23 +83,23 @@ class Order:
 
     @property
     def is_done(self) -> bool:
-        """Whether nothing is left to do."""
+        """Whether the order is completed."""
         return self.turned and self.passed == len(self.tags)
 
     def cut(self, upto: int) -> None:
-        """End it after that many waypoints, or where the robot is if that is further."""
+        """End the order after that many waypoints, or at the robot's position if it is further."""
         upto = max(upto, self.passed)
         del self.tags[upto:], self.metres[upto:]
 
     def to_stop_m(self, rolled_m: float) -> float:
-        """How far it is to the last waypoint granted, after rolling since the last one."""
+        """Remaining distance to the last granted waypoint, given that since the last one."""
         granted = min(self.granted, len(self.tags))
         return sum(self.metres[self.passed : granted]) - rolled_m - self.ahead_m
 
 
 @dataclass
 class Memory:
-    """What a robot's program knows after it was killed: the order and the last one done."""
+    """Persistent memory of a robot's program: the present order, and the last completed one."""
 
     path: Path | None = None
     order: Order | None = None
@@ -107,7 +107,7 @@ class Memory:
     _written: str = field(default="", repr=False)
 
     def save(self) -> None:
-        """Write it down, if it has changed and there is a place for it."""
+        """Save the memory if it has changed and a file is given."""
         if self.path is None:
             return
         order = None if self.order is None else vars(self.order)
@@ -121,7 +121,7 @@ class Memory:
 
     @classmethod
     def load(cls, path: Path | None) -> Memory:
-        """Read what was written down; nothing, if that is not possible."""
+        """Load the saved memory; empty if it cannot be read."""
         memory = cls(path)
         try:
             known = json.loads(path.read_text(encoding="utf-8")) if path is not None else {}

@@ -1,4 +1,4 @@
-"""A PID controller: the error, its sum and its change, weighted."""
+"""A PID controller."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass
 class Pid:
-    """Steers an error to zero.
+    """A controller that reduces an error to zero.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class Pid:
     _last: float | None = None
 
     def output(self, error: float, seconds: float) -> float:
-        """Return the correction for an error, `seconds` after the one before."""
+        """Return the correction for an error, `seconds` after the previous call."""
         change = 0.0 if self._last is None or seconds <= 0 else (error - self._last) / seconds
         self._last = error
         total = self._sum + error * seconds
@@ -35,5 +35,5 @@ class Pid:
         return max(-self.limit, min(self.limit, wanted))
 
     def reset(self) -> None:
-        """Forget the past, as at the beginning of a new line."""
+        """Reset the integral and the last error, as at the beginning of a new line."""
         self._sum, self._last = 0.0, None

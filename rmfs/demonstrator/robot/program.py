@@ -1,6 +1,6 @@
-"""The robot's program: turns orders into motion and tells the server how far it has come.
+"""The robot's program, which turns orders into motion and reports progress to the server.
 
-It is called again and again (20 times a second is plenty) and never waits.
+Its step function is called repeatedly (20 times a second is enough) and never waits.
 """
 
 from __future__ import annotations
@@ -19,34 +19,34 @@ from .tags import TagReader
 
 
 class LineSensor(Protocol):
-    """Sees the line on the floor ahead."""
+    """A sensor that sees the line on the floor ahead."""
 
     def offset_m(self) -> float | None:
-        """Return how far left of the middle the line is; None where none is seen."""
+        """Return how far to the left of the centre the line is, in m; None if not found."""
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How a robot drives.
+    """Settings of a robot's motion.
 
     Attributes
     ----------
     speed_m_s, acceleration_m_s2
-        Of straight runs.
+        Speed and acceleration of straight runs.
     turn_rad_s
-        Turning on the spot.
+        Angular speed of turns on the spot.
     creep_m_s
-        Slowest motion, for the last millimetres and for finding a tag.
+        Lowest speed, for the last millimetres and for finding a tag.
     tag_ahead_m
-        How far before a tag's middle its reader finds it.
+        Distance before the centre of a tag at which the reader detects it.
     overshoot_m
-        A waypoint that far behind without a tag has been missed.
+        Distance past a waypoint after which its tag counts as missed.
     blind_m
-        So far the robot drives without seeing a line.
+        Maximum distance that the robot drives without seeing a line.
     search_m, searches
-        How far it looks for a missed tag around the place, and how often.
+        Distance around the place that is searched for a missed tag, and number of searches.
     steering
-        Weights of the PID controller, from metres of offset to rad/s, and its limit.
+        PID controller from the offset in m to the angular speed in rad/s.
     """
 
     speed_m_s: float = 0.21
@@ -66,22 +66,22 @@ PLACE_TOLERANCE_M = 0.004
 
 
 class Program:
-    """Drives one robot.
+    """The program that drives one robot.
 
     Parameters
     ----------
     base
-        Its wheels.
+        Driver of its base.
     line
-        Its camera.
+        Its line sensor.
     tags
         Its tag reader.
     link
-        To the server.
+        Its link to the server.
     settings
-        How it drives.
+        Settings of its motion.
     memory
-        Where it remembers its order, if its program is killed.
+        Persistent memory of its order, in case the program is killed.
     """
 
     def __init__(

@@ -1,10 +1,10 @@
-"""Frames on the wire: a length, a code that proves who wrote it, and a JSON object.
+"""The format of frames: a length, an authentication code, and a JSON object.
 
     frame := length (4 bytes, big-endian) code (32 bytes, HMAC-SHA256) text (length bytes, UTF-8)
 
-The code covers the text and, so that no frame counts twice in another place, a label: the nonce of
-the server while a robot introduces itself, the direction afterwards. Both sides know a secret; the
-key of a session comes from it and from a nonce of each side.
+The code covers the text and a label, so that no frame is valid in another context. The label is the
+server's nonce during the handshake, and the direction afterwards. Both sides know a secret; the key
+of a session is derived from it and from a nonce of each side.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from typing import Any
 
 VERSION = 1
 LARGEST = 65_536
-"""Bytes of the longest text; a longer one is refused before it is read."""
+"""Maximum length of a text in bytes; a longer one is refused before it is read."""
 WELCOME, HELLO, SERVER, ROBOT = b"welcome", b"hello/", b"server", b"robot"
-"""Labels: of the server's first frame, the robot's first (with a nonce), and of the directions."""
+"""Labels of the server's first frame, the robot's first (with a nonce), and each direction."""
 _LENGTH, _HEAD = 4, 36
 
 Message = dict[str, Any]
 
 
 class ProtocolError(Exception):
-    """The other side does not keep the protocol; the connection is to be closed."""
+    """The other side violates the protocol, and the connection must be closed."""
 
 
 def code(key: bytes, label: bytes, text: bytes) -> bytes:
-    """Return what proves that somebody who knows the key wrote a text."""
+    """Return the authentication code of a text."""
     return hmac.digest(key, len(label).to_bytes(2, "big") + label + text, hashlib.sha256)
 
 
@@ -48,18 +48,18 @@ def pack(message: Message, key: bytes, label: bytes) -> bytes:
 
 
 class Unpacker:
-    """Cuts what arrives into frames; what has not fully arrived waits in `rest`."""
+    """Divides received bytes into frames; incomplete frames are kept in `rest`."""
 
     def __init__(self, rest: bytes = b"") -> None:
         self.rest = bytearray(rest)
 
     def feed(self, data: bytes, key: bytes, label: bytes) -> Iterator[Message]:
-        """Yield the messages that are complete.
+        """Add received bytes, and yield the complete messages.
 
         Raises
         ------
         ProtocolError
-            If a frame is too long, was not written by somebody who knows the key, or is not JSON.
+            If a frame is too long, has a wrong code, or is not JSON.
         """
         self.rest += data
         while len(self.rest) >= _LENGTH:
@@ -82,7 +82,7 @@ class Unpacker:
 
 
 def text_of(message: Message, name: str, longest: int = 64) -> str:
-    """Return a text in a message; raises ProtocolError if there is none."""
+    """Return a text field of a message; raise ProtocolError if it is missing."""
     value = message.get(name)
     if not isinstance(value, str) or not 0 < len(value) <= longest:
         raise ProtocolError(f"{name} = {value!r}; it is a text of 1 to {longest} characters")
@@ -90,7 +90,7 @@ def text_of(message: Message, name: str, longest: int = 64) -> str:
 
 
 def whole(message: Message, name: str) -> int:
-    """Return a number in a message; raises ProtocolError if there is none."""
+    """Return an integer field of a message; raise ProtocolError if it is missing."""
     value = message.get(name)
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
         raise ProtocolError(f"{name} = {value!r}; it is a whole number, not negative")

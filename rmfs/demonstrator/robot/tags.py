@@ -1,4 +1,4 @@
-"""Readers of the tags in the floor."""
+"""Readers of tags in the floor."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from typing import Protocol
 
 
 class TagReader(Protocol):
-    """Tells which tag is beneath the robot."""
+    """A reader of the tag beneath the robot."""
 
     def read(self) -> str | None:
-        """Return a tag that was not there the last time, or None."""
+        """Return a tag detected since the previous call, or None."""
 
 
 class SerialTagReader:
@@ -18,7 +18,7 @@ class SerialTagReader:
     Parameters
     ----------
     port
-        The serial port, set not to wait.
+        The serial port, in non-blocking mode.
     """
 
     def __init__(self, port: ReadablePort) -> None:
@@ -27,7 +27,7 @@ class SerialTagReader:
         self._last: str | None = None
 
     def read(self) -> str | None:
-        """Return a tag that has come into reach."""
+        """Return a tag detected since the previous call, or None."""
         found = None
         for byte in self._port.read(256):
             if byte not in b"\r\n":
@@ -41,7 +41,7 @@ class SerialTagReader:
 
 
 class ReadablePort(Protocol):
-    """Bytes from a serial port."""
+    """A serial port that can be read."""
 
     def read(self, size: int) -> bytes:
         """Return up to `size` bytes that have arrived."""

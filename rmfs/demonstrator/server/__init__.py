@@ -1,1 +1,1 @@
-"""The server: plans for all robots, tells the real ones what to do, and hears how far they are."""
+"""The server, which plans for all robots, sends orders to real ones, and tracks their progress."""

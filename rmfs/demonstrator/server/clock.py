@@ -1,8 +1,8 @@
-"""The clock of a demonstration: of the laboratory's wall, or of an emulated room.
+"""The clock of a demonstration: the wall clock, or that of an emulated room.
 
-One clock governs everything: plans, heartbeats, times to wait. An emulated room keeps it and is in
-step with the server: it says what time it is and how many bytes each robot has sent, the server
-answers when it has done all that belongs to that time, and how many bytes it has sent.
+One clock governs plans, heartbeats and timeouts. An emulated room keeps the clock and synchronises
+with the server: it sends the time and the number of bytes that each robot has sent. The server
+answers when it has processed this time, with the number of bytes it has sent to each robot.
 
     room -> server   tick: time_us, sent (bytes by robot)
     server -> room   tock: time_us, sent (bytes by robot)
@@ -18,52 +18,52 @@ if TYPE_CHECKING:
     from rmfs.demonstrator.server.hub import Hub
 
 ROOM = "room"
-"""Name under which an emulated room introduces itself."""
+"""Name with which an emulated room identifies itself."""
 
 PATIENCE_S = 60.0
-"""Wall time after which an emulated room that says nothing counts as gone."""
+"""Wall time without a message after which an emulated room counts as gone, in s."""
 
 
 class RoomGoneError(RuntimeError):
-    """The emulated room does not go on."""
+    """The emulated room has stopped responding."""
 
 
 class Clock(Protocol):
-    """Lets time pass."""
+    """The clock of a demonstration."""
 
     def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
-        """Return the messages of robots that belong to the time up to now, once it has come."""
+        """Wait until a time is reached, and return the robots' messages up to then."""
 
     def passed(self, hub: Hub, time_us: int) -> None:
-        """Note that everything of this time has been done."""
+        """Record that everything due at this time has been done."""
 
 
 class WallClock:
-    """Real time; the demonstration begins now."""
+    """The wall clock; the demonstration begins when it is created."""
 
     def __init__(self, begin_us: int = 0) -> None:
         self._zero = time.monotonic() - begin_us / 1e6
 
     def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
-        """Read until the time has come."""
+        """Read messages until the time is reached."""
         messages: list[tuple[str, Message]] = []
         while (left_s := time_us / 1e6 - (time.monotonic() - self._zero)) > 0:
             messages += hub.poll(time_us, left_s)
         return messages + hub.poll(time_us, 0.0)
 
     def passed(self, hub: Hub, time_us: int) -> None:
-        """Nothing to note."""
+        """Do nothing."""
 
 
 class RoomClock:
-    """The clock of an emulated room, in step with it."""
+    """The clock of an emulated room."""
 
     def __init__(self) -> None:
         self._room_us = -1
         self._expected: dict[str, int] = {}
 
     def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
-        """Read until the room is there and all that its robots have sent has arrived."""
+        """Read until the room has reached the time and its robots' bytes have arrived."""
         messages: list[tuple[str, Message]] = []
         begun = time.monotonic()
         while not self._is_complete(hub, time_us):
@@ -78,7 +78,7 @@ class RoomClock:
         return messages
 
     def passed(self, hub: Hub, time_us: int) -> None:
-        """Tell the room to go on."""
+        """Send the room the message to continue."""
         if self._room_us == time_us:
             self._answer(hub, time_us)
 

@@ -25,18 +25,18 @@ if TYPE_CHECKING:
 
 @dataclass
 class Demonstration:
-    """Which robots are real, and how they are reached.
+    """The real robots of a demonstration, and how they are reached.
 
     Attributes
     ----------
     hub
-        Where they come to.
+        The sessions of the robots.
     robots
-        Their names, and their indices in the layout.
+        Names of the robots, and their indices in the layout.
     tags
         The tag of every waypoint.
     journal
-        File of what is heard; a run goes on where it ends.
+        File of received messages; a run resumes where it ends.
     is_emulated
         Whether the robots are in an emulated room, which keeps the clock.
     """
@@ -49,19 +49,19 @@ class Demonstration:
     traffic: GuidedTraffic | None = None
 
     def run(self, *inputs: Any, seed: int = 0, **options: Any) -> Run:
-        """Simulate, with real robots for some.
+        """Run the simulation, with some of its robots real.
 
         Parameters
         ----------
         inputs, seed, options
-            As those of `rmfs.simulate`.
+            As for `rmfs.simulate`.
 
         Raises
         ------
         InputError
-            If something given is wrong.
+            If an argument is invalid.
         RoomGoneError
-            If the emulated room does not go on.
+            If the emulated room stops responding.
         """
         settings = {"inputs": [str(given) for given in inputs], "seed": seed, **_plain(options)}
         maker = partial(self._make, {**settings, "robots": self.robots})
@@ -89,7 +89,7 @@ class Demonstration:
 
 
 def expected(robots: dict[str, int], *, is_emulated: bool) -> list[str]:
-    """Return the names of all who may come."""
+    """Return the names of all clients that may connect."""
     return [*robots, ROOM] if is_emulated else [*robots]
 
 

@@ -1,4 +1,4 @@
-"""The server's side of the beginning of a session."""
+"""The server's side of the handshake."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rmfs.demonstrator.robot.protocol import (
 
 
 class Guest(NamedTuple):
-    """Who has introduced himself, the key of his session, and what he has sent beyond."""
+    """A client that has identified itself, the key of its session, and bytes received beyond."""
 
     name: str
     key: bytes
@@ -26,12 +26,12 @@ class Guest(NamedTuple):
 
 
 class Greeting:
-    """Welcomes one connection; a hello is good for this welcome only.
+    """The handshake of one connection; a hello is valid for this welcome only.
 
     Parameters
     ----------
     secret
-        Known to the robots.
+        Secret shared with the robots.
     """
 
     def __init__(self, secret: bytes) -> None:
@@ -45,12 +45,12 @@ class Greeting:
         return pack(message, self._secret, WELCOME)
 
     def receive(self, data: bytes) -> Guest | None:
-        """Return the guest once it has introduced itself.
+        """Add received bytes; return the client once it has identified itself.
 
         Raises
         ------
         ProtocolError
-            If the guest does not know the secret or speaks another version.
+            If the client does not know the secret, or uses another version.
         """
         for hello in self._unpacker.feed(data, self._secret, HELLO + self._nonce.encode()):
             if hello.get("type") != "hello" or hello.get("version") != VERSION:

@@ -1,10 +1,10 @@
-"""Guides real robots along the plans of the traffic layer, and keeps plans in step with them.
+"""Guides real robots along the plans of the traffic layer, and adapts the plans to them.
 
 Each tick begins with the messages of the robots. A robot that has not confirmed what its plan
 requires before the next tick is late: its plan is shifted, with those behind it in the order of
-waypoint use. Then robots whose next motion is due are sent off, as far as the way is clear.
-So the plan never runs ahead of reality, and a robot never enters a waypoint before the one planned
-before it has left.
+waypoint use. Then robots whose next motion is due are sent off, as far as the path is clear. So the
+plan never runs ahead of reality, and a robot never enters a waypoint before the robot that is
+planned before it has left.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ _log = logging.getLogger("rmfs.demonstrator")
 TICK_US = 50_000
 """Time between two ticks."""
 GIVE_UP_US = 30_000_000
-"""A robot silent for so long is planned around."""
+"""Time of silence after which other robots are planned around a robot."""
 MOST_TROUBLES = 2
 """After this many failed attempts at an order, other robots are planned around the robot, too."""
 GONE_US = 3_600_000_000
-"""So much later the plan of a robot that is planned around would go on."""
+"""Time by which the plan of a robot that is planned around is postponed."""
 SETTLE_US = 4_000_000
 """Time given to a robot to stop at the last waypoint it may use, when plans are remade."""
 
@@ -48,11 +48,11 @@ class Guide:
     Parameters
     ----------
     layout
-        One that `check_floor` has passed.
+        A layout that `check_floor` accepts.
     traffic
         Plans for all robots.
     robots
-        Indices of the real ones; the others are simulated.
+        Indices of the real robots; the others are simulated.
     tags
         The tag of every waypoint.
     """
@@ -73,14 +73,14 @@ class Guide:
     def tick(
         self, messages: Sequence[tuple[int, Message]], silent: frozenset[int]
     ) -> list[tuple[int, Message]]:
-        """Do what belongs to the present time of the traffic layer.
+        """Process one tick at the present time of the traffic layer.
 
         Parameters
         ----------
         messages
-            What robots have said, in order.
+            Messages of the robots, in order.
         silent
-            Robots with a session that give no sign.
+            Robots with a session that are silent.
 
         Returns
         -------

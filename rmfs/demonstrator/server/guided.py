@@ -1,4 +1,4 @@
-"""The traffic layer of a demonstration: as the simulation knows it, with real robots inside."""
+"""The traffic layer of a demonstration: the interface of the simulation, with real robots."""
 
 from __future__ import annotations
 

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 _log = logging.getLogger("rmfs.demonstrator")
 
 MOST_CONNECTIONS = 256
-"""Connections that may be open at once, introduced or not."""
+"""Maximum number of open connections, identified or not."""
 UNKNOWN_S = 5.0
-"""Wall time a connection has to introduce itself."""
+"""Wall time within which a connection must identify itself, in s."""
 
 
 class _Connection:
@@ -61,18 +61,18 @@ class Hub:
     Parameters
     ----------
     host, port
-        Where to listen; port 0 takes a free one.
+        Address and port on which to listen; port 0 selects a free one.
     secret
-        Known to the robots.
+        Secret shared with the robots.
     names
-        Of the robots that may come.
+        Names of the robots that may connect.
 
     Attributes
     ----------
     refused
-        Connections that ended before a session began.
+        Number of connections that ended before a session began.
     dropped
-        Names of those whose session has ended and who have not come back.
+        Names of robots whose session has ended and that have not reconnected.
     """
 
     def __init__(self, host: str, port: int, secret: bytes, names: Collection[str]) -> None:
@@ -95,11 +95,11 @@ class Hub:
 
     @property
     def present(self) -> frozenset[str]:
-        """Names of those with a session."""
+        """Names of robots with a session."""
         return frozenset(self._sessions)
 
     def silent(self, now_us: int) -> frozenset[str]:
-        """Names of those with a session who have given no sign for too long."""
+        """Names of robots with a session that have been silent for too long."""
         return frozenset(
             name
             for name, session in self._sessions.items()
@@ -107,12 +107,12 @@ class Hub:
         )
 
     def traffic_of(self, name: str) -> tuple[int, int]:
-        """Return the bytes received from and sent to somebody since the connection was opened."""
+        """Return the number of bytes received from and sent to a client since it connected."""
         session = self._sessions.get(name)
         return (session.received, session.sent) if session else (0, 0)
 
     def poll(self, now_us: int, timeout_s: float) -> list[tuple[str, Message]]:
-        """Read what has come, waiting for a time; return new messages in the order of arrival.
+        """Read for at most some time; return new messages in the order of arrival.
 
         A session that begins yields `{"type": "connected"}`, one that ends `{"type": "gone"}`.
         """
@@ -126,13 +126,13 @@ class Hub:
         return inbox
 
     def send(self, name: str, message: Message) -> None:
-        """Send a message; dropped without a session, since a new one begins with everything."""
+        """Send a message; without a session it is dropped, as a new session sends everything."""
         session = self._sessions.get(name)
         if session is not None and session.channel is not None:
             session.channel.send(message)
 
     def flush(self, now_us: int) -> None:
-        """Write what is due."""
+        """Write the frames that are due."""
         for session in list(self._sessions.values()):
             assert session.channel is not None
             try:

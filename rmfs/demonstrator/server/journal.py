@@ -1,7 +1,7 @@
-"""What the server has heard, written down tick by tick, so that it can be killed.
+"""A journal of received messages, tick by tick, so that a killed server can resume.
 
-A server that is started again with its journal does everything once more, as fast as it can, and is
-where it was: it decides nothing by chance that is not seeded, and hears the same.
+A server that is restarted with its journal repeats everything as fast as it can. It reaches the
+same state, as it receives the same messages and all its random draws are seeded.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ Heard = tuple[list[tuple[int, "Message"]], frozenset[int]]
 
 
 class Journal:
-    """A file with one line for every tick at which something was heard.
+    """A file with one line for every tick at which messages were received.
 
     Parameters
     ----------
     path
-        The file; begun if it is not there.
+        The file; created if it does not exist.
     settings
-        What the demonstration was started with; a journal of another one is refused.
+        Settings of the demonstration; a journal of another one is refused.
 
     Raises
     ------
     InputError
-        If the file is no journal or belongs to another demonstration.
+        If the file is not a journal, or belongs to another demonstration.
     """
 
     def __init__(self, path: Path, settings: dict[str, Any]) -> None:
@@ -51,13 +51,13 @@ class Journal:
         self._file = path.open("a", encoding="utf-8")
 
     def heard_at(self, time_us: int) -> Heard:
-        """Return what was heard at a time of the past."""
+        """Return the messages received at a past time."""
         return self._by_time.get(time_us, ([], frozenset()))
 
     def note(
         self, time_us: int, messages: list[tuple[int, Message]], silent: frozenset[int]
     ) -> None:
-        """Write down what has been heard, before it is acted upon."""
+        """Record received messages before they are processed."""
         entry = {"time_us": time_us, "heard": messages, "silent": sorted(silent)}
         self._file.write(json.dumps(entry, separators=(",", ":")) + "\n")
         self._file.flush()

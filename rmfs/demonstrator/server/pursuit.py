@@ -1,4 +1,4 @@
-"""Progress of a robot on a piece of its plan: what was ordered, and what it has confirmed."""
+"""Progress of a robot on a piece of its plan: its order, and what it has confirmed."""
 
 from __future__ import annotations
 
@@ -20,28 +20,28 @@ _TURNS = {0: [], 1: ["left"], 2: ["around"], 3: ["right"]}
 
 @dataclass
 class Pursuit:
-    """An order of the server, and how far the robot has come with it.
+    """An order of the server, and the robot's progress on it.
 
     Attributes
     ----------
     number
-        Of the order.
+        Number of the order.
     move
         The piece of the plan; its times change when the robot is late.
     heading_before_rad
-        Of the robot, before the turn.
+        Heading of the robot before the turn.
     waypoints
-        From the first one after the start to the last.
+        Waypoints from the first one after the start to the last.
     along_m
-        Distance of each from the start.
+        Distance of each waypoint from the start.
     passed
-        How many waypoints the robot has confirmed.
+        Number of waypoints that the robot has confirmed.
     turned, done
-        Whether it has turned; whether it stands at the end.
+        Whether the robot has turned; whether it stands at the end.
     granted
-        How many waypoints it may drive to: none before it has turned.
+        Number of waypoints to which the robot may drive: 0 until it has turned.
     troubles
-        How often it has reported, since the last waypoint, that it cannot go on.
+        Number of times since the last waypoint that it has reported being stuck.
     """
 
     number: int
@@ -60,7 +60,7 @@ class Pursuit:
     def of(
         cls, number: int, move: PlannedMove, heading_rad: float, layout: Layout, robot: int
     ) -> Pursuit:
-        """Return the pursuit of a move, not begun."""
+        """Create the pursuit of a move, not yet begun."""
         waypoints = straight_way(layout, move)
         x, y = layout.x_m, layout.y_m
         start = move.from_waypoint
@@ -74,7 +74,7 @@ class Pursuit:
         return cls(number, move, heading_rad, waypoints, along, seconds, turned=turned)
 
     def next_us(self, move: PlannedMove) -> int:
-        """When the plan has the robot at the next waypoint it has not confirmed.
+        """Planned time of the robot at its next unconfirmed waypoint.
 
         Parameters
         ----------
@@ -87,7 +87,7 @@ class Pursuit:
         return move.start_us + late_us + math.floor(self.seconds[self.passed] * 1e6)
 
     def pass_waypoint(self, waypoint: int) -> bool:
-        """Note that the robot was seen at a waypoint; false if it is not on its way."""
+        """Record that the robot was seen at a waypoint; false if that is not on its path."""
         if waypoint not in self.waypoints:
             return False
         self.turned = True
@@ -95,22 +95,22 @@ class Pursuit:
         return True
 
     def cut(self) -> None:
-        """End it at the last waypoint granted."""
+        """End the order at the last granted waypoint."""
         upto = max(self.granted, self.passed)
         del self.waypoints[upto:], self.along_m[upto:], self.seconds[upto:]
 
     @property
     def end(self) -> int:
-        """The waypoint at which it ends."""
+        """The waypoint at which the order ends."""
         return self.waypoints[-1] if self.waypoints else self.move.from_waypoint
 
     def order(self, tags: list[str]) -> Message:
-        """Return the order as the robot hears it, what is done left out of the actions.
+        """Return the order as a message to the robot, without completed actions.
 
         Parameters
         ----------
         tags
-            Of all waypoints.
+            Tags of all waypoints.
         """
         quarters = quarter_turns(self.heading_before_rad, self.move.heading_rad)
         turn = [] if self.turned else _TURNS[quarters]

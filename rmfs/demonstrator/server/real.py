@@ -1,4 +1,4 @@
-"""Robots outside the simulation, as the server knows them."""
+"""The server's knowledge of robots outside the simulation."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ if TYPE_CHECKING:
 
 @dataclass
 class RealRobot:
-    """What the server knows of a robot outside the simulation.
+    """The server's knowledge of a robot outside the simulation.
 
     Attributes
     ----------
     index
-        Of the robot in the layout.
+        Index of the robot in the layout.
     heading_rad
-        Which way it looks, when it has done its pursuit.
+        Its heading after completing its pursuit.
     pursuit
         The order it is carrying out.
     is_present
         Whether there is a session with it.
     heard_us
-        When it last said anything.
+        Time of its last message, in microseconds.
     given_up
-        Whether others are planned around it.
+        Whether other robots are planned around it.
     astray
-        The waypoint where it has lost its way.
+        The waypoint at which it has lost its way.
     """
 
     index: int
@@ -51,9 +51,10 @@ class RealRobot:
         return self.pursuit is not None and not self.pursuit.done
 
     def heading_at(self, layout: Layout, waypoint: int) -> float:
-        """Which way it looks where it has driven to a waypoint it was not sent to.
+        """Return its heading at a waypoint to which it was not sent.
 
-        Along its run, if it was pushed aside; if it has turned wrongly, along what it has driven.
+        If it was pushed aside, this is the heading of its run; if it turned wrongly, the direction
+        in which it has driven.
         """
         pursuit = self.pursuit
         if pursuit is None:
@@ -68,7 +69,7 @@ class RealRobot:
 
 
 def check_floor(layout: Layout, tags: Sequence[str]) -> None:
-    """Raise InputError if robots that follow lines and read tags cannot use a layout."""
+    """Check that robots that follow lines and read tags can use a layout; else raise InputError."""
     if layout.elevators:
         raise InputError(f"{layout.name}: elevators cannot be driven by real robots")
     if len(tags) != layout.waypoints or len(set(tags)) != len(tags):

@@ -1,6 +1,6 @@
-"""What an element of a controller configuration becomes: one small class per kind of value.
+"""Conversion of the elements of a controller configuration: one class per kind of value.
 
-An element that is absent has RAWSim-O's default, which is written out: ours may differ.
+For an absent element, RAWSim-O's default is written explicitly, as that of rmfs may differ.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Number(NamedTuple):
-    """A number, read into the parameter `key`."""
+    """A real number, converted to the parameter `key`."""
 
     key: str
     default: float
@@ -27,7 +27,7 @@ class Number(NamedTuple):
 
 
 class Whole(NamedTuple):
-    """A whole number."""
+    """An integer."""
 
     key: str
     default: int
@@ -38,7 +38,7 @@ class Whole(NamedTuple):
 
 
 class Switch(NamedTuple):
-    """True or false."""
+    """A truth value."""
 
     key: str
     default: bool
@@ -49,30 +49,30 @@ class Switch(NamedTuple):
 
 
 class Word(NamedTuple):
-    """One of several words, each with what it stands for here."""
+    """One of several words, each with its value in rmfs."""
 
     key: str
     choices: Mapping[str, str] | Mapping[str, bool]
     default: str
 
     def read(self, block: Settings, tag: str) -> Any:
-        """Return what the element's word stands for."""
+        """Return the value of the element's word."""
         return block.choice(tag, self.choices, self.default)
 
 
 class Complement(NamedTuple):
-    """A probability of which we give the other part."""
+    """A probability whose complement is the parameter of rmfs."""
 
     key: str
     default: float
 
     def read(self, block: Settings, tag: str) -> Any:
-        """Return 1 less the element's value, to fifteen digits."""
+        """Return 1 minus the element's value, rounded to fifteen digits."""
         return round(1.0 - block.number(tag, self.default), 15)
 
 
 class Numbers(NamedTuple):
-    """Several numbers: as a text with commas, or one to an element."""
+    """Several numbers, in one text with commas or in one element each."""
 
     key: str
     default: tuple[float, ...]
@@ -95,16 +95,16 @@ METRICS = {
 
 @dataclass(frozen=True)
 class Rule:
-    """What a rule of theirs becomes.
+    """Conversion of a rule of RAWSim-O.
 
     Attributes
     ----------
     name
-        Of our rule.
+        Name of the rule in rmfs.
     elements
-        What each element becomes.
+        Conversion of each element.
     left
-        Elements that are not used, each with the reason.
+        Elements that are not used, with the reason for each.
     """
 
     name: str
@@ -113,7 +113,7 @@ class Rule:
 
 
 def translated(block: Settings, rule: Rule) -> Table:
-    """Return our table for a rule of theirs; what is left out is noted.
+    """Return the table of a rule in a controllers file; note what is left out.
 
     Raises
     ------
@@ -126,5 +126,5 @@ def translated(block: Settings, rule: Rule) -> Table:
 
 
 def values_of(block: Settings, elements: Mapping[str, Element]) -> Table:
-    """Return the parameters that elements give."""
+    """Return the parameters given by the elements."""
     return {element.key: element.read(block, tag) for tag, element in elements.items()}

@@ -60,10 +60,10 @@ SIMPLE = {
         "lines-in-common", {**_LANE, "TieBreaker": Word("tie_breaker", _TIES, "EarliestDueTime")}
     ),
 }
-"""Rules that take their parameters one by one."""
+"""Order batchings whose parameters are converted one by one."""
 
 POA = ("Default", "Foresight", "Queue", *SIMPLE)
-"""All of them."""
+"""All order batchings."""
 
 _DEFAULT: dict[str, Element] = {
     **_LANE,
@@ -80,7 +80,7 @@ _SCORES = {
     "Deadline": "due-time",
     "AvailablePicks": "matches",
 }
-"""What the name of a score function ends in; the longer of two that fit first."""
+"""Score functions by suffix of their name; of two that match, the longer comes first."""
 
 _CRITERIA = {
     "VacantDeadline": Rule("due-soon", {"": Number("within_s", 600.0)}),
@@ -93,7 +93,7 @@ _CRITERIA = {
     "FCFS": Rule("first-come"),
     "Random": Rule("random"),
 }
-"""Criterion of POA queue for a word in the type of theirs; its only element is its parameter."""
+"""Criterion of POA queue for a word in RAWSim-O's type, whose only element is its parameter."""
 
 ROA = {
     "Random": Rule(
@@ -125,7 +125,7 @@ ROA = {
 
 
 def poa(kind: str, block: Settings) -> Table:
-    """Return our table for an order batching.
+    """Return the POA table for an order batching.
 
     Raises
     ------
@@ -178,5 +178,5 @@ def _criterion(block: Settings, rule: Rule) -> Table:
 
 
 def roa(kind: str, block: Settings) -> Table:
-    """Return our table for a replenishment batching."""
+    """Return the ROA table for a replenishment batching."""
     return translated(block, ROA[kind])

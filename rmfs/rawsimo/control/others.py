@@ -43,7 +43,7 @@ _EXCHANGEABLE = {
 
 
 def sa(kind: str, block: Settings) -> Table:
-    """Return our table for a station activation."""
+    """Return the SA table for a station activation."""
     table = translated(block, SA[kind])
     if kind == "WorkShift":
         shifts = block.switches("Shifts") or _SHIFTS
@@ -52,12 +52,12 @@ def sa(kind: str, block: Settings) -> Table:
 
 
 def mm(kind: str, block: Settings) -> Table:
-    """Return our table for a method management, which there exchanges pod storage only.
+    """Return the MM table for a method management, which in RAWSim-O exchanges only pod storage.
 
     Raises
     ------
     InputError
-        If a pod storage is named that RAWSim-O itself cannot exchange.
+        If it names a pod storage that RAWSim-O itself cannot exchange.
     """
     if kind == "Random":
         exchanges = block.switch("ExchangePodStorage", default=True)

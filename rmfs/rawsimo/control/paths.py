@@ -97,9 +97,9 @@ PP = (*_RULES, "Simple", "Dummy")
 
 
 def pp(kind: str, block: Settings) -> Table:
-    """Return our table for a path planning.
+    """Return the PP table for a path planning.
 
-    Methods of theirs that we have are granted one straight run at a time, as there.
+    As in RAWSim-O, methods that rmfs has too are granted one straight run at a time.
     """
     if kind in _RULES:
         return {**translated(block, _RULES[kind]), "runs_granted": 1}

@@ -70,7 +70,7 @@ _WITHIN = {
         for metric in METRICS
     },
 }
-"""Two parameters of ours in one word."""
+"""Pairs of parameters that RAWSim-O expresses by one word."""
 
 _PRIORITIES = {"DropoffFirst": "drop-off", "CacheFirst": "cache", "CacheDropoffEqual": "equal"}
 ZONES: dict[str, Element] = {
@@ -78,7 +78,7 @@ ZONES: dict[str, Element] = {
     "DropoffCount": Whole("drop_off_places", 0),
     "ZonePriority": Word("zone_priority", _PRIORITIES, "DropoffFirst"),
 }
-"""They stand in a block of their own."""
+"""The zones, which have their own block in the file."""
 
 _DEAD = {
     "ScoreUpdateTimeout": "RAWSim-O itself never looks at it",
@@ -157,12 +157,12 @@ REPOSITIONING = {
 
 
 def rps(kind: str, block: Settings) -> Table:
-    """Return our table for an item storage."""
+    """Return the RPS table for an item storage."""
     return translated(block, RPS[kind])
 
 
 def psa(kind: str, block: Settings) -> Table:
-    """Return our table for a pod storage."""
+    """Return the PSA table for a pod storage."""
     table = translated(block, PSA[kind]) | _zones(kind, block)
     if "within_class" in table:
         table["within_class"], _, metric = table["within_class"].partition(" ")
@@ -171,7 +171,7 @@ def psa(kind: str, block: Settings) -> Table:
 
 
 def repositioning(kind: str, block: Settings) -> Table:
-    """Return our table for a repositioning."""
+    """Return the repositioning table for a repositioning."""
     return translated(block, REPOSITIONING[kind]) | _zones(kind, block)
 
 

@@ -168,7 +168,7 @@ _OLD_ORDERS = (
 
 
 def ta(kind: str, block: Settings) -> Table:
-    """Return our table for a task allocation, without its pod selection."""
+    """Return the TA table for a task allocation, without its pod selection."""
     block.leave(_OLD_ORDERS, "RAWSim-O itself has dropped it, and takes its default pod selection")
     table = translated(block, TA[kind])
     if table.get("period_s") == 0:
@@ -178,9 +178,9 @@ def ta(kind: str, block: Settings) -> Table:
 
 
 def pps(kind: str, block: Settings) -> Table:
-    """Return our table for the pod selection of a task allocation.
+    """Return the PPS table for the pod selection of a task allocation.
 
-    Robots that choose pods themselves need a dummy; they bind nothing on the way there.
+    Robots that choose pods themselves need a dummy; they reserve nothing on their way to a pod.
     """
     selection = block.block("PodSelectionConfig")
     if kind in ("Random", "BruteForce"):

@@ -1,7 +1,7 @@
 """Reader for RAWSim-O's controller configurations (.xconf).
 
-Every element is mapped to a rule or a parameter of ours, or named in a note together with the
-reason why not.
+Every element is mapped to a rule or parameter of rmfs, or listed in a note with the reason why it
+is not.
 """
 
 from __future__ import annotations
@@ -47,14 +47,14 @@ _COMMENTS = ("CommentTag1", "CommentTag2", "CommentTag3")
 
 
 class ImportedControllers(NamedTuple):
-    """What a controller configuration says.
+    """The contents of a controller configuration.
 
     Attributes
     ----------
     table
-        As in a controllers file, not yet validated.
+        The table of a controllers file, not yet validated.
     notes
-        What was left out and what we do differently.
+        What was left out, and what differs in rmfs.
     """
 
     table: Table
@@ -62,12 +62,12 @@ class ImportedControllers(NamedTuple):
 
 
 def read_xconf(path: Path) -> ImportedControllers:
-    """Read a controller configuration; what it does not say takes RAWSim-O's default.
+    """Read a controller configuration; missing elements take RAWSim-O's defaults.
 
     Raises
     ------
     InputError
-        If the file is not such XML, or a method or a value in it is unknown.
+        If the file is not a controller configuration, or a method or value is unknown.
     """
     notes: list[str] = []
     root = Settings(read_root(path, ROOT), path, notes)

@@ -22,7 +22,7 @@ _ROBOT_KIND = {
     "PodTransferTime": "pod_transfer_s",
 }
 _POD_RADIUS_M = 0.45
-"""For a layout without pods (RAWSim-O's default)."""
+"""Radius of pods in a layout without pods (RAWSim-O's default)."""
 
 
 def pods(
@@ -52,7 +52,7 @@ def pods(
 
 
 def robots(instance: Instance, waypoints: list[Table]) -> tuple[list[Table], list[Table]]:
-    """Return the kinds of robots and the robots, each at the nearest waypoint of its tier."""
+    """Return the kinds of robots, and the robots, each at the nearest waypoint of its tier."""
     nearest = _Nearest(waypoints, [True] * len(waypoints))
     kinds: dict[tuple[float, ...], int] = {}
     found: list[Table] = []

@@ -1,4 +1,4 @@
-"""Typed access to the attributes of RAWSim-O's XML elements, with every problem collected."""
+"""Typed access to the attributes of RAWSim-O's XML elements; all problems are collected."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ NOBODY = -1
 
 
 class Problems:
-    """Collects what is wrong with a file and raises it as one error."""
+    """Collects the problems of a file and raises them as one error."""
 
     def __init__(self) -> None:
         self.found: list[str] = []
 
     def add(self, problem: str) -> None:
-        """Note one problem."""
+        """Add a problem."""
         self.found.append(problem)
 
     def stop(self, source: object) -> None:
@@ -30,7 +30,7 @@ class Problems:
         Raises
         ------
         InputError
-            One line with the first of them and the number of the others.
+            One line with the first problem and the number of the others.
         """
         stop_if_any(self.found, source)
 
@@ -41,9 +41,9 @@ class Fields:
     Parameters
     ----------
     element
-        The element; messages call it by its tag and `ID`.
+        The element; messages name its tag and `ID`.
     problems
-        Where wrong values are noted; the reader goes on with 0.
+        Collection of problems; the reader continues with 0 for a wrong value.
     """
 
     def __init__(self, element: Element, problems: Problems) -> None:
@@ -52,7 +52,7 @@ class Fields:
 
     @property
     def label(self) -> str:
-        """What messages call the element."""
+        """Name of the element in messages."""
         return f"{self._element.tag} {self._element.get('ID', '(without ID)')}"
 
     def number(self, name: str, default: float | None = None) -> float:
@@ -70,7 +70,7 @@ class Fields:
         return value
 
     def whole(self, name: str, default: int | None = None) -> int:
-        """Return a whole number; without a default, the attribute is required."""
+        """Return an integer; without a default, the attribute is required."""
         text = self._element.get(name)
         if text is None and default is not None:
             return default
@@ -93,6 +93,6 @@ class Fields:
 
 
 def slashed(text: str | None, parts: int) -> list[str] | None:
-    """Split "a/b/c" into that many parts, or return None if it has another number."""
+    """Split "a/b/c" into the given number of parts; None if the number of parts differs."""
     found = (text or "").strip().split("/")
     return found if len(found) == parts else None

@@ -1,4 +1,4 @@
-"""The elements of an .xinst file: found by kind and id, surveyed for what is not understood."""
+"""The elements of an .xinst file, accessed by kind and id, with a check for unknown ones."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ _UNNAMED = "unnamed"
 
 
 class Instance:
-    """One file while it is translated.
+    """A file that is being translated.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class Instance:
     Attributes
     ----------
     problems
-        What makes the file unusable.
+        Problems that make the file unusable.
     remarks
         What was left out or filled in.
     """
@@ -96,11 +96,11 @@ class Instance:
         return (Fields(element, self.problems) for element in self._elements[kind])
 
     def has(self, kind: str, name: int) -> bool:
-        """Tell whether there is an element of a kind with that id."""
+        """Return whether there is an element of a kind with that id."""
         return name in self._index[kind]
 
     def position(self, kind: str, name: int, where: str) -> int:
-        """Return the position of an id, or 0 and a problem if there is none."""
+        """Return the position of an id; if there is none, add a problem and return 0."""
         if not self.has(kind, name):
             self.problems.add(f"{where}: there is no {kind} {name}")
         return self._index[kind].get(name, 0)

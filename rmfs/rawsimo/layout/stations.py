@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 def pick_stations(instance: Instance, occupants: Occupants) -> list[Table]:
     """Return the pick stations.
 
-    Without ItemPickTime (or with 0) a robot is held as long as the station, as in RAWSim-O.
+    Without ItemPickTime (or if it is 0), a robot is held as long as the station is occupied, as in
+    RAWSim-O.
     """
     ranks = _ranks(instance, "OutputStation")
     stations, without = [], 0
@@ -61,7 +62,7 @@ def replenishment_stations(instance: Instance, occupants: Occupants) -> list[Tab
 
 
 def elevators(instance: Instance) -> tuple[list[Table], set[tuple[int, int]]]:
-    """Return the elevators, and all pairs of waypoints that one of them joins."""
+    """Return the elevators, and all pairs of waypoints joined by an elevator."""
     found: list[Table] = []
     pairs: set[tuple[int, int]] = set()
     for element in instance.elements("Elevator"):

@@ -27,7 +27,7 @@ def tiers(instance: Instance) -> list[Table]:
 
 
 def waypoints(instance: Instance) -> tuple[list[Table], Occupants]:
-    """Return the waypoints, still without edges, and who stands where.
+    """Return the waypoints, still without edges, and their pods and stations.
 
     As in RAWSim-O a waypoint takes the position of the pod or station it names, and one with a pod
     is a storage place.
@@ -75,7 +75,7 @@ def _occupant(
 
 
 def add_edges(instance: Instance, waypoints: list[Table], rides: set[tuple[int, int]]) -> None:
-    """Fill in the edges; those between tiers are left to the elevators.
+    """Add the edges, except those between tiers, which elevators provide.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""RAWSim-O's layouts as files of ours."""
+"""Conversion of RAWSim-O's layouts to layout files."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SUFFIXES = {".xinst": ".json", ".xlayo": ".toml"}
-"""Endings of their files and of ours."""
+"""Suffixes of RAWSim-O's files, and of the files written for them."""
 
 
 def import_layout(path: Path, target: Path) -> list[str]:
-    """Write a layout of RAWSim-O as one of ours; return remarks on what differs.
+    """Convert a layout file of RAWSim-O; return remarks on differences.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def import_layout(path: Path, target: Path) -> list[str]:
     Raises
     ------
     InputError
-        If the file is of another kind or not valid, or the target has another ending or cannot be
+        If the file is of another kind or invalid, or the target has another suffix or cannot be
         written.
     """
     suffix = SUFFIXES.get(path.suffix.lower())

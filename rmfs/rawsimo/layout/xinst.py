@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def read_xinst(path: Path) -> tuple[Layout, list[str]]:
-    """Read a file into a layout and remarks about what was left out or filled in.
+    """Read a file; return the layout, and remarks on what was left out or filled in.
 
     Raises
     ------

@@ -114,7 +114,7 @@ def read_xlayo_table(path: Path) -> tuple[Table, list[str]]:
 
 
 def read_xlayo(path: Path) -> tuple[LayoutParameters, list[str]]:
-    """Read a file into parameters and remarks.
+    """Read a file; return the parameters and remarks.
 
     Raises
     ------

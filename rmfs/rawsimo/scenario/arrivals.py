@@ -1,4 +1,4 @@
-"""When orders and bundles come, in a settings file."""
+"""Arrivals of orders and bundles in a settings file."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ _TIED_TO = {
 _POISSON_MODES = {"Simple": "constant", "TimeDependent": "steps", "HighLow": "high-low"}
 
 UNBOUNDED_SHARE = 1000.0
-"""Load limit where capacity is to be ignored."""
+"""Load limit used if capacity is ignored."""
 
 
 class Arrivals:
-    """Maps what the inventory block says of arrivals.
+    """Conversion of the arrivals in the inventory block.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Arrivals:
     letters
         Whether orders are words.
     file
-        Of fixed orders.
+        File of fixed orders.
     """
 
     def __init__(self, block: Settings, mode: str, *, letters: bool, file: str | None) -> None:
@@ -220,9 +220,9 @@ class Arrivals:
 
 
 def down_periods(changes: Sequence[tuple[float, bool]], cycle_s: float) -> list[list[float]]:
-    """Turn changes (time of the cycle, whether down from then on) into down periods.
+    """Convert changes (time in the cycle, whether down from then on) to down periods.
 
-    Before the first change it is as after the last one, since the cycle comes again.
+    Before the first change, the state is that after the last one, as the cycle repeats.
     """
     state = changes[-1][1]
     begin_s = 0.0
@@ -235,7 +235,7 @@ def down_periods(changes: Sequence[tuple[float, bool]], cycle_s: float) -> list[
 
 
 def steps(weights: Sequence[tuple[float, float]]) -> dict[str, Any]:
-    """Turn steps (start, weight) into our keys; none: the default ones."""
+    """Convert steps (start, weight) to scenario keys; if there are none, use the default ones."""
     if not weights:
         return {}
     if weights[0][0] > 0:

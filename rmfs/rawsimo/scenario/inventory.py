@@ -23,14 +23,14 @@ _ORDER_MODES = {"Fill": "backlog", "Poisson": "poisson", "Fixed": "stream"}
 
 
 class Inventory:
-    """Maps the inventory block.
+    """Conversion of the inventory block.
 
     Parameters
     ----------
     block
         The block.
     path
-        The settings file, from which other files are looked for.
+        The settings file; other files are located relative to it.
     """
 
     def __init__(self, block: Settings, path: Path) -> None:
@@ -40,7 +40,7 @@ class Inventory:
         self._mode = block.choice("OrderMode", _ORDER_MODES, "Fill")
 
     def tables(self) -> Table:
-        """Return the tables of a scenario that the block fills.
+        """Return the tables of a scenario that the block defines.
 
         Raises
         ------

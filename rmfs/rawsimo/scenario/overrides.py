@@ -1,4 +1,4 @@
-"""The block of a settings file that changes the layout."""
+"""Conversion of the block of a settings file that changes the layout."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _COUNTS = {
 
 
 def layout_overrides(block: Settings) -> list[tuple[list[str], Any]]:
-    """Return what is asked of the layout as pairs of path and value.
+    """Return the changes of the layout as pairs of path and value.
 
-    A switch is an element, its value another one whose name begins alike.
+    A switch is one element, and its value another one whose name begins in the same way.
 
     Raises
     ------

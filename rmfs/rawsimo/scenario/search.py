@@ -15,13 +15,14 @@ _FOLDERS = (
 def find_beside(settings: Path, named: str, suffix: str) -> Path:
     """Find a file that a settings file names.
 
-    First the path as given, from the folder of the settings file; then the bare name there and in
-    every folder above, each with its folders of resources.
+    It is sought first under the given path, relative to the folder of the settings file, then by
+    its name alone in that folder and in every folder above, including their resource folders.
 
     Parameters
     ----------
     suffix
-        How the name must end: a settings file from anybody does not make us read other files.
+        Required suffix of the name, so that a settings file of unknown origin cannot cause other
+        files to be read.
 
     Raises
     ------

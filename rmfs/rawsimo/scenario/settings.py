@@ -1,4 +1,4 @@
-"""Typed access to the elements of RAWSim-O's files, with notes on what was not asked for."""
+"""Typed access to the elements of RAWSim-O's files, with notes on elements not read."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ class Settings:
     Parameters
     ----------
     element
-        The block; None: absent, all values are the defaults.
+        The block; None: it is absent, and all values are defaults.
     path
         The file, for messages.
     notes
-        Where to say what is not used.
+        Collection of notes on what is not used.
 
     Attributes
     ----------
     kind
-        The type the block names (attribute xsi:type), or nothing.
+        The type that the block names (attribute xsi:type), or empty.
     """
 
     def __init__(self, element: Element | None, path: Path, notes: list[str]) -> None:
@@ -50,11 +50,11 @@ class Settings:
 
     @property
     def tags(self) -> list[str]:
-        """Names of all elements there are."""
+        """Names of all elements in the block."""
         return list(self._elements)
 
     def error(self, tag: str, problem: str) -> InputError:
-        """Return the error that names an element and what is wrong with it."""
+        """Return an error that names an element and its problem."""
         return InputError(f"{self._path}: {tag}: {problem}")
 
     def note(self, text: str) -> None:
@@ -68,11 +68,11 @@ class Settings:
         return default if element is None else (element.text or "").strip()
 
     def kind_of(self, tag: str) -> str:
-        """Return the type an element names, or nothing; the element counts as unread."""
+        """Return the type that an element names, or empty; the element still counts as unread."""
         return _kind(self._elements.get(tag))
 
     def choice(self, tag: str, choices: Mapping[str, _T], default: str) -> _T:
-        """Return what a word stands for."""
+        """Return the value that the word in an element stands for."""
         word = self.text(tag, default)
         if word not in choices:
             raise self.error(tag, f"must be one of {', '.join(choices)} (given: {word!r:.40})")
@@ -83,7 +83,7 @@ class Settings:
         return default if tag not in self else self._number(tag, self.text(tag))
 
     def whole(self, tag: str, default: int) -> int:
-        """Return a whole number."""
+        """Return an integer."""
         number = self.number(tag, default)
         if number % 1:
             raise self.error(tag, f"must be a whole number (given: {number:g})")
@@ -105,13 +105,13 @@ class Settings:
         )
 
     def switches(self, tag: str) -> list[tuple[float, bool]]:
-        """Return a list of keys, and true or false for each, in order of the keys."""
+        """Return a list of keys with a truth value each, in order of the keys."""
         return sorted(
             (self._number(tag, key), self._switch(tag, value)) for key, value in self._pairs(tag)
         )
 
     def words(self, tag: str, choices: Mapping[str, str]) -> list[tuple[float, str]]:
-        """Return a list of keys and what the word of each stands for; words are checked."""
+        """Return a list of keys with the value of each key's word; words are validated."""
         found = []
         for key, word in self._pairs(tag):
             if word not in choices:
@@ -120,7 +120,7 @@ class Settings:
         return sorted(found)
 
     def numbers(self, tag: str, default: tuple[float, ...]) -> list[float]:
-        """Return several numbers: a text with commas, or one to an element."""
+        """Return several numbers, from one text with commas or from one element each."""
         self._read.add(tag)
         element = self._elements.get(tag)
         if element is None:
@@ -134,7 +134,7 @@ class Settings:
         return {key: number for key, number in numbers.items() if number}
 
     def leave(self, tags: Iterable[str], reason: str) -> None:
-        """Note of elements that are known and not used why that is."""
+        """Note for known elements why they are not used."""
         present = [tag for tag in tags if tag in self]
         self._read.update(present)
         if present:

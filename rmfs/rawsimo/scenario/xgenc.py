@@ -32,8 +32,8 @@ def read_xgenc(path: Path) -> SkuFileContent:
     Raises
     ------
     InputError
-        One line that names the file and what is wrong first: not such XML, an unknown element, a
-        SKU listed twice or unknown, a value missing or out of range.
+        One line that names the file and its first problem: wrong XML, an unknown element, a SKU
+        that is unknown or listed twice, or a value that is missing or out of range.
     """
     return _Reader(path).content()
 

@@ -45,16 +45,16 @@ Row = tuple[int, tuple[str, str, str, str, str]]
 
 @dataclass(frozen=True)
 class OrderList:
-    """What an .xitem file holds.
+    """The contents of an .xitem file.
 
     Attributes
     ----------
     path
         The file.
     skus
-        Its SKUs; as popular as they are ordered in it.
+        Its SKUs, with popularities in proportion to the units ordered.
     notes
-        What the reader does not know and left out.
+        What the reader does not know and has left out.
     """
 
     path: Path
@@ -64,12 +64,12 @@ class OrderList:
     _bundles: tuple[Row, ...]
 
     def orders(self, skus: SkuSet) -> OrderStream:
-        """Return its orders; they have no due times.
+        """Return its orders, which have no due times.
 
         Raises
         ------
         InputError
-            One line that names the wrong orders.
+            One line that names the invalid orders.
         """
         problems = Problems(self.path)
         rows = OrderRows(skus, problems, "order")
@@ -85,12 +85,12 @@ class OrderList:
         Parameters
         ----------
         largest
-            Space units of the largest pod.
+            Capacity of the largest pod, in space units.
 
         Raises
         ------
         InputError
-            One line that names the wrong bundles.
+            One line that names the invalid bundles.
         """
         problems = Problems(self.path)
         rows = BundleRows(skus, problems, "bundle", largest)
@@ -106,8 +106,8 @@ def read_xitem(path: Path) -> OrderList:
     Raises
     ------
     InputError
-        If the file is not such XML, or a SKU is wrong. Orders and bundles are checked when they are
-        asked for.
+        If the file is not an order list, or a SKU is invalid. Orders and bundles are validated when
+        they are requested.
     """
     root = read_root(path, ROOT)
     orders = tuple(_order_rows(root))

@@ -1,6 +1,6 @@
 """Reader for RAWSim-O's scenarios (.xsett).
 
-Every element is mapped to a parameter of ours, or named in a note together with the reason why not.
+Every element is mapped to a parameter of rmfs, or listed in a note with the reason why it is not.
 """
 
 from __future__ import annotations
@@ -38,16 +38,16 @@ _COMMENTS = ("CommentTag1", "CommentTag2", "CommentTag3")
 
 
 class ImportedSettings(NamedTuple):
-    """What a settings file says.
+    """The contents of a settings file.
 
     Attributes
     ----------
     table
         The scenario, not yet validated; files in it are absolute.
     notes
-        What was left out and what we do differently.
+        What was left out, and what differs in rmfs.
     layout
-        What the file asks of the layout, as overrides: paths that begin with `layout`, and values.
+        Changes of the layout, as overrides: paths that begin with `layout`, and values.
     """
 
     table: Table
@@ -56,12 +56,12 @@ class ImportedSettings(NamedTuple):
 
 
 def read_xsett(path: Path) -> ImportedSettings:
-    """Read a settings file; what it does not say takes RAWSim-O's default.
+    """Read a settings file; missing elements take RAWSim-O's defaults.
 
     Raises
     ------
     InputError
-        If the file is not such XML, a value is wrong, or a file it names is missing.
+        If the file is not a settings file, a value is invalid, or a file it names is missing.
     """
     notes: list[str] = []
     settings = Settings(read_root(path, ROOT), path, notes)

@@ -67,15 +67,15 @@ def take(
 ) -> Snapshot | None:
     """Collect what is to be decided now; None if there is nothing.
 
-    Parameters
-    ----------
-    robots
-        Robots that are free to fetch pods; None if robots are not decided.
-
     Orders that stock cannot serve are omitted, and so are planned ones: their units count as demand
     of their station, and called pods count as under way. A station gets a slot for each item that
     pods under way cover completely, and one more if it needs a pod; with `when_needed = false` it
     gets all its free slots.
+
+    Parameters
+    ----------
+    robots
+        Robots that are free to fetch pods; None if robots are not decided.
     """
     taken = plan.keys()
     open_units = _open_units(view, plan)
