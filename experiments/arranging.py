@@ -1,4 +1,4 @@
-"""The rows of a table by the levels of factors instead of by arm, and one factor as columns."""
+"""Rearranging tables of results: factor levels instead of arms, one factor as columns."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ COUNTS = ("seeds", "pairs")
 
 
 def by_factors(table: Table, plan: Plan) -> Table:
-    """Give a table of arms a column per factor in place of the arm's name.
+    """Replace the name of each arm in a table by one column per factor.
 
     Raises
     ------
     InputError
-        If the factors do not tell the arms apart.
+        If the factors do not distinguish the arms.
     """
     levels = _levels(table, plan)
     frame = table.frame.copy()
@@ -33,7 +33,7 @@ def by_factors(table: Table, plan: Plan) -> Table:
 
 
 def across(table: Table, plan: Plan, factor: str) -> Table:
-    """Put the levels of a factor side by side; the rows are those of the other factors.
+    """Arrange the levels of a factor as columns; the rows are the levels of the other factors.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def across(table: Table, plan: Plan, factor: str) -> Table:
     Raises
     ------
     InputError
-        If there is no such factor among several, or the factors do not tell the arms apart.
+        If there is no such factor or no other factor, or the factors do not distinguish the arms.
     """
     levels = _levels(table, plan)
     name = plan.short_names.get(factor, factor)

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 ARM_SIGN = "#"
-"""Separates a folder from the name of one of its arms."""
+"""Character that separates a folder from the name of one of its arms."""
 
 
 def numbers() -> list[str]:
-    """Return the columns to compare: those of every footprint, and of known users' measures."""
+    """Return the columns to compare: the standard footprint, and known measures of users."""
     columns = (*FOOTPRINT, *learnt())
     return [column.name for column in columns if column.is_number and column.name != "seed"]
 
@@ -67,8 +67,8 @@ class Comparison:
     inputs
         Differing inputs: `key`, `baseline`, `other`.
     outputs
-        Per column of the footprint `baseline`, `other` (means), `difference`, `low`, `high`,
-        `relative`, `p`; an interval only where there are several seeds.
+        One row per footprint column: `baseline`, `other` (means), `difference`, `low`, `high`,
+        `relative`, `p`. There is an interval only if there are several seeds.
     pairs
         Number of seeds in common; 0 if the samples were treated as independent.
     identical
@@ -274,18 +274,18 @@ MAIN = (
     "order_turnover_median_s",
     "late_share",
 )
-"""Outputs shown unless all are asked for."""
+"""Outputs shown unless all are requested."""
 
 
 def chosen_columns(
     comparison: Comparison, columns: Sequence[str], *, everything: bool
 ) -> list[str]:
-    """Return the columns to show: those asked for, all outcomes that differ, or the main ones.
+    """Return the columns to show: the requested ones, all that differ, or the main ones.
 
     Raises
     ------
     InputError
-        If a column asked for is not there.
+        If a requested column does not exist.
     """
     there = list(comparison.outputs.index)
     wrong = [column for column in columns if column not in there]

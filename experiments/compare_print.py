@@ -11,10 +11,10 @@ if TYPE_CHECKING:
     from rmfs.experiments.compare import Comparison
 
 ROUNDING = 1e-12
-"""Share of the numbers compared, or of 1, that is taken for rounding."""
+"""Relative difference (absolute below 1) that counts as rounding error."""
 
 MOST_RELATIVE = 10.0
-"""Largest difference, in baselines, that is told in per cent of the baseline."""
+"""Largest difference, in multiples of the baseline, that is shown in per cent of it."""
 
 
 def print_comparisons(found: list[Comparison], columns: list[str], *, everything: bool) -> None:

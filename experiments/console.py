@@ -1,4 +1,4 @@
-"""Where tables are printed."""
+"""The console on which tables are printed."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 WIDE = 240
-"""Width of a table that goes to a file or a pipe."""
+"""Width of tables written to a file or a pipe."""
 
 
 def open_console() -> Console:
-    """Return what tables are printed to; elsewhere than on a terminal they are not folded."""
+    """Return the console for tables, which are wrapped only on a terminal."""
     from rich.console import Console
 
     return Console(highlight=False, width=None if sys.stdout.isatty() else WIDE)

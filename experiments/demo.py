@@ -1,7 +1,7 @@
 """The demonstration of `make demo`: the default warehouse, three seeds, a table and a picture.
 
-Every run's trace is checked before its figures are shown; the run folders and the picture are left
-in `results/demo`.
+The trace of every run is checked before its figures are shown. Run folders and picture are written
+to `results/demo`.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def table(footprints: pd.DataFrame) -> Group:
 
 
 def picture(path: Path) -> None:
-    """Draw where the robots of all seeds drove."""
+    """Draw a heat map of the robots' visits, over all seeds."""
     import matplotlib as mpl
 
     mpl.use("Agg")
@@ -102,7 +102,7 @@ def picture(path: Path) -> None:
 
 
 def say(text: str) -> None:
-    """Print one step."""
+    """Print a message about a step."""
     print(text, flush=True)
 
 

@@ -14,7 +14,7 @@ def optional(module: str, extra: str, purpose: str) -> Any:
     Parameters
     ----------
     extra
-        The extra of rmfs that brings it.
+        The extra of rmfs that contains it.
     purpose
         What it is needed for.
 
@@ -33,5 +33,5 @@ def optional(module: str, extra: str, purpose: str) -> Any:
 
 
 def statsmodels(module: str) -> Any:
-    """Import a module of statsmodels, named without the package."""
+    """Import a module of statsmodels, given its name without the package."""
     return optional(f"statsmodels.{module}", "experiments", "this statistic")

@@ -1,9 +1,9 @@
-"""What perfect foresight would save: the storage places and the robots of a run, chosen afterwards.
+"""The value of perfect foresight: storage places and robots of a run, chosen in retrospect.
 
-A run is taken as it was: which pod visits which station, and when each pod is lifted and set down.
-Whoever had known all this could have chosen other storage places (PSA) for less loaded driving, or
-other robots (TA) for less empty driving. Both are problems with a proven bound; what the run drove
-beyond it is all that a better PSA, or TA, could have saved without changing anything else.
+The visits of pods to stations, and the times at which pods are lifted and set down, are kept as in
+the run. With this knowledge, PSA could have chosen other storage places to reduce loaded driving,
+and TA other robots to reduce empty driving. Each problem has a proven bound; the driving of the run
+in excess of it is the most that a better PSA or TA could have saved with everything else unchanged.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 TOLERANCE_S = 0.001
-"""Travel times are rounded to microseconds."""
+"""Tolerance in s, as travel times are rounded to microseconds."""
 
 
 class Foresight(Measure):
-    """What better storage places, or a better choice of robots, could have saved in a run.
+    """Possible savings in a run by better storage places, or by a better choice of robots.
 
-    For runs on one tier without repositioning. Shares are of the time of all robots; each is an
-    upper limit of what the decision could free if nothing else changed.
+    Only for runs on one tier without repositioning. Savings are shares of the time of all robots;
+    each is an upper bound on what the decision could save if nothing else changed.
     """
 
     columns = (
@@ -70,7 +70,7 @@ class Foresight(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Solve both problems; the stays to proven optimality."""
+        """Solve both problems and return the savings; stays are solved to proven optimality."""
         trips, times = run.tables["trips"], run.recorder.traffic
         data, stored_s = stays_of(run, trips, times)
         saved_s = max(stored_s - solve_stays(data, "highs").bound, 0.0)
@@ -87,25 +87,25 @@ class Foresight(Measure):
 
 
 def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[Stays, float]:
-    """Return the stays of pods at storage places in a run, and what they cost there, s.
+    """Return the stays of pods at storage places in a run, and their cost, in s.
 
-    A place is kept for a pod from the start of the way there until a robot begins to lift the pod
-    again. The way from the station and the way to the next one are its cost. A pod that stood at
-    its place before the first trip keeps it, at no cost, until it is lifted; the places of pods
-    that never moved are left out.
+    A place is reserved for a pod from the start of the drive there until a robot begins to lift the
+    pod again. Its cost is the time of the drives from the last station and to the next one. A pod
+    that stood at its place before the first trip keeps it, at no cost, until it is lifted; the
+    places of pods that never moved are left out.
 
     Parameters
     ----------
     run
-        For its layout, its end, and where pods stood then.
+        The run, which provides the layout, its end, and the final places of pods.
     trips
-        Its table of trips.
+        Table of trips of the run.
     times
-        Unhindered travel times on its layout.
+        Unhindered travel times on the layout.
 
     Returns
     -------
-    Stays with a zone for every place, and the unhindered time of these ways in the run.
+    The stays, with one zone per place, and the unhindered time of these drives in the run.
     """
     loaded = trips[trips["loaded"]]
     lifts = {
@@ -151,21 +151,22 @@ def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[St
 
 
 def lifts_of(trips: pd.DataFrame, times: TravelTimes) -> tuple[float, float, int]:
-    """Return the empty driving of a run, and the least that any choice of robots needs, s.
+    """Return the empty driving of a run, and the minimum over all choices of robots, in s.
 
-    Every pod is lifted where and no later than it was, by a robot that was free before: robots
-    become free where and when their last trip but those to pods ended.
+    Every pod is lifted at the same place and no later than in the run, by a robot that was free
+    before. A robot becomes free at the place and time at which its last trip that was not to a pod
+    ended.
 
     Parameters
     ----------
     trips
         Table of trips of a run.
     times
-        Unhindered travel times on its layout.
+        Unhindered travel times on the layout.
 
     Returns
     -------
-    Unhindered time of the trips to pods in the run, the least possible, and how many they are.
+    Unhindered time of the trips to pods in the run, the minimum possible, and the number of trips.
     """
     to_pod = trips[trips["kind"] == "to_pod"].sort_values("start_s")
     arrival_s = to_pod["end_s"].to_numpy()

@@ -1,4 +1,4 @@
-"""From what a user types to an experiment: a design file, the name of a shipped one, or results."""
+"""Opening an experiment by a design file, the name of a shipped design, or a results folder."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ class Opened:
     store: Store
 
     def rows(self) -> tuple[pd.DataFrame, str]:
-        """Return the finished runs, and what is lacking.
+        """Return the finished runs, and a note on missing ones.
 
         Raises
         ------
         InputError
-            If there are none.
+            If there are no finished runs.
         """
         from rmfs.experiments.complete import lacking
         from rmfs.experiments.results import assigned
@@ -55,13 +55,13 @@ class Opened:
 
 
 def opened(design: str, out: Path | None = None) -> Opened:
-    """Open an experiment; print everything that is wrong with its design and end with code 2.
+    """Open an experiment; if its design has problems, print them and exit with code 2.
 
     Parameters
     ----------
     design
-        A design file, the name of a shipped design, or a folder of results, which holds the plan
-        that it was made with.
+        A design file, the name of a shipped design, or a folder of results, which contains the
+        plan.
     out
         The folder of results. Default: `results/NAME`.
 
@@ -84,7 +84,7 @@ def opened(design: str, out: Path | None = None) -> Opened:
 
 
 def refuse(made: Plan) -> None:
-    """Print everything that is wrong with a plan, a line each, and end with code 2."""
+    """Print all problems of a plan, one line each, and exit with code 2."""
     if made.problems:
         for problem in made.problems:
             typer.echo(f"rmfs: {made.source}: {' '.join(problem.split())}", err=True)
@@ -92,7 +92,7 @@ def refuse(made: Plan) -> None:
 
 
 def shipped() -> Iterator[tuple[str, str]]:
-    """Yield name and description of the shipped designs."""
+    """Yield the name and description of every shipped design."""
     from rmfs.experiments.design import file
 
     for path in sorted(file.SHIPPED.glob("*.toml")):
@@ -100,7 +100,7 @@ def shipped() -> Iterator[tuple[str, str]]:
 
 
 def made_below(folder: Path) -> Iterator[Opened]:
-    """Yield the experiments whose results lie in a folder, or in one of its folders."""
+    """Yield the experiments whose results are in a folder or its subfolders."""
     from rmfs.experiments.design import planning
     from rmfs.experiments.store import Store
 

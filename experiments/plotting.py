@@ -1,4 +1,4 @@
-"""Whole pictures from results: which figure goes where."""
+"""Complete plots from results, which arrange the figures."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ KINDS = {
     "pareto": ("robots", "units_per_h"),
     "progression": ("orders_completed", "distance_m"),
 }
-"""Kinds of pictures, and the columns each shows by default."""
+"""Kinds of plots, and the default columns of each."""
 
 MOST_COLUMNS = 4
 MOST_PAIRS = 12
@@ -40,21 +40,21 @@ MOST_PAIRS = 12
 
 @dataclass(frozen=True)
 class Wish:
-    """How a picture is wanted.
+    """Options of a plot.
 
     Attributes
     ----------
     confidence
-        Of the intervals. Default 0.95.
+        Confidence of the intervals. Default 0.95.
     interactions
-        Whether `effects` shows pairs of factors, too. Default yes, where the runs tell them apart.
+        Whether `effects` also shows pairs of factors. Default: yes, if the runs can separate them.
     factors
-        Of `interaction`: two or more, by key or short name. Default all.
+        Factors for `interaction`: two or more, by key or short name. Default: all.
     goals
-        Of `pareto`: whether "more" or "less" of a column is better. Default as the data dictionary
-        says.
+        Goals for `pareto`: whether "more" or "less" of a column is better. Default: from the data
+        dictionary.
     note
-        A line below the picture. Default none.
+        A line below the plot. Default: none.
     """
 
     confidence: float = 0.95
@@ -73,7 +73,7 @@ def draw(
     path: Path | None,
     wish: Wish | None = None,
 ) -> Figure:
-    """Draw a picture.
+    """Draw a plot.
 
     Parameters
     ----------
@@ -82,16 +82,16 @@ def draw(
     frame
         Results, as `experiments.load` returns them.
     folder
-        Where they are stored, for the time series.
+        Folder of the results, for the time series.
     columns
-        What is shown.
+        Columns to show.
     path
-        The .png, .pdf or .svg file to write; None for none.
+        The .png, .pdf or .svg file to write; None: no file.
 
     Raises
     ------
     InputError
-        If there is no such picture, or it cannot be drawn of these results.
+        If there is no such plot, or it cannot be drawn from these results.
     """
     if kind not in KINDS:
         raise InputError(f"{kind}: no such picture; valid: {', '.join(KINDS)}")
@@ -239,7 +239,7 @@ def _progression(folder: Path, columns: list[str], path: Path | None, wish: Wish
 
 
 def bin_of(end_s: float) -> float:
-    """Return a bin width for runs of this length: about 24 bins, of whole minutes up to an hour."""
+    """Return a bin width for runs of this length: about 24 bins of whole minutes, up to 1 h."""
     for width in (60.0, 120.0, 300.0, 600.0, 1200.0, 1800.0):
         if end_s / width <= 24:
             return width

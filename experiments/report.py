@@ -1,4 +1,4 @@
-"""A report of an experiment: one HTML file without a server or anything from elsewhere."""
+"""A report of an experiment as one self-contained HTML file."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ def write_report(
     Parameters
     ----------
     columns
-        What it is about: one picture and one analysis of variance each.
+        Columns of the report, each with a plot and an analysis of variance.
     baseline
-        Arm that all others are compared with. Default the first.
+        Arm with which all others are compared. Default: the first.
 
     Returns
     -------
-    What the experiment lacks; nothing if it is complete.
+    A note on missing runs; empty if the experiment is complete.
 
     Raises
     ------

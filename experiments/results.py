@@ -66,7 +66,7 @@ def failures(folder: str | Path) -> pd.DataFrame:
 
 
 def failed(plan: Plan, store: Store) -> pd.DataFrame:
-    """Return the failures of a plan that no later run has replaced."""
+    """Return the failed runs of a plan that have not been repeated successfully."""
     found = store.failures()
     replications = [int(r) for r in found["replication"].unique()]
     names = {

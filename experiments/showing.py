@@ -1,4 +1,4 @@
-"""What `rmfs experiment` shows: the tables requested, and a note on runs they lack."""
+"""Output of `rmfs experiment`: the requested tables, and a note on missing runs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rmfs.experiments.tables import Table
 
 INCOMPLETE = 3
-"""Exit code if a table or picture shows an experiment with runs missing."""
+"""Exit code if a table or plot shows an experiment with missing runs."""
 
 
 def write_table(
@@ -42,7 +42,7 @@ def write_table(
 def anovas(
     made: Plan, frame: pd.DataFrame, columns: list[str], *, interactions: bool
 ) -> list[Table]:
-    """Analyse the variance of each column."""
+    """Return an analysis of variance for each column."""
     from rmfs.experiments import tables
     from rmfs.experiments.statistics import anova
 
@@ -64,7 +64,7 @@ def chosen_table(
     *,
     bootstrap: bool,
 ) -> Table:
-    """Make the table of means, or of differences to a baseline."""
+    """Return the table of means, or of differences to a baseline."""
     from rmfs.experiments import tables
 
     method: Any = "bootstrap" if bootstrap else "t"
@@ -75,7 +75,7 @@ def chosen_table(
 
 
 def goals(given: list[str]) -> dict[str, Goal]:
-    """Read the goals of columns."""
+    """Parse the goals of columns."""
     found: dict[str, Goal] = {}
     for text in given:
         column, _, goal = text.partition("=")
@@ -86,7 +86,7 @@ def goals(given: list[str]) -> dict[str, Goal]:
 
 
 def tell_lacking(note: str, *, allowed: bool) -> None:
-    """Say on the terminal what an experiment lacks, and end with code 3 unless that is allowed."""
+    """Print a note on missing runs, and exit with code 3 unless they are allowed."""
     if note:
         typer.echo(f"rmfs: {note}", err=True)
         if not allowed:
@@ -94,12 +94,12 @@ def tell_lacking(note: str, *, allowed: bool) -> None:
 
 
 def require_columns(frame: pd.DataFrame, columns: list[str]) -> None:
-    """Refuse columns that the rows do not have, or that hold no numbers.
+    """Raise an error for columns that the rows do not have or that are not numeric.
 
     Raises
     ------
     InputError
-        If there is one.
+        If there is such a column.
     """
     from rmfs.experiments.statistics.intervals import require
 

@@ -1,8 +1,8 @@
-"""How fast a run is, and where its time goes: `rmfs bench`.
+"""Speed of runs, and how their time is spent: `rmfs bench`.
 
-Each case is run several times in this process on one core, checker and trace off. Beside it stands
-a fixed reference loop, timed in between, so that machines can be compared: the figure to quote is
-simulated seconds per wall second, the figure to compare is that times the loop's seconds.
+Each case is run several times in this process on one core, without checker and trace. A fixed
+reference loop is timed in between, so that machines can be compared. The figure to quote is
+simulated seconds per wall second; to compare machines, multiply it by the seconds of the loop.
 """
 
 from __future__ import annotations
@@ -28,12 +28,13 @@ REFERENCE_STEPS = 2_000_000
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One thing to time.
+    """A case to time.
 
     Attributes
     ----------
     duration_s
-        Simulated seconds; the warm-up is 0, so building the first heuristic tables counts.
+        Simulated seconds; the warm-up is 0, so that building the first heuristic tables is
+        included.
     """
 
     layout: str
@@ -55,7 +56,7 @@ CASES = [
 
 
 def reference_loop() -> float:
-    """Seconds of a fixed piece of plain Python: a linear congruential generator."""
+    """Time a fixed piece of plain Python, a linear congruential generator, in s."""
     begun = time.perf_counter()
     state = 1
     for _ in range(REFERENCE_STEPS):
@@ -93,14 +94,14 @@ def table(
     tell: Callable[[str], None] = print,
     advance: Callable[[float, float], None] = lambda done, total: None,
 ) -> pd.DataFrame:
-    """Time the cases: medians over `runs` seeds, one row a case.
+    """Time the cases; return medians over `runs` seeds, one row per case.
 
     Parameters
     ----------
     tell
-        Given a line per case.
+        Function called with one line per case.
     advance
-        Told after each run how many are done, and how many there are.
+        Function called after each run with the number of runs done and in total.
     """
     rows = []
     total = len(cases) * runs
@@ -131,7 +132,7 @@ def table(
 
 
 def save(frame: pd.DataFrame, folder: Path) -> None:
-    """Write the table as CSV and Markdown, with the machine it was measured on."""
+    """Write the table as CSV and Markdown, with a description of the machine."""
     write_text(folder / "speed.csv", frame.to_csv(index=False))
     write_text(folder / "speed.md", f"{to_markdown(frame)}\n\n{platform.platform()}\n")
 

@@ -1,9 +1,9 @@
 """The folder of an experiment's results.
 
-    plan.json       the design, its arms and the hashes of its inputs
-    runs/           the dataset: one small Parquet file a run, merged into bigger ones now and then
-    <table>/        a Parquet file a run for each table that is kept
-    failures/       a JSON file with the traceback for each run that failed
+    plan.json       the design, its arms and the hashes of its inputs runs/           the dataset:
+    one small Parquet file per run, merged from time to time <table>/        a Parquet file a run
+    for each table that is kept failures/       a JSON file with the traceback for each run that
+    failed
 
 Every file is written completely or not at all, so the dataset can be read at any time. Runs are
 stored under their key, a hash of everything that determines them. Only duplicates are ever deleted:
@@ -36,17 +36,17 @@ RUNS, FAILURES, LOCK = "runs", "failures", ".lock"
 
 MERGED = "merged-"
 MANY = 256
-"""Files of single runs that are merged into one."""
+"""Number of files of single runs that are merged into one."""
 
 FEW = 16
-"""Of these, how many are read at a time."""
+"""Number of these files that are read at a time."""
 
 ORIGIN = ("run", "arm_digest", "replication", "arm", "design", "design_hash")
-"""Columns of a stored row, before the footprint, that say which run it is."""
+"""Columns of a stored row, before the footprint, that identify the run."""
 
 CODE = ("rmfs_version", "git_commit", "code")
 PROVENANCE = (*CODE, "host", "elapsed_s", "cpu_s", "finished")
-"""Columns of a stored row, after the footprint, that say how it was made; they do not repeat."""
+"""Columns of a stored row, after the footprint, on how it was made; not reproducible."""
 
 COLUMNS = [*ORIGIN, *names("footprint"), *PROVENANCE]
 """Columns of a stored row."""
@@ -62,7 +62,7 @@ class Store:
     Parameters
     ----------
     folder
-        Created when something is written.
+        The folder, created when something is written.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -77,7 +77,7 @@ class Store:
         Raises
         ------
         InputError
-            If another driver works on the folder.
+            If another driver is working on the folder.
         """
         try:
             (self.folder / RUNS).mkdir(parents=True, exist_ok=True)
@@ -186,7 +186,7 @@ class Store:
         return keys
 
     def table(self, name: str, keys: Sequence[str]) -> pd.DataFrame:
-        """Read a table that was kept, of some runs.
+        """Read a table that was kept, for some runs.
 
         Raises
         ------
@@ -200,7 +200,7 @@ class Store:
         return _together(tables).to_pandas() if tables else pd.DataFrame({"run": []})
 
     def failures(self) -> pd.DataFrame:
-        """Return the runs that failed, a row each.
+        """Return the failed runs, one row each.
 
         Raises
         ------

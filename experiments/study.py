@@ -38,9 +38,9 @@ class Study:
     Attributes
     ----------
     plan
-        Its arms, seeds and inputs.
+        Arms, seeds and inputs.
     folder
-        Folder of its results.
+        Folder of the results.
     """
 
     plan: Plan
@@ -201,8 +201,7 @@ def experiment(
     ----------
     factors
         Levels by parameter, as in `set` of `rmfs.simulate`: `{"layout.robots": [8, 16]}`. A rule
-        can
-        also be given as a class.
+        can also be given as a class.
     seeds
         Seeds, the same for every arm, so that arms can be compared seed by seed.
     base
@@ -222,7 +221,7 @@ def experiment(
     Raises
     ------
     InputError
-        If an argument is wrong; names it and the valid values.
+        If an argument is invalid; the message names it and the valid values.
     RuntimeError
         If a run failed.
     """

@@ -52,7 +52,7 @@ class Table:
     decimals
         Number of decimal places per column.
     caption
-        The caption, one sentence.
+        The caption, in one sentence.
     """
 
     frame: pd.DataFrame
@@ -88,7 +88,7 @@ class Table:
                 return self.html()
 
     def latex(self) -> str:
-        r"""Return it for LaTeX: needs \usepackage{booktabs,siunitx}."""
+        r"""Return the table as LaTeX, which needs \usepackage{booktabs,siunitx}."""
         optional("jinja2", "experiments", "a LaTeX table")
         frame = self.frame.copy()
         frame.columns = _latex_header(columns_of(frame))
@@ -115,14 +115,14 @@ class Table:
         )
 
     def markdown(self) -> str:
-        """Return it as a Markdown table."""
+        """Return the table as Markdown."""
         optional("tabulate", "experiments", "a Markdown table")
         shown = self._shown().reset_index()
         flat = shown.to_markdown(index=False, disable_numparse=True, colalign=self._alignment())
         return f"{flat}\n\n{self.caption}\n"
 
     def csv(self) -> str:
-        """Return it as CSV, in full precision."""
+        """Return the table as CSV, in full precision."""
         flat = self.frame.copy()
         flat.columns = pd.Index(
             [" ".join(part for part in column if part) for column in columns_of(flat)]
@@ -130,7 +130,7 @@ class Table:
         return flat.to_csv(lineterminator="\n")
 
     def html(self) -> str:
-        """Return it as an HTML table."""
+        """Return the table as HTML."""
         optional("jinja2", "experiments", "an HTML table")
         frame = self.frame.copy()
         frame.columns = pd.MultiIndex.from_tuples(
@@ -146,7 +146,7 @@ class Table:
         return str(style.set_uuid("rmfs").set_caption(self.caption).to_html()) + "\n"
 
     def rich(self) -> object:
-        """Return it for the terminal."""
+        """Return the table for the terminal."""
         from rich import box
         from rich.table import Table as RichTable
 
@@ -227,7 +227,7 @@ def means(
     method: Method = "t",
     by: str = "arm",
 ) -> Table:
-    """Return means and half widths of their intervals, a row per arm."""
+    """Return means and half widths of their intervals, one row per arm."""
     parts = {}
     decimals: dict[tuple[str, str], int] = {}
     for column in columns:

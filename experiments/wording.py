@@ -1,11 +1,11 @@
-"""How columns, effects and p values are written for people."""
+"""Headings of columns and formats of p values in tables and figures."""
 
 from __future__ import annotations
 
 from rmfs.measure.dictionary import TABLES, learnt
 
 SMALL = 0.001
-"""Below it, a p value is only said to be smaller."""
+"""Smallest p value that is written as a number; below it, "<" is used."""
 
 _EFFECTS = {
     "sum_sq": "sum of squares",
@@ -21,7 +21,7 @@ _EFFECTS = {
 def heading(column: str) -> str:
     """Return the heading of a column of a table, in words with the unit.
 
-    What follows a comma stays as it is.
+    Text after a comma is not changed.
     """
     name, comma, rest = column.partition(",")
     known = {one.name for one in (*TABLES["footprint"], *learnt())}
@@ -29,7 +29,7 @@ def heading(column: str) -> str:
 
 
 def p_value(p: float) -> str:
-    """Write a p value as papers do: three digits, or that it is smaller."""
+    """Format a p value as in papers: with three digits, or as smaller than `SMALL`."""
     if p != p:
         return "-"
     return f"<{SMALL}" if p < SMALL else f"{p:.3f}"
@@ -41,7 +41,7 @@ def axis_label(column: str, table: str = "footprint", *, per: str = "") -> str:
     Parameters
     ----------
     per
-        What a count is divided by, for example "hour".
+        Unit by which a count is divided, such as "hour".
     """
     known = {one.name: one.unit for one in (*TABLES[table], *learnt())}
     unit = known.get(column, "")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rmfs.experiments.tables import Table
 
 NOT_FOUND = 1
-"""Exit code where the runs did not suffice."""
+"""Exit code if the runs did not suffice."""
 
 Range = tuple[float, float]
 
@@ -61,8 +61,9 @@ def calibrate(
 ) -> None:
     """Find the arrival rate at which a share of orders is on time, with a stated confidence.
 
-    Any number of a file and any column of the footprint will do that rise or fall together. May be
-    interrupted and called again. Exit code 1 if the runs did not suffice.
+    Instead, any numerical parameter and any column of the footprint can be chosen, if the column
+    rises or falls monotonically with the parameter. The command can be interrupted and repeated.
+    Exits with code 1 if the runs did not suffice.
     """
     from rmfs.config import parse_override
     from rmfs.experiments.calibration.procedure import Goal
@@ -103,7 +104,7 @@ def calibrate(
 
 
 def verdict(found: Calibration, key: str, column: str) -> str:
-    """Say in words what was found."""
+    """Return the result as a sentence."""
     goal = found.goal
     if not found.found:
         return (
@@ -119,7 +120,7 @@ def verdict(found: Calibration, key: str, column: str) -> str:
 
 
 def steps_table(found: Calibration, key: str, column: str) -> Table:
-    """Return what was done, a row per level looked at."""
+    """Return the steps as a table, with one row per level evaluated."""
     import pandas as pd
 
     from rmfs.experiments.tables import HALF, Table

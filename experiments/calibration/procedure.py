@@ -1,19 +1,20 @@
-r"""Where a noisy, monotone response has a given mean: a root, found and then tested.
+r"""Find where a noisy, monotone response has a given mean: a root is estimated, then tested.
 
 1. *Search*: retrospective approximation (H. Chen and B. W. Schmeiser 2001, Stochastic root finding
-   via retrospective approximation, IIE Transactions 33(3), 259-275). The mean over a few seeds, the
-   same at every level, is a function of the level, and its root is found as that of any function:
-   by the Illinois variant of regula falsi. That root is a guess.
+   via retrospective approximation, IIE Transactions 33(3), 259-275). The mean over a few seeds,
+   which are the same at every level, is a deterministic function of the level. Its root is found by
+   the Illinois variant of regula falsi and serves as a guess.
 2. *Test*: fresh seeds at the guess, enough for an interval whose half width is half the tolerance,
    by the two-stage rule of Stein (1945, A two-sample test for a linear hypothesis whose power is
    independent of the variance, Annals of Mathematical Statistics 16(3), 243-258), which is exact if
    runs are normally distributed. The guess stands if the whole interval lies within the tolerance.
-   Otherwise the next guess is where a monotone function through the means so far meets the target
-   (isotonic regression), and is tested with seeds of its own.
+   Otherwise the next guess is where a monotone function fitted to the means so far (isotonic
+   regression) meets the target; it is tested with new seeds.
 
-The k-th test may err with probability :math:`\alpha / 2^k`, so that all of them together err with
-:math:`\alpha = 1 - confidence` at most: what is found has a mean off the target by more than the
-tolerance with no greater probability, however many guesses were tested.
+The k-th test may err with probability :math:`\alpha / 2^k`, so all tests together err with
+probability at most :math:`\alpha = 1 - confidence`. This bounds the probability that the mean at
+the level found differs from the target by more than the tolerance, however many guesses were
+tested.
 """
 
 from __future__ import annotations
@@ -39,34 +40,35 @@ DIGITS = 4
 """Significant digits of a level."""
 
 MOST_LOOKS = 12
-"""Levels at which the search looks at most, besides both ends."""
+"""Maximum number of levels evaluated by the search, besides both ends."""
 
 DOUBLINGS = 3
-"""How often the seeds are doubled before the target is taken not to lie between the ends."""
+"""Number of times the seeds are doubled before the target is assumed to lie outside the range."""
 
 
 @dataclass(frozen=True)
 class Goal:
-    """What is sought, and how sure it has to be.
+    """The goal of a calibration, and the required confidence.
 
     Parameters
     ----------
     target
-        The mean that is asked for.
+        The desired mean.
     tolerance
-        How far the mean may be off.
+        Maximum difference of the mean from the target.
     low, high
-        Levels between which the one sought lies.
+        Levels that enclose the one sought.
     confidence
         Probability with which the mean is within the tolerance. Default 0.95.
     search_seeds
-        Seeds at each level while searching; more if the ends cannot be told apart. Default 4.
+        Number of seeds at each level of the search; more if the ends cannot be distinguished.
+        Default 4.
     test_seeds
-        Seeds in the first stage of a test. Default 10.
+        Number of seeds in the first stage of a test. Default 10.
     most_runs
-        Runs after which the procedure gives up. Default 2000.
+        Maximum number of runs. Default 2000.
     first_seed
-        The first of the seeds, which are counted up. Default 0.
+        The first seed; further seeds are consecutive. Default 0.
 
     Raises
     ------
@@ -98,18 +100,18 @@ class Goal:
 
 @dataclass(frozen=True)
 class Step:
-    """A level that was looked at.
+    """A level that was evaluated.
 
     Attributes
     ----------
     phase
         `end` of the range, `search`, or `test`.
     first_seed, seeds
-        The seeds are so many from the first on.
+        First seed and number of consecutive seeds.
     mean, half_width
-        Of the response; the half width is that of the interval of a test, nan otherwise.
+        Mean of the response, and half width of its interval; nan except in a test.
     verdict
-        What followed, in words.
+        The conclusion, in words.
     """
 
     phase: Literal["end", "search", "test"]
@@ -123,23 +125,23 @@ class Step:
 
 @dataclass(frozen=True)
 class Calibration:
-    """What was found.
+    """The result of a calibration.
 
     Attributes
     ----------
     goal
-        What was sought.
+        The goal.
     level
-        Where the mean is within the tolerance of the target, with the confidence asked for; nan if
-        the runs did not suffice.
+        Level at which the mean is within the tolerance of the target, with the required confidence;
+        nan if the runs did not suffice.
     mean, half_width
-        Of the test that it passed.
+        Mean and half width in the test that it passed.
     slope
-        By how much the mean changes per unit of the level there: an estimate.
+        Estimated change of the mean per unit of the level there.
     steps
-        All that was looked at.
+        All levels evaluated.
     runs
-        How many runs it took.
+        Number of runs made.
     """
 
     goal: Goal
@@ -152,7 +154,7 @@ class Calibration:
 
     @property
     def found(self) -> bool:
-        """Whether there is a level that passed its test."""
+        """Whether a level passed its test."""
         return bool(np.isfinite(self.level))
 
 
@@ -294,12 +296,12 @@ def calibrate(goal: Goal, respond: Respond, watch: Callable[[Step], None] = prin
     Parameters
     ----------
     goal
-        What is sought.
+        The goal.
     respond
-        Called with a level and seeds; returns the response of each seed, shape (N,). Its mean rises
-        or falls with the level.
+        Function of a level and seeds that returns the response of each seed, shape (N,). Its mean
+        must be monotone in the level.
     watch
-        Told of every step.
+        Function called with every step.
 
     Raises
     ------

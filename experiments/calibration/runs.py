@@ -1,4 +1,4 @@
-"""The response of a calibration: a column of the footprint of runs, stored as an experiment is."""
+"""The response of a calibration: a footprint column of runs, stored like an experiment."""
 
 from __future__ import annotations
 
@@ -28,25 +28,25 @@ if TYPE_CHECKING:
 class Runs:
     """Runs that differ in one parameter and their seed.
 
-    Runs that are stored already are not run again: an interrupted calibration goes on where it was.
+    Runs that are already stored are not repeated, so an interrupted calibration can be resumed.
 
     Attributes
     ----------
     base
-        What they share: `layout`, `scenario`, `controllers`, `pacing`, and parameters.
+        Common settings: `layout`, `scenario`, `controllers`, `pacing`, and parameters.
     key
-        The parameter, such as `scenario.demand.orders_per_h`.
+        The varied parameter, such as `scenario.demand.orders_per_h`.
     column
-        Of the footprint.
+        The footprint column.
     folder
-        Where they are stored.
+        Folder in which the runs are stored.
     processes, watcher
         As for `rmfs.experiment`.
 
     Raises
     ------
     InputError
-        If there is no such column, or it holds no numbers.
+        If there is no such column, or it is not numeric.
     """
 
     base: Mapping[str, Any]
@@ -66,12 +66,12 @@ class Runs:
             raise InputError(f"column {self.column}: not a number of the footprint{hint}")
 
     def plan(self, level: float, seeds: Sequence[int]) -> Plan:
-        """Return the runs of a level.
+        """Return the plan of the runs at a level.
 
         Raises
         ------
         InputError
-            If something given is wrong.
+            If an argument is invalid.
         """
         table = {
             "format": "rmfs-design/1",

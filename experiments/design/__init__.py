@@ -2,8 +2,7 @@
 
 `file` defines the contents of a design file, `arms` turns it into arms, `resolve` loads the inputs
 of an arm and computes their digest, `planning` combines everything and reports problems, and
-`stages`
-determines which runs are needed next.
+`stages` determines which runs are needed next.
 """
 
 from rmfs.experiments.design.arms import Arm as Arm

@@ -76,8 +76,7 @@ class Level:
         For each column, the values by which exclusions may refer to it.
     of_grid
         Whether it is a level of a grid, whose arms are named with the factor. An arm of a list is
-        named
-        by the level alone.
+        named by the level alone.
     """
 
     shown: dict[str, Any]
@@ -116,7 +115,7 @@ def arms(design: DesignFile, folder: Path) -> tuple[list[Arm], list[str]]:
 
 
 def factor_names(keys: Iterable[str]) -> dict[str, str]:
-    """Return a short name for each factor: as few last words of its path as are unique.
+    """Return a short name for each factor: the fewest last words of its path that are unique.
 
     A final `name` (of a rule) is left out: `controllers.psa.name` becomes `psa`.
     """
@@ -135,7 +134,7 @@ def factor_names(keys: Iterable[str]) -> dict[str, str]:
 
 
 def shown_value(value: Any) -> Any:
-    """Return what a table shows of a level."""
+    """Return the value of a level that tables show."""
     if isinstance(value, bool | int | float | str) or value is None:
         return value
     if isinstance(value, dict) and isinstance(value.get("name"), str):
@@ -374,7 +373,7 @@ def _arm_name(combination: tuple[Level, ...], keys: list[str]) -> str:
 
 
 def anchored(given: str, folder: Path) -> str:
-    """Return a path for a file beside the design; a name or another path stays as it is."""
+    """Resolve a path relative to the design's folder; leave names and other paths unchanged."""
     beside = folder / given
     try:
         return str(beside) if beside.is_file() else given

@@ -279,17 +279,17 @@ def read(path: Path) -> tuple[DesignFile, Table]:
 
 
 def own_measures(table: Table, folder: Path) -> list[type[Measurement]]:
-    """Find the measures that a design names; from now on their columns are known.
+    """Find the measures that a design names, and register their columns.
 
     Parameters
     ----------
     folder
-        Where their files are looked for first.
+        Folder in which their files are sought first.
 
     Raises
     ------
     InputError
-        If one cannot be found.
+        If a measure cannot be found.
     """
     given = table.get("measures", [])
     if not isinstance(given, list):  # the validation says so

@@ -1,11 +1,10 @@
 """Fractions of a grid that estimate the main effects as precisely as possible.
 
-`python -m rmfs.experiments.design.fraction` finds one.
+Command: `python -m rmfs.experiments.design.fraction`.
 
 A full factorial of many rules has thousands of arms. For a screening, far fewer suffice to estimate
 the effects of the factors, if their levels are well balanced. The arms chosen here maximise the
-determinant of the information matrix of the main effects (D-optimality) by exchanging arms, the
-best
+determinant of the information matrix of the main effects (D-optimality) by exchanging arms, best
 exchange first (Fedorov 1972). The result is written to a file, so that the arms of a study do not
 depend on the machine.
 """
@@ -34,7 +33,7 @@ if TYPE_CHECKING:
     from rmfs.experiments.design.arms import Arm
 
 EXCHANGES = 10_000
-"""Limit of exchanges, never reached in practice, since each one improves the design."""
+"""Maximum number of exchanges, never reached in practice, as each one improves the design."""
 
 IMPROVEMENT = 1e-9
 
@@ -45,11 +44,12 @@ def main_effects(levels: Sequence[Sequence[object]]) -> NDArray[np.float64]:
     Parameters
     ----------
     levels
-        Per arm the level of each factor.
+        Level of each factor, for each arm.
 
     Returns
     -------
-    A constant, and for each factor all levels but one, coded as deviations from the mean.
+    Columns for a constant and, for each factor, all levels except one, coded as deviations from the
+    mean.
     """
     columns = [np.ones(len(levels))]
     for factor in zip(*levels, strict=True):
@@ -66,15 +66,15 @@ def d_optimal(rows: NDArray[np.float64], count: int, seed: int = 0) -> list[int]
     Parameters
     ----------
     rows
-        Candidates, (N, p).
+        Candidate rows, shape (N, p).
     count
-        How many to choose, without repetition; at least p.
+        Number of rows to choose, without repetition; at least p.
     seed
-        Of the first choice.
+        Seed of the initial choice.
 
     Returns
     -------
-    Their numbers, ascending.
+    Indices of the chosen rows, ascending.
 
     Raises
     ------

@@ -96,7 +96,7 @@ class Plan:
         Raises
         ------
         InputError
-            If there is none.
+            If there is no such arm.
         """
         for arm in self.arms:
             if arm.name == name:
@@ -140,7 +140,7 @@ class Plan:
         Raises
         ------
         PlanError
-            Lists all of them.
+            If there are problems; the error lists all of them.
         """
         if self.problems:
             raise PlanError(self.source, self.problems)
@@ -174,18 +174,18 @@ def plan(
     name_or_path
         A design file, or the name of a shipped one.
     base
-        Entries that replace or extend those of the table `base`.
+        Entries that replace or extend those of the design's table `base`.
     replications
         Number of seeds, instead of the design's own; only for designs without stages.
     without
         Names of arms to leave out.
     told
-        Called with the number of arms resolved so far and in total.
+        Function called with the number of arms resolved so far and in total.
 
     Raises
     ------
     InputError
-        If the file itself is wrong. What is wrong with arms is listed in `problems`.
+        If the file itself is invalid. Problems of arms are listed in `problems`.
     """
     path = design_file.locate(name_or_path)
     _, table = design_file.read(path)
@@ -210,9 +210,9 @@ def plan_of(
     Parameters
     ----------
     folder
-        Where files are looked for first.
+        Folder in which files are sought first.
     source
-        Where the design comes from, for errors.
+        Origin of the design, for errors.
     """
     measures = design_file.own_measures(table, folder)
     design = config.validate(DesignFile, table, source)
@@ -242,7 +242,7 @@ def load(folder: Path) -> Plan:
     Raises
     ------
     InputError
-        If there is none or it is corrupted.
+        If there is no plan, or it is corrupted.
     """
     path = folder / FILE
     try:

@@ -1,8 +1,8 @@
-"""Loading what an arm names, and a digest of everything that decides about its runs.
+"""Loading the inputs of an arm, and a digest of everything that determines its runs.
 
-The digest is of meaning, not of text: a comment added to a file, or the same layout under another
-name, leaves it as it is; one more robot, another rule or a changed SKU file does not. Runs are
-stored under it, so that finished ones are found again and outdated ones are noticed.
+The digest depends on content, not on text: it does not change if a comment is added to a file or a
+layout is renamed, but it does with one more robot, another rule or a changed SKU file. Runs are
+stored under their digest, so that finished runs are found again and outdated ones are detected.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _SHIPPED = "instances/"
 
 @dataclass(frozen=True)
 class Inputs:
-    """What a run simulates."""
+    """The inputs of a run."""
 
     layout: Layout
     scenario: Scenario
@@ -45,12 +45,12 @@ class Inputs:
 
 @dataclass
 class Resolver:
-    """Loads the inputs of many arms, each different file and set of parameters once.
+    """Loads the inputs of many arms; every combination of file and parameters is loaded once.
 
     Attributes
     ----------
     measures
-        Those of the user: what they are written in decides about the columns of a run.
+        Measures of the user, whose code determines columns of a run.
     files
         Hash of every file read so far, by the name under which it was given.
     """
@@ -62,12 +62,12 @@ class Resolver:
     _made_of: dict[type, list[Path]] = field(default_factory=dict)
 
     def digest(self, arm: Arm, *, check: bool, seeded: list[str]) -> tuple[str, list[str]]:
-        """Return the digest of an arm, and what is wrong with it.
+        """Return the digest of an arm, and its problems.
 
         Parameters
         ----------
         check
-            Whether its runs are proven safe.
+            Whether the traces of its runs are checked.
         seeded
             Parameters that take the seed of the run.
         """
@@ -153,7 +153,7 @@ def load(inputs: dict[str, str], overrides: Overrides) -> Inputs:
     Raises
     ------
     InputError
-        If one of them is wrong.
+        If one of them is invalid.
     """
     loaded = {
         part: loader(
@@ -173,14 +173,14 @@ def file_hash(path: Path) -> str:
 
 
 def file_name(path: Path) -> str:
-    """Return how an input file is named in a plan: shipped ones the same on every machine."""
+    """Return the name of an input file in a plan, independent of the machine for shipped files."""
     if path.is_relative_to(instances.ROOT):
         return f"{_SHIPPED}{path.relative_to(instances.ROOT).as_posix()}"
     return str(path.absolute())
 
 
 def present_hash(name: str) -> str:
-    """Return the hash of an input file as it is now; empty if it is not there."""
+    """Return the present hash of an input file; empty if the file does not exist."""
     shipped = name.startswith(_SHIPPED)
     path = instances.ROOT / name.removeprefix(_SHIPPED) if shipped else Path(name)
     return file_hash(path) if path.is_file() else ""

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Wanted:
-    """A run that the design asks for.
+    """A run that the design requires.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Schedule:
     Attributes
     ----------
     runs
-        In the order in which they should be made, each (arm, replication) once.
+        Pairs of arm and replication, without duplicates, in the order in which they should be run.
     complete
         Whether no further runs will be added.
     remarks
@@ -72,7 +72,7 @@ def columns(plan: Plan) -> list[str]:
 def schedule(
     plan: Plan, results: pd.DataFrame, failed: Collection[tuple[str, int]] = ()
 ) -> Schedule:
-    """Return the runs wanted so far.
+    """Return the runs needed so far.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Figures: one function per figure, each draws into the axes it is given."""
+"""Figures: one function per figure, which draws into the given axes."""
 
 from rmfs.experiments.figures.effects import effects as effects
 from rmfs.experiments.figures.interaction import interaction as interaction

@@ -1,4 +1,4 @@
-"""What each factor does: means over its levels."""
+"""Main effects: the mean at each level of each factor."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ def effects(
     names: Sequence[str] | None = None,
     confidence: float = 0.95,
 ) -> None:
-    """Draw the main effect of every factor, one after another, on one scale.
+    """Draw the main effect of every factor on a common scale.
 
-    The interval of a level is that of the means over all arms with this level, seed by seed: it
-    holds for these arms, not for others that one might have thought of.
+    The interval of a level is computed from the means over all arms with this level, seed by seed;
+    it is valid for these arms only, not for other possible arms.
 
     Parameters
     ----------
     axes
         One for each factor; they should share their y axis.
     names
-        What the factors are called. Default as in the frame.
+        Displayed names of the factors. Default: as in the frame.
     """
     for number, (factor, ax) in enumerate(zip(factors, axes, strict=True)):
         rows = levels(frame, factor)

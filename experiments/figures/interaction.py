@@ -1,4 +1,4 @@
-"""Whether the effect of one factor depends on the level of another."""
+"""Interaction plot: whether the effect of one factor depends on the level of another."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 SPREAD = 0.24
-"""Width over which the lines of one level are put side by side, in levels."""
+"""Width over which the lines at one level are spread, in levels."""
 
 STYLES = ("-", "--", ":")
-"""Of lines, where there are more than colours."""
+"""Line styles, used if there are more lines than colours."""
 
 
 def interaction(
@@ -31,21 +31,22 @@ def interaction(
     confidence: float = 0.95,
     legend: bool = True,
 ) -> None:
-    """Draw means over the levels of a factor, a line per level of another: parallel if they add up.
+    """Draw means over the levels of a factor, with one line per level of another factor.
 
-    The interval of a point is that of the means over all arms with both levels, seed by seed.
-    Combinations that the design leaves out are gaps.
+    Parallel lines mean that there is no interaction. The interval of a point is computed from the
+    means over all arms with both levels, seed by seed. Combinations missing from the design are
+    gaps.
 
     Parameters
     ----------
     across
-        Factor along the axis.
+        Factor along the x axis.
     by
-        Factor whose levels get a line each.
+        Factor with one line per level.
     names
-        What the two are called. Default as in the frame.
+        Displayed names of both factors. Default: as in the frame.
     legend
-        Whether to name the lines. Default yes.
+        Whether to draw a legend of the lines. Default: yes.
     """
     called = names if names is not None else (across, by)
     places = list(levels(frame, across))

@@ -1,4 +1,4 @@
-"""Every seed of every arm, and the interval around its mean."""
+"""Interval plot: each arm's seeds, mean and confidence interval."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ def intervals(
     method: Method = "t",
     by: str = "arm",
 ) -> None:
-    """Draw a row per arm: a dot for each seed, the mean and its confidence interval.
+    """Draw one row per arm: a dot for each seed, the mean and its confidence interval.
 
-    A seed has the same height within its row in every arm, so that pairs can be found.
+    A seed has the same height within the row of every arm, so that pairs can be recognised.
 
     Parameters
     ----------

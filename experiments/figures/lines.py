@@ -1,4 +1,4 @@
-"""Means over a number, as lines with their intervals."""
+"""Line plot: means over a numerical column, with their intervals."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 def lines(
     frame: pd.DataFrame, x: str, column: str, by: str, ax: Axes, *, confidence: float = 0.95
 ) -> None:
-    """Draw a line per level of a factor: means of a measure over another column.
+    """Draw the means of a measure over another column, with one line per level of a factor.
 
     Parameters
     ----------
     frame
         Results, as `experiments.load` returns them.
     x
-        A column of numbers that the runs have in groups.
+        A numerical column with several runs per value.
     column
         The measure.
     by
-        Column whose levels get a line each.
+        Column with one line per level.
     """
     for number, level in enumerate(frame[by].unique()):
         runs = frame[frame[by] == level]

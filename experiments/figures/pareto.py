@@ -1,4 +1,4 @@
-"""Two goals at once: arms that no other arm beats in both."""
+"""Pareto plot of two goals, with the arms that no other arm dominates."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 Goal = Literal["more", "less"]
 
 ARROWS = {"more": ("→", "↑"), "less": ("←", "↓")}
-"""Where the better side of an axis is: of x and of y."""
+"""Arrows that point to the better side of the x and the y axis."""
 
 
 def front(x: pd.Series, y: pd.Series, x_goal: Goal, y_goal: Goal) -> list[str]:
-    """Return the arms that no other one dominates, in the order of x.
+    """Return the arms that no other arm dominates, sorted by x.
 
     An arm dominates another if it is at least as good in both goals and better in one.
 
@@ -52,12 +52,12 @@ def pareto(
     confidence: float = 0.95,
     by: str = "arm",
 ) -> list[str]:
-    """Draw means of two columns with their intervals, and the front of the best compromises.
+    """Draw the means of two columns with their intervals, and the Pareto front.
 
     Parameters
     ----------
     x_goal, y_goal
-        Whether more or less of a column is better. Default as the data dictionary says.
+        Whether more or less of a column is better. Default: from the data dictionary.
 
     Returns
     -------
@@ -66,7 +66,7 @@ def pareto(
     Raises
     ------
     InputError
-        If neither more nor less of a column is better and no goal is given.
+        If a column has no goal in the data dictionary and none is given.
     """
     goals = (goal_of(x, x_goal), goal_of(y, y_goal))
     across = per_arm(frame, x, confidence=confidence, by=by)
@@ -106,7 +106,7 @@ def goal_of(column: str, stated: Goal | None = None) -> Goal:
     Raises
     ------
     InputError
-        If there is none.
+        If neither states a goal.
     """
     if stated is not None:
         return stated

@@ -1,4 +1,4 @@
-"""The course of runs over time: mean over the seeds, with a band (paper, figure 5a)."""
+"""Progression plot: a measure over time, as mean over the seeds with a band (paper, figure 5a)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def progression(
     label: str = "{arm}",
     style: str = "-",
 ) -> None:
-    """Draw a count per hour over time, a line per arm.
+    """Draw a count per hour over time, with one line per arm.
 
     Parameters
     ----------
@@ -37,9 +37,9 @@ def progression(
     column
         A count per interval, such as `orders_completed`.
     bin_s
-        Time that one point stands for. Default an hour.
+        Time covered by one point, in s. Default: an hour.
     label
-        Entry of the legend, with `{arm}`.
+        Legend entry, with the placeholder `{arm}`.
     style
         Line style.
     """
@@ -60,7 +60,7 @@ def progression(
 def per_bin(series: pd.DataFrame, column: str, bin_s: float) -> pd.DataFrame:
     """Return the rate per hour of every run in bins of time: `arm replication hour rate`.
 
-    `hour` is the middle of the bin; a last bin that is not full is left out.
+    `hour` is the middle of the bin; an incomplete last bin is left out.
     """
     require(series, "arm", "replication", "time_s", "interval_s", column)
     middle = series["time_s"] - series["interval_s"] / 2

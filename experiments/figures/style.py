@@ -1,4 +1,4 @@
-"""What all figures have in common."""
+"""Common style and helpers of all figures."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-"""Told apart by people who see colours differently (Okabe and Ito)."""
+"""Colours that people with colour blindness can distinguish (Okabe and Ito)."""
 
 FORMATS = ("png", "pdf", "svg")
 
 
 def levels(frame: pd.DataFrame, factor: str) -> dict[str, pd.DataFrame]:
-    """Return the rows of each level of a factor, in the order of their first appearance.
+    """Return the rows of each level of a factor, in the order of first appearance.
 
-    Where a parameter stays as it is in the file, the level is called "none".
+    The level of arms that keep a parameter's value from the file is called "none".
     """
     text = frame[factor].astype(object).map(lambda level: "none" if pd.isna(level) else str(level))
     return {str(level): frame[text == level] for level in text.unique()}
@@ -37,21 +37,21 @@ def levels(frame: pd.DataFrame, factor: str) -> dict[str, pd.DataFrame]:
 def saving(
     path: Path | None, width: float = 7.0, height: float = 4.3, *, note: str = "", **layout: Any
 ) -> Iterator[Figure]:
-    """Yield a figure, and save it if it is to be a file.
+    """Yield a figure, and save it to a file if a path is given.
 
     Parameters
     ----------
     path
-        A .png, .pdf or .svg file, the same content gives the same bytes; None for no file.
+        A .png, .pdf or .svg file; equal content gives equal bytes. None: no file.
     width, height
-        Inches.
+        Size of the figure, in inches.
     note
-        A line below everything. Default none.
+        A line below the figure. Default: none.
 
     Raises
     ------
     InputError
-        If the file has another ending.
+        If the file has another suffix.
     """
     import matplotlib as mpl
     from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -1,5 +1,5 @@
-"""Experiments of the literature, reproduced: one module each, each one command.
+"""Studies, including reproduced experiments from the literature: one module and command each.
 
-`python -m rmfs.experiments.papers.NAME` runs the design of that name, prints what it shows and
-writes tables and pictures, with their provenance, into `results/published`.
+`python -m rmfs.experiments.papers.NAME` runs the design of that name, prints its results, and
+writes tables and pictures with their provenance to `results/published`.
 """

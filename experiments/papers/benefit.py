@@ -1,4 +1,4 @@
-"""What joint decisions are worth: tables that the studies of solver-backed controllers share."""
+"""Tables shared by the studies on the benefit of joint decisions by solvers."""
 
 from __future__ import annotations
 
@@ -22,27 +22,27 @@ EFFORT = ("units_per_visit", "orders_per_visit", "distance_per_unit_m", "distanc
 SHARES = tuple(f"{kind}_decision_share" for kind in ("optimiser", "heuristic", "stale", "failed"))
 COLUMNS = (*RATES, "station_share", *EFFORT, "order_turnover_median_s")
 START = ", start rule"
-"""Ends the name of controllers whose start rule decides in place of the solver."""
+"""Suffix of the name of controllers whose start rule decides instead of the solver."""
 DECISION_S = "optimiser_wall_median_s"
 LEAST_SHARE = 0.9
-"""Share of decisions by optimisers below which a run says nothing about optimisers."""
+"""Minimum share of decisions by optimisers for a run to count as one with optimisers."""
 
 
 def completed(frame: pd.DataFrame, station_units_per_h: float) -> pd.DataFrame:
-    """Return the runs with two measures more.
+    """Return the runs with two additional measures.
 
     Parameters
     ----------
     frame
         Results of a design.
     station_units_per_h
-        What a pick station can do at most: 3600 s / the time a unit takes.
+        Capacity of a pick station: 3600 s divided by the time per unit.
 
     Returns
     -------
     The frame with `distance_per_order_m`, metres of all robots per completed order, and
-    `station_share`, units per hour / what all stations can do; `controllers` are the levels of a
-    factor `rules`, where the design has one.
+    `station_share`, units per hour as a share of the capacity of all stations. If the design has a
+    factor `rules`, its levels become `controllers`.
     """
     limit = frame["pick_stations"] * station_units_per_h
     if RULES in frame:
@@ -54,16 +54,16 @@ def completed(frame: pd.DataFrame, station_units_per_h: float) -> pd.DataFrame:
 
 
 def overview(frame: pd.DataFrame, groups: Sequence[str], columns: Sequence[str] = COLUMNS) -> Table:
-    """Return the means of every kind of run with intervals, decision times, and shares.
+    """Return the means of every group of runs with intervals, decision times, and shares.
 
     Parameters
     ----------
     frame
         As `completed` returns it.
     groups
-        Columns whose values tell the rows.
+        Columns whose values identify the rows.
     columns
-        Measures with intervals.
+        Measures shown with intervals.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for levels, runs in frame.groupby(list(groups), sort=False):
@@ -94,14 +94,14 @@ def gains(
     baseline: str,
     columns: Sequence[str] = (*RATES, *EFFORT),
 ) -> Table:
-    """Return what each controller does better than the baseline, in percent, seed by seed.
+    """Return the gain of each controller over the baseline, in percent, paired by seed.
 
     Parameters
     ----------
     frame
         As `completed` returns it.
     groups
-        Columns within whose values controllers are compared.
+        Columns within whose levels controllers are compared.
     baseline
         Level of `controllers` that the others are compared with.
     """
@@ -123,15 +123,15 @@ def gains(
 def of_optimiser(
     frame: pd.DataFrame, groups: Sequence[str], columns: Sequence[str] = (*RATES, *EFFORT)
 ) -> Table:
-    """Return what optimisers add to their own start rules, in percent, seed by seed.
+    """Return the gain of optimisers over their own start rules, in percent, paired by seed.
 
     Parameters
     ----------
     frame
-        As `completed` returns it. A level of `controllers` is compared with the level of the same
-        name and `START`, where there is one.
+        As `completed` returns it. Each level of `controllers` is compared with the level of that
+        name plus `START`, if there is one.
     groups
-        Columns within whose values controllers are compared.
+        Columns within whose levels controllers are compared.
     columns
         Measures to compare.
     """
@@ -176,30 +176,30 @@ def _percent(
 
 
 def too_few(frame: pd.DataFrame) -> list[str]:
-    """Return the arms of which some run has too few decisions by optimisers, by name.
+    """Return the names of arms with a run in which optimisers made too few decisions.
 
-    Controllers that ask no optimisers have no shares and are passed over.
+    Controllers that do not use optimisers have no shares and are skipped.
     """
     asked = frame[frame["optimiser_calls"] > 0]
     return sorted(asked.loc[asked["optimiser_decision_share"] < LEAST_SHARE, "arm"].unique())
 
 
 def require_optimised(study: Study, shown: pd.DataFrame | None = None) -> None:
-    """Refuse results of which optimisers decided too little.
+    """Refuse results in which optimisers made too few decisions.
 
-    In a smoke run, which is all beginning, this is only said.
+    In a smoke run, which ends before optimisers decide much, this is only a warning.
 
     Parameters
     ----------
     study
         The study.
     shown
-        The runs on which what it shows rests. Default: all.
+        The runs on which the results are based. Default: all.
 
     Raises
     ------
     SystemExit
-        If a run has too few decisions by optimisers: it does not show what they are worth.
+        If a run has too few decisions by optimisers to show their benefit.
     """
     if few := too_few(study.frame if shown is None else shown):
         print(f"too few decisions by optimisers: {'; '.join(few)}", file=sys.stderr)

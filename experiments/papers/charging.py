@@ -1,14 +1,15 @@
-"""What charging costs: robots needed with and without it, by kind of recovery and by rule.
+"""The cost of charging: robots needed with and without it, by kind of recovery and by rule.
 
 The designs `charging` and, with `--large`, `charging-large` run fleets of different sizes on the
 default and the large site: without batteries, with plug-in places, with battery swap, and with
-waypoints of the queues that charge who waits there. Published are units per hour and the robots
-needed for 95 % of what the pick stations can do, interpolated between fleets seed by seed, and how
-many more that are than without batteries. `--rules` compares the rules of CA and the optimiser with
-robots that need no energy, and the optimiser with its start rule, seed by seed: the design
-`charging-rules`, or, with `--demand` too, `charging-demand`, where many and few orders take turns.
-Published elsewhere: more than 15 % more robots with battery recovery than without, and swap up to
-4.88 % better than plug-in (Zou et al. 2018, doi 10.1016/j.ejor.2017.12.008).
+queue waypoints that charge waiting robots. The study publishes units per hour, the robots needed
+for 95 % of the capacity of the pick stations (interpolated between fleets, seed by seed), and how
+many more these are than without batteries. `--rules` compares the rules of CA and the optimiser
+with robots that need no energy, and the optimiser with its start rule, paired by seed. It uses the
+design `charging-rules` or, with `--demand`, `charging-demand`, in which periods of high and low
+demand alternate. For comparison, Zou et al. (2018, doi 10.1016/j.ejor.2017.12.008) report more than
+15 % more robots with battery recovery than without, and that swapping is up to 4.88 % better than
+plug-in charging.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ ROBOTS, RECOVERY, RULE = "layout.robots", "recovery", "rule"
 NONE = "none"
 _FIGURES = [(column, part) for column in ("robots", "more, %") for part in ("mean", HALF)]
 ENOUGH = 0.95
-"""Share of what the stations can do that a fleet is to reach."""
+"""Share of the stations' capacity that a fleet should reach."""
 
 COLUMNS = ("units_per_h", "station_share", "order_throughput_time_median_s", "energy_wh_per_unit")
 OF_BATTERIES = (
@@ -46,18 +47,18 @@ START_RULE = "threshold"
 
 
 def robots_for(robots: Sequence[float], share: Sequence[float], enough: float = ENOUGH) -> float:
-    """Return the fleet that reaches a share, interpolated between fleets.
+    """Return the fleet size that reaches a share, interpolated between fleets.
 
     Parameters
     ----------
     robots
         Sizes of fleets, ascending.
     share
-        What each reaches; taken as not falling (running maximum), as noise must not count twice.
+        Share that each reaches, made nondecreasing by a running maximum to reduce noise.
 
     Returns
     -------
-    nan if the smallest fleet reaches it already, or none does.
+    The fleet size; nan if the smallest fleet already reaches the share, or no fleet does.
     """
     reached: NDArray[np.float64] = np.maximum.accumulate(np.asarray(share, np.float64))
     if reached[0] >= enough or reached[-1] < enough:
@@ -68,7 +69,7 @@ def robots_for(robots: Sequence[float], share: Sequence[float], enough: float = 
 
 
 def needed(frame: pd.DataFrame, enough: float = ENOUGH) -> Table:
-    """Return the robots needed by kind of recovery, and how many more that are than without.
+    """Return the robots needed for each kind of recovery, and the difference to no recovery.
 
     Parameters
     ----------

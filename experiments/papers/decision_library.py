@@ -1,8 +1,9 @@
-"""The library of decisions: what is known of it, and how its solvers compare.
+"""The library of decisions: best known results, and a comparison of solvers.
 
-With `--time` methods are timed on the library (`rmfs decisions profile`, question by question) and
-the rows published; without, all tables and pictures are made of the published rows. Families whose
-questions are assignments or flows are solved to the end at once: there is nothing to compare.
+With `--time`, methods are timed on the library (`rmfs decisions profile`, question by question) and
+the rows are published; without it, all tables and pictures are made from the published rows.
+Families whose questions are assignments or flows are left out, as they are always solved to
+optimality.
 """
 
 from __future__ import annotations
@@ -54,14 +55,14 @@ TIMED: dict[str, dict[str, float]] = {
     "sequence": {"greedy": 1, "cp_sat": 0.512},
     "replenishment": {"greedy": 1, "rounding": 1, "cp_sat": 0.512, "highs": 4},
 }
-"""Methods that are timed, each with its largest limit of work."""
+"""Methods to time, each with its largest limit of work."""
 
 RATIOS = [2.0 ** (step / 4) for step in range(33)]
 SECONDS = [10.0 ** (step / 8 - 3) for step in range(33)]
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Time methods, or make the pages of what was timed."""
+    """Time methods, or write the pages from published times."""
     made = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     made.add_argument("--library", type=Path, default=LIBRARY, help="folder of the library")
     made.add_argument("--published", type=Path, default=PUBLISHED, help="folder of tables")
@@ -96,7 +97,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def state(known: pd.DataFrame) -> pd.DataFrame:
-    """Count by family and size what is proved, and how far the others are from their bound.
+    """Count proven questions by family and size, and return the gaps of the others.
 
     Parameters
     ----------
@@ -117,7 +118,7 @@ def state(known: pd.DataFrame) -> pd.DataFrame:
 
 
 def online(library: Library) -> pd.DataFrame:
-    """Compare the answers given in the runs, at the limits of the controllers, with the best known.
+    """Compare the answers given in the runs, within the controllers' limits, with the best known.
 
     Parameters
     ----------
@@ -200,7 +201,7 @@ def _by_size(found: pd.DataFrame) -> pd.DataFrame:
 
 
 def publish_table(path: Path, rows: pd.DataFrame | list[dict[str, Any]], **more: Any) -> None:
-    """Publish a table as a page, with where it comes from; and print it."""
+    """Publish a table as a page with its provenance, and print it."""
     frame = pd.DataFrame(rows)
     _publish(path, frame.to_markdown(index=False) + "\n", **more)
     print(frame.to_string(index=False))

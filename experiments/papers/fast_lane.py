@@ -1,10 +1,10 @@
-"""The default rules beside those of RAWSim-O, over 48 h, with and without the fast lane.
+"""The default rules compared with those of RAWSim-O over 48 h, with and without the fast lane.
 
 The inputs are RAWSim-O's instances `fastlane`: its layout and controllers, and SKUs distributed
-like its own. Ten seeds here stand against its one measured run of each. Its robots drive by FAR and
-wait for the next step of its simulation before every hop, lift and set-down; here they drive by
-time windows, by FAR, and by FAR with the mean of that wait put into turning and lifting, to tell
-what comes from the rules and what from the driving.
+like its own. Ten seeds are compared with one measured run of RAWSim-O for each arm. RAWSim-O's
+robots drive by FAR and wait for the next step of the simulation before every hop, lift and
+set-down. Here they drive by time windows, by FAR, and by FAR with the mean of that wait added to
+turning and lifting times. This separates the effect of the rules from that of driving.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ THEIRS = {
     True: (23314.0, 38232.0, 4.17, 719_100.0),
     False: (22383.0, 36856.0, 3.92, 740_300.0),
 }
-"""Measured on RAWSim-O, seed 0: the same columns, with and without fast lane."""
+"""Values measured in RAWSim-O with seed 0, with and without fast lane."""
 
 
 def beside(frame: pd.DataFrame) -> Table:
-    """Return the means of every arm and their difference to RAWSim-O in percent."""
+    """Return the means of every arm, and their difference to RAWSim-O in percent."""
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for (driving, lane), runs in frame.groupby([DRIVING, LANE], sort=False):
         row = {("seeds", ""): float(len(runs))}
@@ -50,7 +50,7 @@ def beside(frame: pd.DataFrame) -> Table:
 
 
 def gain(frame: pd.DataFrame, columns: Sequence[str] = COLUMNS) -> Table:
-    """Return what the fast lane adds, in percent, seed by seed."""
+    """Return the gain of the fast lane, in percent, paired by seed."""
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for driving, runs in frame.groupby(DRIVING, sort=False):
         row: dict[tuple[str, str], float] = {}

@@ -1,9 +1,10 @@
-"""How many robots stations need: rules against orders and pods decided together.
+"""The number of robots that stations need: rules compared with joint decisions on orders and pods.
 
-Units per hour over the size of the fleet on the small site, with what the stations can do and the
-proven bound in the picture, and the smallest fleet with which each controller reaches 95 % of what
-the stations can do. About 0.2 CPU hours; with `--later` the same in the third hour, since a small
-fleet picks what it has no time to put back, and with orders that arrive (0.2 CPU hours).
+The study shows units per hour over the size of the fleet at the small site, with the capacity of
+the stations and the proven bound, and the smallest fleet with which each controller reaches 95 % of
+that capacity. It takes about 0.2 CPU hours. With `--later`, the third hour is measured instead,
+because a small fleet initially picks stock that it has no time to replenish, and orders that arrive
+over time are included (0.2 CPU hours).
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 
 ROBOTS = "layout.robots"
 ENOUGH = 0.95
-"""Share of what the stations can do that a fleet is to reach."""
+"""Share of the stations' capacity that a fleet should reach."""
 
 DEMAND = "demand"
 COLUMNS = (
@@ -49,20 +50,21 @@ COLUMNS = (
 
 
 def needed(frame: pd.DataFrame, groups: Sequence[str], enough: float = ENOUGH) -> Table:
-    """Return the smallest fleet with which each controller feeds the stations.
+    """Return the smallest fleet with which each controller keeps the stations busy.
 
     Parameters
     ----------
     frame
         As `completed` returns it.
     groups
-        Columns whose values tell the rows.
+        Columns whose values identify the rows.
     enough
-        Share of what the stations can do.
+        Share of the stations' capacity to be reached.
 
     Returns
     -------
-    Per row `robots` (nan if no fleet of the design does it), and the share with that fleet.
+    One row per group: `robots` (nan if no fleet of the design suffices), and the share with that
+    fleet.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for levels, runs in frame.groupby(list(groups), sort=False):
@@ -88,12 +90,12 @@ def picture(
     name: str = "fewer-robots.png",
     clairvoyant: Mapping[int, float] | None = None,
 ) -> Path:
-    """Draw units per hour over the fleet, with the bounds.
+    """Draw units per hour over the fleet size, with the bounds.
 
     Parameters
     ----------
     clairvoyant
-        A bound per fleet to be drawn in the place of that of the runs.
+        Bounds by fleet size, drawn instead of those of the runs.
     """
     path = study.place(name)
     with saving(path, 6.0, 4.0) as figure:

@@ -1,7 +1,7 @@
 """Figure 4: the default layout with two replenishment and two pick stations (the paper, 2018).
 
-No runs: the picture is drawn from the parameters of the generator, with the layout's counts as its
-provenance.
+Nothing is simulated: the picture is drawn from the generator's parameters, and its provenance
+contains the counts of the layout.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ OVERRIDES: list[tuple[list[str], object]] = [
 
 
 def counts(layout: layouts.Layout) -> dict[str, object]:
-    """Return what there is in a layout."""
+    """Return the numbers of objects in a layout."""
     return {
         "waypoints": layout.waypoints,
         "edges": len(layout.edge_target),

@@ -1,12 +1,13 @@
-"""Figure 5a: the PSA rule exchanged in the middle of a day (Merschformann, Xie, Li 2018).
+"""Figure 5a: a PSA rule exchanged in the middle of a day (Merschformann, Xie, Li 2018).
 
-The paper shows one run of 24 h in which random storage gives way to nearest storage: the robots
-drive less, and at once more orders are picked. Here ten seeds are run on a twin of RAWSim-O's
-layout MaTiMilli, beside arms that stay with either rule. What the exchange did is the difference in
-differences: second half less first half, with the exchange less without it, seed by seed.
+The paper shows one run of 24 h in which random storage is replaced by nearest storage: the robots
+drive less, and more orders are picked at once. Here ten seeds are run on a layout of the same size
+as RAWSim-O's MaTiMilli, together with arms that keep either rule. The effect of the exchange is the
+difference in differences, paired by seed: second half minus first half, with the exchange minus
+without it.
 
-With `--reference DIR` (the public instances of RAWSim-O) the layout itself is taken instead of its
-twin: `DIR/mati/MaTiMilli.xinst`; what is published then ends in `-reference`.
+With `--reference DIR` (the public instances of RAWSim-O) the original layout
+`DIR/mati/MaTiMilli.xinst` is used instead; the names of published files then end in `-reference`.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ NEAREST = "nearest throughout"
 COLUMNS = ("orders_completed", "units_picked", "distance_m")
 SHOWN = {"orders_completed": "orders", "units_picked": "units", "distance_m": "distance"}
 SETTLED_S = 3600.0
-"""Time after the beginning, and after the exchange, that is left out of the halves."""
+"""Time left out at the beginning of each half, in s."""
 
 
 def halves(series: pd.DataFrame, *, settle_s: float = SETTLED_S) -> pd.DataFrame:
@@ -42,7 +43,7 @@ def halves(series: pd.DataFrame, *, settle_s: float = SETTLED_S) -> pd.DataFrame
     series
         The time series of the runs.
     settle_s
-        Left out at the beginning of both halves. Default an hour.
+        Time left out at the beginning of both halves, in s. Default: an hour.
 
     Returns
     -------
@@ -57,12 +58,12 @@ def halves(series: pd.DataFrame, *, settle_s: float = SETTLED_S) -> pd.DataFrame
 
 
 def differences(rated: pd.DataFrame, confidence: float = 0.95) -> pd.DataFrame:
-    """Return what the exchange did, a row per measure.
+    """Return the effect of the exchange, one row per measure.
 
     Returns
     -------
-    Means of the four combinations of arm and half, the difference in differences with its
-    interval, and the same in relation to the arm that stays (`relative`).
+    Means of the four combinations of arm and half, the difference in differences with its interval,
+    and the same relative to the arm without exchange (`relative`).
     """
     rows = {}
     for column in COLUMNS:
@@ -113,7 +114,7 @@ def as_table(found: pd.DataFrame) -> Table:
 
 
 def picture(study: Study, series: pd.DataFrame) -> Path:
-    """Draw the course of orders and distance per hour."""
+    """Draw orders and distance per hour over time."""
     path = study.place("figure-5a.png")
     colours = {STAYS: "0.55", CHANGES: COLOURS[1], NEAREST: COLOURS[0]}
     series = series.assign(distance_m=series["distance_m"] / 1000.0)

@@ -1,11 +1,11 @@
 """Figure 5b: where robots drive and wait (Merschformann, Xie, Li 2018).
 
 The paper shows a heat map of robot movement, in colours on a logarithmic scale: robots queue at the
-stations, and some areas are so busy that congestion threatens. Here the visits of each waypoint are
-averaged over the seeds, and a table says how they are spread over the areas of the layout.
+stations, and some areas are close to congestion. Here the visits to each waypoint are averaged over
+the seeds, and a table shows their distribution over the areas of the layout.
 
-With `--reference DIR` (the public instances of RAWSim-O) the layout MaTiMilli itself is taken
-instead of its twin.
+With `--reference DIR` (the public instances of RAWSim-O) the original layout MaTiMilli is used
+instead of one of the same size.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ COUNTS = ("visits", "loaded_visits", "waiting_s")
 
 
 def together(heat: pd.DataFrame) -> pd.DataFrame:
-    """Return the means of the counts of every waypoint over the seeds."""
+    """Return the mean counts of every waypoint over the seeds."""
     place = ["waypoint", "tier", "x_m", "y_m"]
     counts = [c for c in heat if c in COUNTS]
     return heat.groupby(place, sort=False)[counts].mean().reset_index()
@@ -54,14 +54,14 @@ def areas(layout: Layout) -> NDArray[np.str_]:
 
 
 def spread(heat: pd.DataFrame, area: NDArray[np.str_]) -> pd.DataFrame:
-    """Return, per seed and area, waypoints, visits per waypoint, and the shares in percent.
+    """Return waypoints, visits per waypoint and shares in percent, per seed and area.
 
     Parameters
     ----------
     heat
         The table `heat` of one arm.
     area
-        Of each waypoint, (N,).
+        Area of each waypoint, shape (N,).
     """
     of_waypoint = area[heat["waypoint"].to_numpy(int)]
     grouped = heat.assign(area=of_waypoint).groupby(["replication", "area"])
@@ -74,7 +74,7 @@ def spread(heat: pd.DataFrame, area: NDArray[np.str_]) -> pd.DataFrame:
 
 
 def as_table(found: pd.DataFrame) -> Table:
-    """Return the spread as a table to publish: means over the seeds, busiest area first."""
+    """Return the distribution as a table to publish: means over the seeds, busiest area first."""
     columns = ["waypoints", "visits per waypoint", "share of visits %", "share of waiting %"]
     busiest = found.groupby("area")["visits per waypoint"].mean().sort_values(ascending=False)
     ordered = found.set_index("area").loc[busiest.index].reset_index()

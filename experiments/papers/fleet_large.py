@@ -1,10 +1,10 @@
-"""How many robots the large site needs: rules, visits planned by search, and its start rule.
+"""The number of robots that the large site needs: rules, planned visits, and the start rule.
 
-Units per hour over the size of the fleet, the stock kept at its level, with a bound that holds for
-whoever knows all orders to come as well (docs: bounds); the smallest fleet that reaches 95 % of
-what the stations can do; and what the search adds to the start rule of the same controller, seed by
-seed. With `--later` the same in the third hour, answers paced by their work. `--bound` prints the
-bound alone and runs nothing.
+The study shows units per hour over the size of the fleet, with the stock level kept, and a bound
+that holds even for controllers that know all future orders (docs: bounds); the smallest fleet that
+reaches 95 % of the stations' capacity; and the gain of the search over the start rule of the same
+controller, paired by seed. With `--later`, the third hour is measured, with answers paced by their
+work. `--bound` only prints the bound and runs nothing.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ RULES = "default rules"
 
 
 def clairvoyant(design: Plan) -> tuple[dict[int, float], float]:
-    """Return the units per hour that no fleet can pick that stores what it picks, per fleet.
+    """Return a bound on units per hour for runs that store what they pick, by fleet size.
 
-    Also returned is what the stations can do.
+    The capacity of the stations is returned as well.
     """
     arm = design.arms[0]
     own = {
@@ -58,7 +58,7 @@ def clairvoyant(design: Plan) -> tuple[dict[int, float], float]:
 
 
 def bounds(found: Mapping[int, float], limit: float) -> Table:
-    """Return the bound of each fleet that the stations do not bind, and of the first they do."""
+    """Return the bounds of fleets below the stations' capacity, and of the first one at it."""
     highest = max(found.values())
     fleets = [robots for robots, bound in found.items() if bound < highest * (1 - 1e-6)]
     fleets.append(min(set(found) - set(fleets)))

@@ -1,8 +1,8 @@
-"""How many robots a warehouse needs: throughput over the fleet, and what each further robot adds.
+"""The number of robots that a warehouse needs: throughput by fleet size, and gain per robot.
 
-The design `fleet-size` runs fleets of different sizes with two storage rules. Three things are
-published: units per hour of every fleet; what a further robot adds between one fleet and the next,
-seed by seed; and the arms that no other one beats, with fewer robots or with more units.
+The design `fleet-size` runs fleets of different sizes with two storage rules. The study publishes
+units per hour of every fleet; the gain per additional robot from one fleet to the next, paired by
+seed; and the arms that no other arm dominates in robots and units.
 """
 
 from __future__ import annotations
@@ -31,20 +31,21 @@ COLUMNS = (UNITS, "distance_per_unit_m", "robot_queueing_share", "pick_station_i
 
 
 def added(frame: pd.DataFrame, rule: str = RULE, column: str = UNITS) -> Table:
-    """Return what a robot more adds, from each fleet to the next one, paired by seed.
+    """Return the gain per additional robot from each fleet to the next, paired by seed.
 
     Parameters
     ----------
     frame
         Results of a design with the factor `layout.robots`.
     rule
-        The other factor: every level of it has fleets of its own.
+        The other factor, at each of whose levels fleets are compared.
     column
-        What is counted. Default units per hour.
+        The measure. Default: units per hour.
 
     Returns
     -------
-    A row per step, `RULE, FEWER to MORE robots`: mean and half width of (more - fewer) / robots.
+    One row per step, `RULE, FEWER to MORE robots`: mean and half width of the gain divided by the
+    number of additional robots.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for level, runs in frame.groupby(rule, sort=False):
@@ -70,7 +71,7 @@ def added(frame: pd.DataFrame, rule: str = RULE, column: str = UNITS) -> Table:
 
 
 def unbeaten(frame: pd.DataFrame, column: str = UNITS) -> Table:
-    """Return the arms that no other arm beats in robots or units, the smallest fleet first."""
+    """Return the arms that no other arm dominates in robots and units, smallest fleet first."""
     robots = per_arm(frame, "robots")["mean"]
     best = front(robots, per_arm(frame, column)["mean"], "less", "more")
     chosen = frame.set_index("arm").loc[best].reset_index()
@@ -80,7 +81,7 @@ def unbeaten(frame: pd.DataFrame, column: str = UNITS) -> Table:
 
 
 def picture(study: Study) -> Path:
-    """Draw every arm, robots against units per hour, and the front."""
+    """Draw units per hour over robots for every arm, and the Pareto front."""
     path = study.place("fleet-size.png")
     with saving(path, 6.4, 4.2) as figure:
         pareto(study.frame, "robots", UNITS, figure.subplots())

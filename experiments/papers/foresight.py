@@ -1,9 +1,9 @@
-"""How much storage places and the choice of robots matter at most: a clairvoyant experiment.
+"""An upper bound on the value of storage places and the choice of robots, with perfect foresight.
 
-Models for PSA and TA can save no more than whoever knows all that is to come. Each run of the
-default rules is looked at again after its end: with the same visits at the same moments, which
-storage places would have led to the least loaded driving, and which robots to the least empty
-driving? Both are solved to proven optimality. About 0.1 CPU hours.
+Models for PSA and TA cannot save more than a decision with perfect knowledge of the future. After
+each run of the default rules, two problems are solved to proven optimality: with the same visits at
+the same times, which storage places would have minimised loaded driving, and which robots empty
+driving? This takes about 0.1 CPU hours.
 """
 
 from __future__ import annotations

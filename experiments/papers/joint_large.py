@@ -1,10 +1,11 @@
-"""Orders and pods decided together on a large site: 12 pick stations, 1,200 pods, 45 robots.
+"""Joint decisions on orders and pods at a large site: 12 pick stations, 1,200 pods, 45 robots.
 
-Published exact models do not run at this size. The best rules and HADGS are compared with our
-controllers that decide orders and pods together, with whole and with split orders, for a backlog
-and for orders that arrive in time. Published heuristics for a site of these numbers (another
-layout and other orders: not the same instance) pick 6,341 units in 2 h at 0.211 s a decision, the
-best 8,318 at 0.066 s, which is 96 % of what the stations can do. About 0.3 CPU hours.
+Published exact models cannot be solved at this size. The best rules and HADGS are compared with the
+joint controllers of rmfs, with whole and with split orders, for a backlog and for orders that
+arrive over time. Published heuristics for a site of this size (with another layout and other
+orders, so not the same instance) pick 6,341 units in 2 h with 0.211 s per decision, and the best
+one 8,318 with 0.066 s, which is 96 % of the stations' capacity. The study takes about 0.3 CPU
+hours.
 """
 
 from __future__ import annotations

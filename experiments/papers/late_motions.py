@@ -1,10 +1,10 @@
-"""What it costs that motions begin late, and what repair wins back.
+"""The cost of motions that begin late, and the benefit of repairing plans.
 
 The design `late-motions` lets motions of the default site begin late with three probabilities and
-two ranges of length, as published benchmarks have them (0.0005 to 0.02 per motion, 1 to 200 time
-units, here seconds), with and without repair of the plans of those who have to wait. Published is
-the loss against perfect execution and what repair changes, both seed by seed, and a figure of the
-loss over the lateness of a robot.
+two ranges of length, as in published benchmarks (0.0005 to 0.02 per motion, 1 to 200 time units,
+here seconds), with and without repair of the plans of robots that have to wait. The study publishes
+the loss compared with perfect execution and the effect of repair, both paired by seed, and a figure
+of the loss over the lateness per robot.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Rows = dict[str, dict[tuple[str, str], float]]
 
 
 def wide(frame: pd.DataFrame, robots: int, column: str = "units_per_h") -> pd.DataFrame:
-    """Return a measure of one fleet: a row per seed, a column per kind of lateness."""
+    """Return a measure of one fleet, with one row per seed and one column per kind of lateness."""
     fleet = frame[frame[ROBOTS] == robots]
     return fleet.pivot_table(index="replication", columns=LATE, values=column, sort=False)
 
@@ -70,7 +70,7 @@ def losses(frame: pd.DataFrame) -> Table:
 
 
 def gains(frame: pd.DataFrame) -> Table:
-    """Return what repair changes, in percent of the units per hour without it."""
+    """Return the effect of repair, in percent of the units per hour without it."""
     rows: Rows = {}
     for robots in frame[ROBOTS].unique():
         units = wide(frame, robots)
@@ -94,7 +94,7 @@ def gains(frame: pd.DataFrame) -> Table:
 
 
 def per_robot_and_hour(frame: pd.DataFrame) -> pd.Series:
-    """Return by how many seconds the motions of a robot were late within an hour."""
+    """Return the total lateness of motions per robot and hour, in s."""
     hours = frame["duration_s"].astype(float) / 3600
     return frame["lateness_s"].astype(float) / frame[ROBOTS].astype(float) / hours
 

@@ -1,10 +1,11 @@
-"""Where looking ahead and trained linear rules win, tie or lose against rules.
+"""Comparison of look-ahead and trained linear rules with the other rules.
 
-Four regimes of the small site, with seeds that no training has seen; with `--sites` three of the
-default and the large site, one of them with tries. Every arm is compared with the default
-rules, from which each of them starts, and with the best rule of its regime, in what the regime is
-about: units picked where there is always a backlog, late orders where orders arrive. p values are
-Holm's, over all arms of a regime. About 0.15 CPU hours, with `--sites` 0.2.
+There are four regimes of the small site, with seeds not used in training; with `--sites`, three
+regimes of the default and the large site, one of them with look-ahead. Every arm is compared with
+the default rules, from which each of them starts, and with the best rule of its regime. The measure
+is units picked if there is always a backlog, and late orders if orders arrive over time. p values
+are corrected by Holm's method over all arms of a regime. The study takes about 0.15 CPU hours, with
+`--sites` 0.2.
 """
 
 from __future__ import annotations
@@ -30,19 +31,19 @@ SHOWN = ("units_per_h", "late_share", "order_turnover_mean_s", "bundles_per_h")
 
 
 def goal_of(regime: str) -> str:
-    """Return the column that a regime is about."""
+    """Return the column in which the arms of a regime are compared."""
     return LATE if regime.startswith("arrivals") else UNITS
 
 
 def is_rule(policy: str) -> bool:
-    """Whether an arm is one of the rules, and neither trained nor tried."""
+    """Whether an arm is a plain rule, neither trained nor with look-ahead."""
     return not (policy.startswith("linear") or policy.endswith("tried"))
 
 
 def best_rule(runs: pd.DataFrame, goal: str) -> str:
-    """Return the rule with the best mean of a regime: most units, or fewest late orders.
+    """Return the rule with the best mean in a regime: most units, or fewest late orders.
 
-    It is found with the seeds it is then compared with, which flatters it.
+    It is selected with the same seeds as are used in the comparison, which favours it.
     """
     rules = runs[runs[POLICY].map(is_rule)]
     means = rules.groupby(POLICY, sort=False)[goal].mean()
@@ -50,7 +51,7 @@ def best_rule(runs: pd.DataFrame, goal: str) -> str:
 
 
 def compared(frame: pd.DataFrame) -> Table:
-    """Return one row per regime and arm: means, and differences to the default and the best rule.
+    """Return means, and differences to the default and the best rule, by regime and arm.
 
     Parameters
     ----------

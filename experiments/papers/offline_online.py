@@ -1,9 +1,9 @@
-"""What a better solution of the question is worth in the warehouse, family by family.
+"""The value of better solutions of questions in the warehouse, by family.
 
 Every arm is a method with its limit of work. Its offline gap is the mean primal gap to the best
 known value over the library's questions of its family, answered as the controller would answer
-them; online it is run, with the same seeds as the other arms of the family. Where a lower gap goes
-with more units, fewer late orders and less driving, the objective is a good proxy.
+them. Online, it is simulated with the same seeds as the other arms of the family. If lower gaps
+come with more units, fewer late orders and less driving, the objective is a good proxy.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ ASKED: Mapping[str, tuple[str, Mapping[str, Any]]] = {
     "replenishment rounding": ("replenishment", {"method": "rounding"}),
     "replenishment highs": ("replenishment", {}),
 }
-"""Family of each arm of the design, and what it changes in how a question was asked."""
+"""Family of each arm of the design, and its changes to the settings of a question."""
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -90,7 +90,7 @@ def offline_gaps(library: Library, arm: str, size: str) -> list[float]:
     arm
         A key of `ASKED`.
     size
-        Of the questions.
+        Size of the questions.
     """
     family, changes = ASKED[arm]
     gaps = []
@@ -102,14 +102,14 @@ def offline_gaps(library: Library, arm: str, size: str) -> list[float]:
 
 
 def asked_otherwise(decision: Decision, changes: Mapping[str, Any]) -> Decision:
-    """Change how a question was asked; tables within are changed key by key.
+    """Change the settings of a question; nested tables are changed key by key.
 
     Parameters
     ----------
     decision
         The question.
     changes
-        What is changed.
+        The changes.
     """
     asked = dict(decision.asked)
     for key, value in changes.items():
@@ -118,7 +118,7 @@ def asked_otherwise(decision: Decision, changes: Mapping[str, Any]) -> Decision:
 
 
 def beside(frame: pd.DataFrame, gaps: Mapping[str, list[float]]) -> Table:
-    """Put offline gaps and online means side by side.
+    """Combine offline gaps and online means in one table.
 
     Parameters
     ----------
@@ -156,8 +156,9 @@ def correlations(frame: pd.DataFrame, gaps: Mapping[str, float]) -> Table:
 
     Returns
     -------
-    Rank correlation per family and measure, of the measure less its mean over the family's arms
-    with the same seed; and the number of arms. With two arms it tells a sign, and how steadily.
+    Rank correlation per family and measure, where the measure is reduced by its mean over the
+    family's arms with the same seed; and the number of arms. With two arms it shows only the sign,
+    and its consistency over seeds.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     of = frame[SOLVER].map(lambda arm: ASKED[arm][0])

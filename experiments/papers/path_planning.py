@@ -1,13 +1,13 @@
-"""All methods of path planning beside each other (Merschformann, Xie, Erdmann 2017).
+"""A comparison of all methods of path planning (Merschformann, Xie, Erdmann 2017).
 
-Three layouts of the size of that study's instances: 32 robots, 128 robots, and 96 on three tiers
-with elevators. The work is constant, all other decisions are random, an hour is simulated. A method
-that plans better lets the same robots complete more orders. On the three tiers the rules of that
-study keep pods, and with them robots, on their tier; so they are driven once more with pods stored
-anywhere.
+There are three layouts of the size of that study's instances: 32 robots, 128 robots, and 96 robots
+on three tiers with elevators. The backlog is constant, all other decisions are random, and one hour
+is simulated. With a better method, the same robots complete more orders. On the three tiers, the
+rules of that study keep pods, and therefore robots, on their tier; so this layout is also simulated
+with pods stored on any tier.
 
-With `--reference DIR` (the public instances of RAWSim-O) the layouts of the study itself are taken
-instead of their twins, and RAWSim-O's own figures stand beside ours.
+With `--reference DIR` (the public instances of RAWSim-O) the original layouts of the study are used
+instead, and RAWSim-O's own figures are shown for comparison.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rmfs.experiments.papers.study import Study
 
 Rows = dict[tuple[str, str], dict[tuple[str, str], float]]
-"""Per layout and method the cells of the table."""
+"""The cells of the table by layout and method."""
 
 OURS = "time-windows"
 METHOD = "controllers.pp"
@@ -44,17 +44,17 @@ class Instance:
     twin
         A shipped layout of the same size.
     reference
-        The layout itself, in the folder of public instances.
+        The original layout, in the folder of public instances.
     theirs
-        RAWSim-O's orders per hour and km per hour, measured over the simulated time of the third
-        number in s, seed 0, for the methods that have been run there.
+        RAWSim-O's orders per hour, km per hour and simulated time in s over which they were
+        measured (seed 0), for the methods that were run there.
     seeds
-        Of all methods that are not slow.
+        Number of seeds for methods that are not slow.
     slow
-        Methods that take minutes for an hour, and how many seeds they get; 0 leaves one out.
+        Methods that need minutes for an hour, and their numbers of seeds; 0 leaves a method out.
     riding
-        Whether pods may be stored on other tiers, so that robots ride elevators; RAWSim-O's rule
-        keeps them where they are if it can, and so do ours.
+        Whether pods may be stored on other tiers, so that robots ride elevators. The rules of
+        RAWSim-O and of rmfs keep pods on their tier if possible.
     """
 
     twin: str
@@ -66,11 +66,11 @@ class Instance:
 
     @property
     def part(self) -> str:
-        """Name of the folder of its runs."""
+        """Name of the folder of this layout's runs."""
         return self.twin + ("-riding" if self.riding else "")
 
     def name(self, *, reference: bool) -> str:
-        """Name in the table: of the layout itself, or of its twin."""
+        """Name in the table: that of the original layout, or of its twin."""
         stem = self.reference.removeprefix("pp/").removesuffix(".xinst")
         return (stem if reference else self.twin) + (", riding" if self.riding else "")
 
@@ -111,7 +111,8 @@ INSTANCES = [
     ),
     Instance("study-tiers", "pp/3-12-12-96-1650.xinst", {}, seeds=3, slow={"bcp": 0}, riding=True),
 ]
-"""The less time they were simulated, the more the start counts, when all robots are free."""
+"""The layouts of the study. The initial phase, in which all robots are free, matters more in
+shorter simulations."""
 
 CAPTION = (
     "Path planning methods over an hour of constant work: means over seeds with 95% confidence "
@@ -121,14 +122,14 @@ CAPTION = (
 
 
 def row(runs: pd.DataFrame, difference: Mapping[Any, float] | None) -> dict[tuple[str, str], float]:
-    """Return what the table says of one method on one layout.
+    """Return the table row of one method on one layout.
 
     Parameters
     ----------
     runs
-        Its runs, a row each.
+        Its runs, one row each.
     difference
-        As `rmfs.experiments.statistics.against` gives it; None for the method of comparison.
+        As returned by `rmfs.experiments.statistics.against`; None for the baseline method.
     """
     cells = {("seeds", ""): float(len(runs))}
     hours = runs["duration_s"] / 3600.0
@@ -151,7 +152,7 @@ def row(runs: pd.DataFrame, difference: Mapping[Any, float] | None) -> dict[tupl
 
 
 def rows(study: Study, instance: Instance, name: str) -> Rows:
-    """Return the rows of one layout: the methods by their orders, and beside them RAWSim-O's."""
+    """Return the rows of one layout: the methods by orders per hour, with RAWSim-O's figures."""
     frame = study.frame
     differences = against(frame, "orders_per_h", OURS, by=METHOD)
     made: Rows = {}
@@ -180,7 +181,7 @@ def as_table(made: Rows) -> Table:
 
 
 def finished(given: argparse.Namespace, instance: Instance) -> Study:
-    """Run all methods on an instance, each with its number of seeds."""
+    """Run all methods on a layout, each with its number of seeds."""
     given.reference_layout = instance.reference
     studies = []
     for seeds in sorted({instance.seeds, *instance.slow.values()} - {0}):

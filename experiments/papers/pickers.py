@@ -1,8 +1,9 @@
-"""How evenly work is spread over pickers, and what that costs.
+"""The balance of work among pickers, and its cost.
 
-The small site with arrivals has two pickers who differ in speed and tire. Rules that take pickers
-into account are compared with pod match, and optimisers with balance in their objective with the
-same optimisers without it. Means are published, and for the optimisers also differences by seed.
+At the small site with arrivals there are two pickers who differ in speed and get tired. Rules that
+consider pickers are compared with pod match, and optimisers with balance in their objective with
+the same optimisers without it. Means are published, and for the optimisers also differences paired
+by seed.
 """
 
 from __future__ import annotations
@@ -29,11 +30,11 @@ COMPARED = (
     ("pile-on, balance", "pile-on"),
     ("planning, balance", "planning"),
 )
-"""What is compared with what."""
+"""The pairs of arms that are compared."""
 
 
 def differences(frame: pd.DataFrame) -> Table:
-    """Return what rules and balance change, seed by seed, in the unit of each column.
+    """Return the effects of rules and balance, paired by seed, in the unit of each column.
 
     Parameters
     ----------

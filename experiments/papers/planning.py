@@ -1,11 +1,11 @@
-"""What planning ahead is worth: the search against its own start rule.
+"""The benefit of planning ahead: the search compared with its own start rule.
 
-TA planning on the small site with three to five robots (`--large`: the large site with 20 and 30),
-whole orders, a backlog and arrivals, after a warm-up. The start rule is the same controller with
-`method = "greedy"`: same horizon, same values, plans that go on from the last one, but nothing
-searched. With `--anticipation`, planning is compared with itself when it also reckons with orders
-still to come. Bundles and space in use stand beside, as who stores fewer has robots to spare for a
-while.
+TA planning is run at the small site with three to five robots (`--large`: the large site with 20
+and 30), with whole orders, a backlog or arrivals, after a warm-up. The start rule is the same
+controller with `method = "greedy"`: it has the same horizon and values, and continues the previous
+plan, but does not search. With `--anticipation`, planning is compared with planning that also
+considers future orders. Bundles and used space are shown as well, because storing fewer bundles
+frees robots for a while.
 """
 
 from __future__ import annotations

@@ -1,13 +1,14 @@
-"""What splitting orders costs: the wall it needs, and the work of packers it may take.
+"""The cost of splitting orders: the put wall it needs, and the packing work it may cause.
 
-Split orders against whole ones (each by the best controllers we have), with put walls of so many
-slots, one minute and ten minutes away from the pick stations; the controllers split no more orders
-than the wall can hold, or (`always`) as many as they like. Published are means, differences seed by
-seed, what splitting as far as the wall goes does against the better of whole and always, what the
-optimisers add to their start rules, and where splitting breaks even: slots of the wall, from which
-on it picks more units per hour; seconds that a packer may take for each further tote until the work
-of pickers and packers per unit is that of whole orders; and the way to the wall at which an order
-is packed as early, in the mean, as a whole one. `--default`, `--large`: these sites.
+Split orders are compared with whole ones (with the best controllers available for each), for put
+walls of different sizes, one minute and ten minutes away from the pick stations. The controllers
+split no more orders than the wall can hold or, in arms `always`, any number. The study publishes
+means; differences paired by seed; splitting within the capacity of the wall compared with the
+better of whole and always; the gain of optimisers over their start rules; and break-even points of
+splitting: the number of slots from which on it picks more units per hour; the seconds a packer may
+need for each additional tote until the work of pickers and packers per unit equals that of whole
+orders; and the transport time to the wall at which split orders are on average packed as early as
+whole ones. `--default` and `--large` select these sites.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
 
 DEMAND, ORDERS, WHOLE = "demand", "orders", "whole"
 ALWAYS = ", always"
-"""Ends the level of `orders` that splits whether the wall has room or not."""
+"""Suffix of levels of `orders` that split regardless of the wall's capacity."""
 
 COLUMNS = (
     *("units_per_h", "distance_per_unit_m", "order_cycle_mean_s", "order_cycle_p95_s"),
@@ -54,12 +55,12 @@ RESAMPLES = 2000
 
 
 def wall_of(label: str) -> tuple[float, float]:
-    """Return slots of the wall (inf for any number) and the way to it, s, of a level of `orders`.
+    """Return the slots of the wall (inf: any number) and the time to it, in s, of a level.
 
     Raises
     ------
     ValueError
-        If the label tells none.
+        If the level's label contains none.
     """
     found = re.fullmatch(r"(\d+|any) slots, (\d+) s", label)
     if found is None:
@@ -68,7 +69,7 @@ def wall_of(label: str) -> tuple[float, float]:
 
 
 def walls_of(runs: pd.DataFrame) -> dict[str, tuple[float, float]]:
-    """Return the walls (`wall_of`) by the levels of `orders` that split as far as a wall goes."""
+    """Return the walls (`wall_of`) of the levels of `orders` that respect the wall's capacity."""
     labels = [str(label) for label in runs[ORDERS].unique()]
     return {
         label: wall_of(label)
@@ -78,14 +79,14 @@ def walls_of(runs: pd.DataFrame) -> dict[str, tuple[float, float]]:
 
 
 def break_even(slots: Sequence[float], gain: Floats) -> float:
-    """Return from how many slots on the gain is above 0, interpolated between walls.
+    """Return the number of slots from which on the gain is positive, interpolated.
 
     Parameters
     ----------
     slots
-        Of the walls, ascending; the last may be infinite and then counts as the one before.
+        Slots of the walls, ascending; the last may be infinite and then counts as the one before.
     gain
-        Of each wall; taken as not falling with slots, as noise must not count twice.
+        Gain with each wall, made nondecreasing in the slots to reduce noise.
 
     Returns
     -------
@@ -105,18 +106,20 @@ def break_even(slots: Sequence[float], gain: Floats) -> float:
 
 
 def break_even_slots(runs: pd.DataFrame, way_s: float) -> tuple[float, float, float]:
-    """Return the slots from which on split orders pick more units per hour, and a 95 % interval.
+    """Return the slots from which on splitting picks more units per hour, and a 95 % interval.
 
     Parameters
     ----------
     runs
-        Of one kind of demand.
+        Runs with one kind of demand.
     way_s
-        Of the walls; one of any number of slots counts whatever its way, as it holds nobody up.
+        Time to the walls, in s; a wall with any number of slots is always included, as it never
+        blocks.
 
     Returns
     -------
-    Of the mean over seeds, and the 2.5 and 97.5 percentiles of `RESAMPLES` draws of seeds.
+    The break-even point of the means over seeds, and its 2.5 and 97.5 percentiles over `RESAMPLES`
+    bootstrap samples of the seeds.
     """
     wide = runs.pivot_table(index="replication", columns=ORDERS, values="units_per_h")
     chosen = sorted(
@@ -131,16 +134,16 @@ def break_even_slots(runs: pd.DataFrame, way_s: float) -> tuple[float, float, fl
 
 
 def tolerable_tote_s(split: pd.DataFrame, whole: pd.DataFrame) -> pd.Series[float]:
-    """Return what a packer may take per further tote until splitting saves no work, s, by seed.
+    """Return the packer's time per additional tote at which splitting saves no work, in s.
 
-    One picker works at each pick station. Splitting saves `pickers x (1 - whole / split)` of their
-    time, by units per hour, and takes a packer so long for every tote beyond an order's first; nan
-    if nothing was split.
+    The result has one value per seed, nan if nothing was split. One picker works at each pick
+    station. Splitting saves the share `1 - whole / split` of their time, where `whole` and `split`
+    are units per hour, and costs a packer this time for every tote beyond an order's first.
 
     Parameters
     ----------
     split, whole
-        Runs, by seed.
+        Runs, indexed by seed.
     """
     saved_s = 3600.0 * split["pick_stations"] * (1 - whole["units_per_h"] / split["units_per_h"])
     orders_per_h = 3600.0 * split["orders_packed"] / split["duration_s"]
@@ -149,17 +152,17 @@ def tolerable_tote_s(split: pd.DataFrame, whole: pd.DataFrame) -> pd.Series[floa
 
 
 def tolerable_way_s(split: pd.DataFrame, whole: pd.DataFrame, way_s: float) -> pd.Series[float]:
-    """Return the way at which orders are packed as early as whole ones in the mean, s, by seed.
+    """Return the time to the wall at which split orders are packed as early as whole ones, in s.
 
-    Only split orders go to the wall; nan if none was. Negative where they are later even without
-    any way.
+    The result has one value per seed, on average over orders. Only split orders go to the wall; nan
+    if there were none. Negative if split orders are later even if the wall is next to the stations.
 
     Parameters
     ----------
     split, whole
-        Runs, by seed; the wall never full.
+        Runs, indexed by seed, in which the wall is never full.
     way_s
-        Of `split`.
+        Time to the wall in the runs `split`, in s.
     """
     earlier_s = whole["order_cycle_mean_s"] - split["order_cycle_mean_s"]
     share = split["orders_packed_split_share"]
@@ -167,7 +170,7 @@ def tolerable_way_s(split: pd.DataFrame, whole: pd.DataFrame, way_s: float) -> p
 
 
 def even(frame: pd.DataFrame) -> Table:
-    """Return where splitting breaks even, by demand and way to the wall.
+    """Return the break-even points of splitting, by demand and time to the wall.
 
     Parameters
     ----------
@@ -210,7 +213,7 @@ _PARTS = ("mean", HALF, "2.5 %", "97.5 %")
 
 
 def against_better(frame: pd.DataFrame) -> Table:
-    """Return what splitting as far as the wall goes does against whole orders and always splitting.
+    """Compare splitting within the wall's capacity with the better of whole and always.
 
     Parameters
     ----------

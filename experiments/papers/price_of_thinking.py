@@ -1,10 +1,11 @@
-"""What thinking costs: units per hour over the time limit of the optimiser.
+"""The cost of computing time: units per hour over the time limit of the optimiser.
 
-The small site with six robots and split orders. `fixed`: an answer takes its whole limit, as if
-the solver used all of it. `work`: it takes the work it was; a solver that has proven its optimum
-stops. Both repeat. About 0.1 CPU hours; with `--wall` the same under wall time at four limits,
-which does not repeat, to be run on a machine with nothing else to do (0.02 CPU hours). With
-`--planning`: TA planning with four robots, whose questions are big enough for a search to matter.
+The study uses the small site with six robots and split orders. With `fixed` pacing, an answer takes
+effect after the whole limit, as if the solver had used all of it; with `work`, after the time that
+its work amounts to, as a solver stops when it has proven the optimum. Both are reproducible. The
+study takes about 0.1 CPU hours. `--wall` uses wall time at four limits, which is not reproducible
+and needs an otherwise idle machine (0.02 CPU hours). `--planning` uses TA planning with four
+robots, whose questions are large enough for a search to matter.
 """
 
 from __future__ import annotations
@@ -29,12 +30,12 @@ COLUMNS = ("units_per_h", "units_per_visit", "distance_per_unit_m", "paced_mean_
 
 
 def paced(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return the runs with `paced_mean_s`: simulated time that an answer took, on average."""
+    """Return the runs with the column `paced_mean_s`: mean simulated time until an answer, in s."""
     return frame.assign(paced_mean_s=frame["paced_s"] / frame["optimiser_calls"])
 
 
 def picture(study: Study, frame: pd.DataFrame) -> Path:
-    """Draw units per hour over the limit, a line per mode."""
+    """Draw units per hour over the limit, with one line per mode."""
     path = study.place("price-of-thinking.png")
     with saving(path, 6.0, 4.0) as figure:
         ax = figure.subplots()

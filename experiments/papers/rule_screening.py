@@ -1,10 +1,11 @@
-"""Rule screening: which decision matters (Merschformann, Lamballais, de Koster, Suhl 2019).
+"""Rule screening: which decisions matter (Merschformann, Lamballais, de Koster, Suhl 2019).
 
-That study combined rules for five decision problems to 1620 controllers and found that pick order
-assignment (POA) has a strong impact on the units picked per hour and the other four have not. Here
-72 of these combinations, chosen so that main effects are told best, are run with common seeds; the
-analysis of variance says what share of the spread each problem explains. `rule-factorial` is the
-design with all of them (`--design rule-factorial`, for a cluster).
+That study combined rules for five decision problems into 1620 controllers and found that pick order
+assignment (POA) has a strong impact on the units picked per hour, while the other four problems do
+not. Here 72 of these combinations, chosen to estimate the main effects as precisely as possible,
+are run with common seeds; an analysis of variance shows what share of the variation each problem
+explains. The design `rule-factorial` contains all combinations (`--design rule-factorial`, for a
+cluster).
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ BEST = 10
 
 
 def strongest(found: pd.DataFrame) -> str:
-    """Return the factor that explains most, or say that none can be told from noise."""
+    """Return the factor that explains most of the variation, or state that none is significant."""
     others = [name for name in (SEEDS, POOLED, RESIDUAL) if name in found.index]
     factors = found.drop(index=others)
     first = factors.index[0]

@@ -1,11 +1,12 @@
-"""Orders on time: rules against an optimiser that knows due times.
+"""Orders on time: rules compared with an optimiser that considers due times.
 
-The small site with tight, medium and slack due times. The optimiser is TA planning with tardiness
-in its objective (`late_s`); beside it stand the same with its thinking charged (pacing `work`), its
-start rule, and planning without due times. Published are means, and differences of on-time shares
-in points, seed by seed: to the best of the rules, chosen in favour of the rules from the same runs,
-and to the start rule. `--priorities`: three classes of orders of different weight, and differences
-by class.
+The study uses the small site with tight, medium and slack due times. The optimiser is TA planning
+with tardiness in its objective (`late_s`). It is compared with the same optimiser with its
+computing time charged (pacing `work`), with its start rule, and with planning that ignores due
+times. The study publishes means, and differences of on-time shares in percentage points, paired by
+seed: to the best of the rules, which is selected from the same runs and thus favoured, and to the
+start rule. `--priorities` uses three classes of orders with different weights, and shows
+differences by class.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 DUE, DECIDED, SHARE = "due", "decided", "on_time_share"
 OPTIMISER = "optimiser"
 OTHERS = ("optimiser, work", "start rule", "without due times", "equal weights")
-"""What is no rule besides the optimiser."""
+"""Arms that are not rules, besides the optimiser."""
 
 COLUMNS = (
     *(SHARE, "lateness_p95_s", "late_by_mean_s", "orders_overdue_end"),
@@ -39,7 +40,7 @@ def best_rule(runs: pd.DataFrame) -> str:
 
 
 def differences(frame: pd.DataFrame) -> Table:
-    """Return by how many points more orders are on time, by due times and whom it is compared with.
+    """Return differences of on-time shares in points, by due times and baseline.
 
     Parameters
     ----------
@@ -75,7 +76,7 @@ BY_CLASS = ("on_time_urgent_share", "on_time_ordinary_share")
 
 
 def differences_by_class(frame: pd.DataFrame) -> Table:
-    """Return by how many points more orders of the first class, and of the others, are on time.
+    """Return differences of on-time shares in points, for the first class and the others.
 
     Parameters
     ----------

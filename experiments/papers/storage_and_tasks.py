@@ -1,11 +1,11 @@
-"""PSA and TA models against the rules nearest and balanced, one decision at a time.
+"""PSA and TA models compared with the rules nearest and balanced, one decision at a time.
 
 The literature finds that storage places and tasks matter little for throughput (Merschformann,
-Lamballais, de Koster, Suhl 2019); what matters is the driving. So the fleet is small, ways bind,
-and metres per unit stand beside units, lines and orders per hour. Bundles per hour are shown as
-well: who stores fewer has robots to spare for a while. Each kind of demand has its own
-tables: means, differences to the rules, and what each model adds to its own start rule, seed by
-seed.
+Lamballais, de Koster, Suhl 2019); they affect the driving. Therefore the fleet is small, so that
+driving is the bottleneck, and metres per unit are shown with units, lines and orders per hour.
+Bundles per hour are shown as well, because storing fewer bundles frees robots for a while. Each
+kind of demand has its own tables: means, differences to the rules, and the gain of each model over
+its own start rule, paired by seed.
 """
 
 from __future__ import annotations

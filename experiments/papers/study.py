@@ -1,4 +1,4 @@
-"""What all reproduced experiments share: options, runs, and where results are published."""
+"""Shared parts of the studies: options, runs, and publication of results."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ class Study:
     Attributes
     ----------
     frame
-        Its results.
+        The results.
     folder
-        Where they are stored.
+        Folder in which the results are stored.
     published
-        Where tables and pictures go.
+        Folder for tables and pictures.
     suffix
-        Of their names: "-reference" where a layout of the reference took the place of its twin,
-        "-smoke" where runs are short.
+        Suffix of their names: "-reference" if an original layout was used instead of its twin,
+        "-smoke" if runs are short.
     """
 
     plan: Plan
@@ -60,11 +60,11 @@ class Study:
 
     @property
     def smoke(self) -> bool:
-        """Whether its runs are short, to show only that everything works."""
+        """Whether its runs are short, just to check that everything works."""
         return self.suffix.endswith(_SMOKE)
 
     def table(self, name: str) -> pd.DataFrame:
-        """Return a table that was kept of every run."""
+        """Return a table that was kept from every run."""
         return load(self.folder, table=name)
 
     def publish(self, table: Table, name: str, columns: Sequence[str], **more: Any) -> None:
@@ -76,7 +76,7 @@ class Study:
         print(table.markdown())
 
     def place(self, name: str) -> Path:
-        """Return where a published file goes."""
+        """Return the path of a published file."""
         path = self.published / name
         return path.with_name(f"{path.stem}{self.suffix}{path.suffix}")
 
@@ -100,15 +100,15 @@ class Study:
 def parser(
     design: str, description: str | None, *, reference: str | None = None
 ) -> argparse.ArgumentParser:
-    """Return the options that all studies have.
+    """Return the parser with the options of all studies.
 
     Parameters
     ----------
     design
         The shipped design.
     reference
-        Layout of RAWSim-O that the study can be run on in place of its shipped twin: a path in the
-        folder of its public instances.
+        Layout of RAWSim-O on which the study can be run instead of its shipped twin: a path in the
+        folder of public instances.
     """
     made = argparse.ArgumentParser(description=(description or "").splitlines()[0])
     made.add_argument("--design", default=design, help=f"another design file (default: {design})")
@@ -146,29 +146,29 @@ def done(
     replications: int | None = None,
     without: Collection[str] = (),
 ) -> Study:
-    """Run what is not finished of a study's design and return the results.
+    """Make the unfinished runs of a study's design, and return the results.
 
     Parameters
     ----------
     given
         Options of `parser`.
     layout
-        Takes the place of the design's, unless one of the reference does.
+        Layout to use instead of the design's, unless a reference layout is used.
     more
-        Further entries of the design's table `base`.
+        Additional entries of the design's table `base`.
     part
         Name of the runs' folder, if the study has several.
     replications
-        Another number of seeds; not more than the option of that name says.
+        Another number of seeds, at most that given by the option of this name.
     without
         Names of arms to leave out.
 
     Raises
     ------
     InputError
-        If the design is wrong, or the folder of the reference lacks the layout.
+        If the design is invalid, or the folder of public instances lacks the layout.
     SystemExit
-        If runs failed: a study with gaps is not published.
+        If runs failed, as an incomplete study is not published.
     """
     base, suffix = _reference(given)
     if base is None and layout is not None:
@@ -193,7 +193,7 @@ def done(
 
 
 def station_units_per_h(study: Study) -> float:
-    """Return what a pick station of a study can do at most: those of its first arm, all alike."""
+    """Return the capacity of a pick station of a study, taken from its first arm."""
     stations = study.layout(study.plan.arms[0]).pick_stations
     return 3600.0 / min(station.unit_transfer_s for station in stations)
 

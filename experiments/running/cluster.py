@@ -109,7 +109,7 @@ class DaskWorkers:
         Raises
         ------
         InputError
-            If the scheduler is gone.
+            If the scheduler no longer answers.
         """
         ended: list[tuple[Job, Outcome]] = []
         try:
@@ -158,7 +158,7 @@ def read_profile(path: Path) -> Profile:
     Raises
     ------
     InputError
-        If it is missing or wrong.
+        If it is missing or invalid.
     """
     return validate(Profile, read_toml(path), str(path))
 
@@ -169,7 +169,7 @@ def job_script(path: Path) -> str:
     Raises
     ------
     InputError
-        If the profile is wrong, is of no batch system, or dask-jobqueue is not installed.
+        If the profile is invalid or has no batch system, or dask-jobqueue is not installed.
     """
     profile = read_profile(path)
     if profile.cluster == "local":
@@ -182,17 +182,17 @@ def job_script(path: Path) -> str:
 
 
 def started(profile: Profile, source: str) -> Any:
-    """Start a cluster; a batch system is asked for as many jobs as hold the workers.
+    """Start a cluster; from a batch system, request enough jobs for all workers.
 
     Parameters
     ----------
     source
-        Named in errors.
+        Name of the profile, for errors.
 
     Raises
     ------
     InputError
-        If its options are wrong.
+        If its options are invalid.
     """
     options = dict(profile.options)
     try:

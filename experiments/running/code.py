@@ -1,4 +1,4 @@
-"""Which code made a result."""
+"""The version of the code that produced a result."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rmfs.measure.provenance import commit, version
 
 @cache
 def code() -> dict[str, Any]:
-    """Return version, commit and hash of the code that runs are made with (`rmfs.code`)."""
+    """Return version, commit and hash of the code that makes the runs (`rmfs.code`)."""
     told = commit()["git_commit"]
     return {
         "rmfs_version": version(),

@@ -1,4 +1,4 @@
-"""The driver: hands out the runs that are wanted and stores what comes back."""
+"""The driver, which distributes the needed runs and stores their results."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from rmfs.experiments.store import Store
 
 ATTEMPTS = 3
-"""How often a run is begun whose worker dies without a word."""
+"""Number of attempts at a run whose worker dies without an error."""
 
 PATIENCE_S = 1.0
-"""Time between two looks at the engine; progress is reported in between."""
+"""Longest wait for the engine before progress is reported, in s."""
 
 MERGE_EVERY = 1024
-"""Runs after which the files of single runs are merged."""
+"""Number of runs after which the files of single runs are merged."""
 
 
 class Watcher(Protocol):
@@ -50,33 +50,33 @@ class Watcher(Protocol):
 
 
 class Silent:
-    """A watcher that says nothing."""
+    """A watcher that does nothing."""
 
     def planned(self, total: int, finished: int) -> None:
-        """Say nothing."""
+        """Do nothing."""
 
     def ended(self, job: Job, outcome: Outcome) -> None:
-        """Say nothing."""
+        """Do nothing."""
 
     def remark(self, text: str) -> None:
-        """Say nothing."""
+        """Do nothing."""
 
     def tick(self) -> None:
-        """Say nothing."""
+        """Do nothing."""
 
 
 @dataclass
 class Tally:
-    """What a driver has done.
+    """Counts of a driver's runs.
 
     Attributes
     ----------
     wanted, finished
-        Runs of the experiment; those of them that are stored.
+        Number of runs of the experiment, and of those already stored.
     ran
-        Runs done now.
+        Number of runs made by this driver.
     failed
-        Runs that failed now, as arm and replication.
+        Runs that failed in this driver, as arm and replication.
     """
 
     wanted: int = 0
@@ -86,16 +86,16 @@ class Tally:
 
 
 def drive(plan: Plan, store: Store, engine: Engine, watcher: Watcher | None = None) -> Tally:
-    """Do the runs of a plan that are not finished yet.
+    """Make the runs of a plan that are not finished yet.
 
-    Runs that failed in an earlier attempt are begun again, as are those that were cut off.
+    Runs that failed or were interrupted earlier are repeated.
 
     Raises
     ------
     PlanError
         If the plan has problems.
     InputError
-        If the folder cannot be written or another driver works on it.
+        If the folder cannot be written, or another driver is working on it.
     """
     plan.require_sound()
     return _Driver(plan, store, engine, watcher or Silent()).run()
@@ -222,7 +222,7 @@ class _Driver:
 
 
 def progress_of(plan: Plan, store: Store) -> Tally:
-    """Return how far an experiment has come."""
+    """Return the progress of an experiment."""
     finished = store.finished(plan.design.keep)
     lost = failed_pairs(plan, store)
     wanted = schedule(plan, assigned(plan, store), lost).runs

@@ -1,6 +1,6 @@
 """The work of one job: load, simulate, measure. Runs in a process of its own.
 
-What is imported here is imported once, before the processes are forked.
+The modules imported here are imported once, before the processes are forked.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def execute(job: Job) -> Outcome:
-    """Do a job; whatever goes wrong in it becomes part of the outcome."""
+    """Execute a job; any error becomes part of the outcome."""
     begun, begun_cpu = time.perf_counter(), time.process_time()
     host = platform.node()
     try:

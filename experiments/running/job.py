@@ -1,4 +1,4 @@
-"""What goes to a worker, and what comes back."""
+"""The data sent to a worker, and the data it returns."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Job:
-    """One run, with everything needed to do it anywhere.
+    """One run, with everything needed to execute it on any machine.
 
     Attributes
     ----------
@@ -56,26 +56,26 @@ class Job:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a job.
+    """The outcome of a job.
 
     Attributes
     ----------
     footprint
-        One row; nothing if the run failed.
+        The footprint, one row; None if the run failed.
     tables
-        The tables that were to be kept.
+        The tables to keep.
     error
-        One line; empty if all went well.
+        Error in one line; empty if there was none.
     traceback
-        Where the error came from.
+        Traceback of the error.
     died
-        Whether the worker was gone before it could say anything.
+        Whether the worker died without reporting an error.
     elapsed_s
-        Wall time of the job, loading and tables included.
+        Wall time of the job in s, including loading and tables.
     cpu_s
-        Processor time of the same.
+        Processor time of the job in s.
     host
-        Where it ran.
+        Name of the machine.
     """
 
     footprint: pd.DataFrame | None = None

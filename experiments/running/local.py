@@ -1,4 +1,4 @@
-"""Runs on this machine: each in a process of its own, several in parallel.
+"""Runs on this machine, each in a separate process, several in parallel.
 
 Processes are forked from a server that has imported everything and never simulates. A run therefore
 starts within milliseconds, in fresh memory, independently of all others.
@@ -66,14 +66,14 @@ class _Running:
 
 
 class LocalProcesses:
-    """Does jobs in processes of this machine.
+    """Executes jobs in processes on this machine.
 
     Parameters
     ----------
     processes
-        How many at a time.
+        Maximum number of parallel processes.
     work
-        What is done with a job. Default: simulate it.
+        Function that executes a job. Default: simulate it.
     """
 
     def __init__(self, processes: int, work: Callable[[Job], Outcome] | None = None) -> None:
@@ -87,7 +87,7 @@ class LocalProcesses:
 
     @property
     def slots(self) -> int:
-        """As many jobs as processes."""
+        """The maximum number of jobs: the number of processes."""
         return self._processes
 
     @property
@@ -96,7 +96,7 @@ class LocalProcesses:
         return [one.process.pid for one in self._running.values() if one.process.pid is not None]
 
     def submit(self, job: Job) -> None:
-        """Begin a job in a new process."""
+        """Start a job in a new process."""
         with _uninterrupted():
             receiver, sender = self._context.Pipe(duplex=False)
             process = self._context.Process(
@@ -109,7 +109,7 @@ class LocalProcesses:
             self._running[receiver.fileno()] = _Running(job, process, receiver)
 
     def wait(self, timeout_s: float) -> list[tuple[Job, Outcome]]:
-        """Return the jobs that have ended within a time."""
+        """Return the jobs that have ended, waiting up to a given time."""
         receivers = [one.receiver for one in self._running.values()]
         ended = []
         for receiver in connection.wait(receivers, timeout_s):
@@ -119,7 +119,7 @@ class LocalProcesses:
         return ended
 
     def close(self) -> None:
-        """End everything that still runs."""
+        """Stop all running jobs."""
         for one in self._running.values():
             one.process.terminate()
         for one in self._running.values():

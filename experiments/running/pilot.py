@@ -23,7 +23,7 @@ ARMS = 4
 """Number of arms in pilot runs, evenly spread over the design."""
 
 SHARE = 0.05
-"""Simulated share of a run in a pilot run."""
+"""Share of a run's duration that a pilot run simulates."""
 
 LEAST_S, MOST_S = 600.0, 7200.0
 """Minimum and maximum simulated time of a pilot run."""
@@ -34,18 +34,18 @@ ENOUGH = 8
 
 @dataclass(frozen=True)
 class Estimate:
-    """How long runs take.
+    """Estimated duration of runs.
 
     Attributes
     ----------
     run_s
-        Mean wall time of a run.
+        Mean wall time of a run, in s.
     longest_s
-        That of the slowest arm tried.
+        Mean wall time of a run of the slowest arm, in s.
     runs
-        Runs that this comes from.
+        Number of runs on which the estimate is based.
     source
-        In words, where the figures come from.
+        Origin of the figures, in words.
     """
 
     run_s: float
@@ -54,7 +54,7 @@ class Estimate:
     source: str
 
     def total_s(self, runs: int, processes: int) -> float:
-        """Return the wall time of so many runs, so many at a time."""
+        """Return the wall time of some runs, given the number of parallel processes, in s."""
         return self.run_s * runs / max(1, min(processes, runs))
 
 

@@ -1,4 +1,4 @@
-"""How an experiment goes: a bar on a terminal, one line now and then elsewhere."""
+"""Progress of an experiment: a bar on a terminal, occasional lines elsewhere."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ LINE_EVERY_S = 10.0
 
 
 def time_left_s(begun_s: float, now_s: float, ran: int, left: int) -> float:
-    """Estimate the time that is left from the runs done since the beginning; inf before any."""
+    """Estimate the remaining time from the runs made so far, in s; inf before the first."""
     return (now_s - begun_s) / ran * left if ran else float("inf")
 
 
 def spoken(seconds: float) -> str:
-    """Say a duration in words."""
+    """Return a duration in words."""
     if seconds < 100:
         return f"{max(seconds, 1):.0f} s"
     if seconds < 6000:
@@ -33,7 +33,7 @@ def spoken(seconds: float) -> str:
 
 
 class Lines:
-    """Tells progress as lines."""
+    """Reports progress as lines."""
 
     def __init__(self, stream: TextIO) -> None:
         self.stream = stream
@@ -41,13 +41,13 @@ class Lines:
         self.begun_s = self.told_s = time.monotonic()
 
     def planned(self, total: int, finished: int) -> None:
-        """Tell how much there is to do."""
+        """Report the number of runs."""
         if total > self.total:
             self.say(f"{total} runs, {finished} of them finished")
         self.total, self.finished = total, finished
 
     def ended(self, job: Job, outcome: Outcome) -> None:
-        """Count; failures are told at once."""
+        """Count a run; report failures immediately."""
         self.ran += 1
         if outcome.error:
             self.failed += 1
@@ -60,11 +60,11 @@ class Lines:
             self.say(f"{self.finished} of {self.total} runs finished, about {spoken(rest)} left")
 
     def remark(self, text: str) -> None:
-        """Tell a line."""
+        """Print a remark."""
         self.say(text)
 
     def tick(self) -> None:
-        """Say nothing."""
+        """Do nothing."""
 
     def say(self, text: str) -> None:
         """Print a line."""
@@ -73,7 +73,7 @@ class Lines:
 
 
 class Bar:
-    """Tells progress as a bar."""
+    """Reports progress as a bar."""
 
     def __init__(self, progress: Progress, task: TaskID) -> None:
         self.progress, self.task = progress, task
@@ -83,17 +83,17 @@ class Bar:
         self.progress.update(self.task, total=total, completed=finished)
 
     def ended(self, job: Job, outcome: Outcome) -> None:
-        """Move on; a failure gets a line above the bar."""
+        """Advance the bar; print failures above it."""
         self.progress.advance(self.task)
         if outcome.error:
             self.progress.console.print(f"{job}: failed: {outcome.error}", markup=False)
 
     def remark(self, text: str) -> None:
-        """Print a line above the bar."""
+        """Print a remark above the bar."""
         self.progress.console.print(text, markup=False)
 
     def tick(self) -> None:
-        """Redraw: the time left decreases even while no run ends."""
+        """Redraw the bar, as the remaining time decreases even if no run ends."""
         self.progress.refresh()
 
 

@@ -1,4 +1,4 @@
-"""Imported once by the server from which worker processes are forked: all that runs will need."""
+"""Imports needed by runs, loaded once by the server from which worker processes are forked."""
 
 from contextlib import suppress
 from importlib import import_module

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SEEDS, RESIDUAL, POOLED = "seeds", "residual", "interactions"
-"""Rows that are not an effect of a factor or a pair of factors."""
+"""Names of rows that are not the effect of a factor or a pair of factors."""
 
 CROSS = " x "
 """Separates the names of two factors in the name of their interaction."""
@@ -50,19 +50,15 @@ def anova(
     """Return the analysis-of-variance table of categorical factors.
 
     Sums of squares are of type II: each effect is adjusted for all others that do not contain it,
-    so
-    that factors of an unbalanced design (with excluded combinations) do not take credit for each
-    other.
+    so that factors of an unbalanced design (with excluded combinations) are not credited with each
+    other's effects.
 
     Interactions of two factors have one row each if the runs can separate all effects and leave at
-    least
-    one degree of freedom for the residual. If they cannot (as in a fraction of a grid), all
-    differences
-    between combinations of levels beyond the main effects form one row, `interactions`, and the
-    residual
-    is the variation of equal combinations over the seeds. If no combination has been run twice,
-    interactions are part of the residual. `attrs["interactions"]` of the table states which case
-    applies.
+    least one degree of freedom for the residual. Otherwise (as in a fraction of a grid), all
+    differences between combinations of levels beyond the main effects form one row, `interactions`,
+    and the residual is the variation of equal combinations over the seeds. If no combination has
+    been run twice, interactions are part of the residual. `attrs["interactions"]` of the table
+    states which case applies.
 
     Parameters
     ----------
@@ -89,8 +85,7 @@ def anova(
     ------
     InputError
         If no factor varies, there are too few runs for the model, or the main effects of two
-        factors
-        cannot be separated.
+        factors cannot be separated.
     """
     require(frame, column, *factors)
     known = frame[frame[column].notna()]
@@ -118,7 +113,7 @@ def varying_factors(frame: pd.DataFrame, factors: Sequence[str]) -> list[str]:
 
 
 def tell_apart(frame: pd.DataFrame, factors: Sequence[str]) -> bool:
-    """Whether the runs separate all main effects and interactions of two factors.
+    """Return whether the runs can separate all main effects and two-factor interactions.
 
     Parameters
     ----------

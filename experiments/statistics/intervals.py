@@ -134,7 +134,7 @@ def require(frame: pd.DataFrame, *columns: str) -> None:
     Raises
     ------
     InputError
-        With the nearest column there is.
+        If the column is missing; the message names the most similar one.
     """
     import difflib
 

@@ -1,8 +1,7 @@
 """Differences between arms, seed by seed.
 
 With common random numbers two arms face the same demand for the same seed, so the difference of
-each
-pair varies less than the arms themselves. Differences are always "arm minus baseline".
+each pair varies less than the arms themselves. Differences are always "arm minus baseline".
 """
 
 from __future__ import annotations
@@ -57,7 +56,7 @@ def unpaired(arm: pd.Series, baseline: pd.Series, *, confidence: float = 0.95) -
 
     Returns
     -------
-    As of `paired`; `pairs` is 0.
+    As for `paired`; `pairs` is 0.
     """
     a, b = arm.dropna().to_numpy(dtype=float), baseline.dropna().to_numpy(dtype=float)
     difference = float(a.mean() - b.mean()) if len(a) and len(b) else np.nan

@@ -2,10 +2,9 @@
 
 Procedure KN: S.-H. Kim and B. L. Nelson (2001), A fully sequential procedure for indifference-zone
 selection in simulation, ACM Transactions on Modeling and Computer Simulation 11(3), 251-273. If
-runs
-are normally distributed and the best arm is better than all others by at least the indifference, it
-is selected with probability at least 1 - error. Arms may be correlated through common random
-numbers, which reduces the number of runs.
+runs are normally distributed and the best arm is better than all others by at least the
+indifference, it is selected with probability at least 1 - error. Arms may be correlated through
+common random numbers, which reduces the number of runs.
 """
 
 from __future__ import annotations
@@ -41,7 +40,7 @@ class Selection:
     best
         The selected arm, once it has ended.
     proven
-        Whether the stated error holds; not if the procedure was cut off.
+        Whether the stated error holds, which is not the case if the procedure was stopped early.
     """
 
     left: tuple[str, ...]

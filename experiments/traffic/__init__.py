@@ -1,1 +1,1 @@
-"""Traffic alone: planners on the same trips, growth with the fleet, random cases."""
+"""Studies of traffic alone: planners on the same trips, and growth of effort with the fleet."""

@@ -26,7 +26,7 @@ app = typer.Typer(
 )
 
 UNSAFE = 1
-"""Exit code if the checker finds a trace unsafe, or nothing can move any more."""
+"""Exit code if the checker finds a trace unsafe, or no robot can move any more."""
 
 LayoutArgument = Annotated[
     str, typer.Argument(metavar="LAYOUT", help="Name of a shipped layout, or a file.")

@@ -1,4 +1,4 @@
-"""Planners on the same trips: what each makes of them."""
+"""A comparison of planners on the same trips."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ DECIMALS = {
     "idle robots": 0,
     "collisions": 0,
 }
-"""The columns, and the digits after the point of each."""
+"""The columns, and the number of decimal places of each."""
 
 
 def chosen(text: str) -> Choice:
-    """Return the planner that a text names.
+    """Return the planner named by a text.
 
     Parameters
     ----------
@@ -63,17 +63,17 @@ def chosen(text: str) -> Choice:
 
 
 def settings(text: str, seed: int) -> PlannerSettings:
-    """Return the settings of the planner that a text names."""
+    """Return the settings of the planner named by a text."""
     return planner_settings(chosen(text), seed)
 
 
 def all_planners() -> list[str]:
-    """Names of all planners there are."""
+    """Return the names of all planners."""
     return registry.names(Problem.PP)
 
 
 def row(run: TripRun) -> dict[str, float]:
-    """Return what a table says of a run; `collisions` is empty if nobody looked."""
+    """Return the table row of a run; `collisions` is empty if the run was not checked."""
     hours = (run.end_s - run.warmup_s) / 3600.0
     counters, delays = run.traffic.counters(), run.delays_s
     calls_ms = 1e3 * run.traffic.call_times_s()
@@ -113,12 +113,12 @@ def markdown(frame: pd.DataFrame, decimals: dict[str, int] | None = None) -> str
 
 
 def save(frame: pd.DataFrame, path: Path, decimals: dict[str, int] | None = None) -> None:
-    """Write a table as the ending of its name says.
+    """Write a table in the format given by the file's suffix.
 
     Raises
     ------
     InputError
-        If that is neither .csv nor .md.
+        If the suffix is neither .csv nor .md.
     """
     match path.suffix.lower():
         case ".csv":
@@ -130,7 +130,7 @@ def save(frame: pd.DataFrame, path: Path, decimals: dict[str, int] | None = None
 
 
 def check_planners(texts: Sequence[str]) -> None:
-    """Refuse wrong planners before anything runs."""
+    """Validate planners before anything is run."""
     for text in texts:
         chosen(text)
 

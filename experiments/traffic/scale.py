@@ -1,9 +1,8 @@
-"""How work and memory grow with the fleet: `rmfs traffic scale`.
+"""Growth of work and memory with the fleet: `rmfs traffic scale`.
 
-Layouts of the default kind, with 28 to 31 waypoints and about 1/16 of a station for each robot
-whatever their number, and random trips planned by one planner. Each size runs in a process of its
-own, so that its memory is its own. The time that counts is processor time: on a core that is free
-it is wall time.
+Layouts of the default kind have 28 to 31 waypoints and about 1/16 of a station per robot at every
+size, and one planner plans random trips. Each size runs in a separate process, so that its memory
+can be measured. Times are processor times, which equal wall times on an idle core.
 """
 
 from __future__ import annotations
@@ -38,23 +37,23 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
 
 WARMUP_S = 300.0
-"""Until the rush of the start is over and the tables that come again and again are there."""
+"""Simulated warm-up in s, until the initial rush is over and frequently used tables are built."""
 
 ENOUGH_ROBOTS = 1000
 FASTER = 60.0
-"""The mark: so many robots, so many times faster than they drive."""
+"""The benchmark: a number of robots, and a factor by which the simulation is faster than reality."""
 
 
 @dataclass(frozen=True)
 class Size:
-    """A layout for so many robots.
+    """A layout for a given number of robots.
 
     Attributes
     ----------
     horizontal, vertical
-        Aisles.
+        Numbers of aisles.
     long_sides, short_sides
-        Stations in the east and as many in the west; in the north and as many in the south.
+        Number of stations in the east and in the west each; in the north and in the south each.
     """
 
     robots: int
@@ -64,7 +63,7 @@ class Size:
     short_sides: int
 
     def layout(self, robots: int | None = None) -> Layout:
-        """Generate it, with its robots or others."""
+        """Generate the layout, with its own or another number of robots."""
         long_, short = self.long_sides, self.short_sides
         values: dict[str, Any] = {
             "robots": self.robots if robots is None else robots,
@@ -101,14 +100,14 @@ def table(
     seed: int = 1,
     tell: Callable[[str], None] = print,
 ) -> pd.DataFrame:
-    """Measure all sizes up to `most` robots, a row each.
+    """Measure all sizes up to `most` robots; return one row each.
 
     Parameters
     ----------
     planner
-        As `rmfs.experiments.traffic.duel.settings` takes it.
+        The planner, as for `rmfs.experiments.traffic.duel.settings`.
     tell
-        Told of each row as soon as it is there.
+        Function called with each row when it is available.
     """
     rows = []
     for size in SIZES:
@@ -159,7 +158,7 @@ def measure(size: dict[str, int], planner: str, duration_s: float, seed: int) ->
 
 
 def resident_mb() -> float:
-    """Return the resident memory of this process, in MB (10^6 bytes), or nan where nobody tells."""
+    """Return the resident memory of this process, in MB (10^6 bytes); nan if unknown."""
     try:
         # what was freed and kept is not in use
         ctypes.CDLL(None).malloc_trim(0)
@@ -170,12 +169,12 @@ def resident_mb() -> float:
 
 
 def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
-    """Write table and picture to a folder, each with a file that says where it comes from.
+    """Write table and plot to a folder, each with its provenance file.
 
     Parameters
     ----------
     settings
-        What else decides about the figures.
+        Other settings that determine the figures.
     """
     paths = [out / f"scale.{ending}" for ending in ("csv", "md", "png")]
     save_table(frame, paths[0], DECIMALS)

@@ -1,9 +1,9 @@
-"""How the work of whole warehouses grows with the fleet: `rmfs traffic warehouses`.
+"""Growth of the work of whole warehouses with the fleet: `rmfs traffic warehouses`.
 
-Layouts of the default kind with ten pods and 1/12 of a pick station for each robot, orders that
-always wait, and rules. Each run is in a process of its own, so that its memory is its own. The time
-that counts is processor time: on a core that is free it is wall time. What is measured is the rush
-of the start, and a later window in which all is under way.
+Layouts of the default kind have ten pods and 1/12 of a pick station per robot, a constant backlog,
+and rules. Each run is a separate process, so that its memory can be measured. Times are processor
+times, which equal wall times on an idle core. Two windows are measured: the initial rush, and a
+later one in normal operation.
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ SIDES = ("east", "west", "north", "south")
 
 @dataclass(frozen=True)
 class Site:
-    """A warehouse for so many robots.
+    """A warehouse for a given number of robots.
 
     Attributes
     ----------
     horizontal, vertical
-        Aisles.
+        Numbers of aisles.
     picks, replenishments
-        Stations in the east, west, north and south.
+        Numbers of stations in the east, west, north and south.
     """
 
     robots: int
@@ -86,7 +86,7 @@ DECIMALS = {
 }
 
 WINDOW_S = 600.0
-"""Simulated seconds of the start, and of the window measured later."""
+"""Lengths of the initial and the later window, in simulated s."""
 
 
 def table(
@@ -98,20 +98,20 @@ def table(
     check: bool = False,
     tell: Callable[[str], None] = print,
 ) -> pd.DataFrame:
-    """Measure all sites from the least to the most robots under all rules, a row each.
+    """Measure all sites between two fleet sizes under all rules; return one row each.
 
     Parameters
     ----------
     rules
         Controllers files, or names of shipped ones.
     robots
-        The smallest and the biggest fleet.
+        Sizes of the smallest and the largest fleet.
     later_s
-        When the second window begins.
+        Start of the later window, in s.
     check
-        Whether the motion is recorded and proven safe: times and memory are those of that then.
+        Whether the motion is recorded and checked; times and memory then include that.
     tell
-        Told of each row as soon as it is there.
+        Function called with each row when it is available.
     """
     rows = []
     for site in SITES:
@@ -171,7 +171,7 @@ def measure(
 
 
 def standing_with_work(simulation: Simulation) -> int:
-    """Return how many robots have a way to go and have not moved in the whole window."""
+    """Return the number of robots with a destination that have not moved in the whole window."""
     motion: dict[str, NDArray[Any]] = simulation.traffic.motion()
     moved = motion["moving_s"] + motion["turning_s"] + motion["transfer_s"] + motion["served_s"]
     return int(np.sum((moved == 0.0) & (motion["waiting_s"] >= WINDOW_S)))
@@ -183,7 +183,7 @@ def _deciding_s(simulation: Simulation) -> float:
 
 
 def growth(frame: pd.DataFrame) -> dict[str, float]:
-    """Return how many times more work a robot-hour is in the biggest fleet than in the smallest."""
+    """Return the ratio of work per robot-hour in the largest fleet to that in the smallest."""
     grown = {}
     for rules, rows in frame.groupby("rules", sort=False):
         work = rows["CPU s per robot-hour"]
@@ -192,12 +192,12 @@ def growth(frame: pd.DataFrame) -> dict[str, float]:
 
 
 def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
-    """Write the table to a folder, each file with one that says where it comes from.
+    """Write the table to a folder, each file with its provenance file.
 
     Parameters
     ----------
     settings
-        What else decides about the figures.
+        Other settings that determine the figures.
     """
     paths = [out / f"scale-warehouses.{ending}" for ending in ("csv", "md")]
     for path in paths:
