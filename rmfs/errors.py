@@ -11,7 +11,7 @@ from __future__ import annotations
 
 
 class InputError(ValueError):
-    """Input from the user is wrong: a file, a key, a value or a folder.
+    """The user's input is wrong: a file, a key, a value or a folder.
 
     Parameters
     ----------

@@ -57,10 +57,10 @@ class MotionCounts(TravelTimes, Protocol):
 
 
 class Troubles(Protocol):
-    """The disturbances of a run."""
+    """The part of a run that records disturbances."""
 
     def within(self, start_s: float, end_s: float) -> tuple[int, float]:
-        """Return how many occurred in a time interval, and their total duration within it."""
+        """Return the number of disturbances in a time interval, and their total duration."""
         ...
 
 
@@ -107,7 +107,7 @@ class Observer:
         """Report that an order in the backlog lost units that are not in stock (`units_cut`)."""
 
     def order_cancelled(self, order: Order) -> None:
-        """Report that an order stock could not serve was cancelled (`order.cancelled_s`)."""
+        """Report that an order that stock cannot serve was cancelled (`order.cancelled_s`)."""
 
     def order_assigned(self, order: Order) -> None:
         """Report that POA assigned an order to a pick station (`station`, `assigned_s`)."""
@@ -116,7 +116,7 @@ class Observer:
         """Report that an order moved from the backlog to a station's pool (`order.queued_at`)."""
 
     def picks_changed(self, time_s: float, robot: int) -> None:
-        """Requests were bound to the pod of a pick task, or opened again, while it goes on."""
+        """Report that requests were bound to the pod of a current pick task, or reopened."""
 
     def unit_picked(
         self,
@@ -131,7 +131,7 @@ class Observer:
         """Report a picked unit; `late_bound`: it was added to the pod's task while under way."""
 
     def unit_handled(self, handled: Handled) -> None:
-        """Report how the picker handled the unit just picked; only in scenarios with pickers."""
+        """Report how the picker handled the last unit; only in scenarios with pickers."""
 
     def picker_left(self, picker: int, station: int, from_s: float, to_s: float) -> None:
         """Report that a picker leaves a pick station, having been there during [from_s, to_s)."""

@@ -46,7 +46,7 @@ def resolve(reference: str | type, base: type[T], what: str) -> type[T]:
     base
         Required base class.
     what
-        What it is, for error messages, such as "measure".
+        Description for error messages, such as "measure".
 
     Raises
     ------
@@ -67,7 +67,7 @@ _INSTALLED_ONLY: ContextVar[bool] = ContextVar("_INSTALLED_ONLY", default=False)
 
 @contextmanager
 def installed_only() -> Iterator[None]:
-    """Let nothing be named meanwhile but what is installed: for those who may run no code."""
+    """Context manager in which only installed names are allowed, for users who may not run code."""
     token = _INSTALLED_ONLY.set(True)
     try:
         yield
@@ -76,7 +76,7 @@ def installed_only() -> Iterator[None]:
 
 
 def require_allowed(reference: str) -> None:
-    """Refuse a reference before anything of it is imported, where only names are allowed.
+    """Refuse a reference before importing anything if only installed names are allowed.
 
     Raises
     ------
@@ -152,7 +152,8 @@ def plain(value: Any, name: Callable[[type], str]) -> Any:
     Parameters
     ----------
     name
-        How to write a class: `name_of` within this process, `reference_of` for other processes.
+        Function that gives the name of a class: `name_of` within this process, `reference_of` for
+        other processes.
     """
     if isinstance(value, type):
         return name(value)

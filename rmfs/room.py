@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 TILE_BYTES = 1600
-"""Of a layout, per tile of its area; measured while generating 10,000 to 100,000 tiles."""
+"""Bytes of a layout per tile of its area, measured for 10,000 to 100,000 tiles."""
 WAYPOINT_BYTES = 3200
-"""Of a run, per waypoint: tables of travel times and the planner's timetables."""
+"""Bytes of a run per waypoint, for tables of travel times and the planner's timetables."""
 STOCK_BYTES = 24
-"""Of a run, per SKU and pod: units, free units, and those drawn at the start."""
+"""Bytes of a run per SKU and pod, for units, free units, and those drawn at the start."""
 SKU_BYTES = 400
 ORDER_BYTES = 1000
-"""Of a run, per order waiting at time zero."""
+"""Bytes of a run per order waiting at time zero."""
 ROBOT_BYTES = 20_000
 
 _force: ContextVar[bool] = ContextVar("force", default=False)
@@ -30,7 +30,7 @@ _force: ContextVar[bool] = ContextVar("force", default=False)
 
 @contextmanager
 def forced(force: bool = True) -> Iterator[None]:
-    """Context in which work starts even if it may not fit into memory."""
+    """Context manager in which work starts even if it may not fit into memory."""
     token = _force.set(force)
     try:
         yield
@@ -39,19 +39,19 @@ def forced(force: bool = True) -> Iterator[None]:
 
 
 def require(needed: float, what: str) -> None:
-    """Make sure that something fits into memory.
+    """Raise an error if something does not fit into memory.
 
     Parameters
     ----------
     needed
-        Bytes, roughly.
+        Approximate number of bytes.
     what
-        What takes them, in words and numbers.
+        Description of what needs the memory, in words and numbers.
 
     Raises
     ------
     InputError
-        If more is needed than is free, and nobody forces it.
+        If more is needed than is free, unless within `forced`.
     """
     free = available()
     if needed > free and not _force.get():

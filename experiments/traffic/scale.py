@@ -41,7 +41,7 @@ WARMUP_S = 300.0
 
 ENOUGH_ROBOTS = 1000
 FASTER = 60.0
-"""The benchmark: a number of robots, and a factor by which the simulation is faster than reality."""
+"""The benchmark: a number of robots, and how much faster than reality they are simulated."""
 
 
 @dataclass(frozen=True)

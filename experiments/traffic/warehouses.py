@@ -56,7 +56,7 @@ class Site:
     replenishments: tuple[int, int, int, int]
 
     def layout(self) -> Layout:
-        """Generate it: blocks of 2 x 2 places, so that aisles are as many as stations need."""
+        """Generate the layout, with blocks of 2 x 2 places, which give enough aisles."""
         values: dict[str, Any] = {
             "robots": self.robots,
             "horizontal_aisles": self.horizontal,

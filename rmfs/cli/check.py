@@ -61,7 +61,7 @@ def check(
 
 
 def audited(folders: list[Path]) -> None:
-    """Audit runs and say what is found; exit code 1 if something is wrong with one."""
+    """Audit runs and print the findings; exit with code 1 if a run has an error."""
     from rmfs.measure import load_run
     from rmfs.measure.audit import audit
 

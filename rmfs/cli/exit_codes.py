@@ -4,7 +4,7 @@ UNSAFE = 1
 """The checker found a trace unsafe, or a bound was exceeded: a defect."""
 
 GIVEN_UP = 1
-"""A run stopped before its end: nothing can move (possible in layouts that are not well-formed),
+"""A run stopped before its end: no robot can move (possible in layouts that are not well-formed),
 an optimiser failed in a run that must be reproducible, or a replay differs."""
 
 DEFECT = 1

@@ -29,7 +29,7 @@ COMMANDS = {
     "learn": ("rmfs.learning.commands", "Train linear rules on simulated runs."),
     "emulate": ("rmfs.demonstrator.commands", "Emulate a room with physical robots."),
 }
-"""The same for single commands."""
+"""Module and help of each single command; the module is imported when it is called."""
 
 ELSEWHERE = {**SUB_COMMANDS, **COMMANDS}
 

@@ -205,7 +205,7 @@ def kept_decisions(
 
 
 def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
-    """Simulate and show progress; if nothing can move any more, the run ends with a report.
+    """Simulate and show progress; if no robot can move any more, the run ends with a report.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ Rate = Annotated[float, Field(ge=0.001, le=1000)]
 Seconds = Annotated[float, Field(ge=1e-6, le=86400)]
 """Durations of one motion or one unit: from a microsecond, the time resolution, to a day."""
 Space = Annotated[float, Field(ge=1e-3, le=1e6)]
-"""Space units: the largest pod holds a billion units of the smallest size."""
+"""Space units, limited so that the largest pod holds a billion units of the smallest size."""
 Some = Annotated[int, Field(ge=1, le=100_000)]
 
 

@@ -75,7 +75,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     Raises
     ------
     InputError
-        If an argument is wrong; names it and the valid values.
+        If an argument is wrong; the message names it and the valid values.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012

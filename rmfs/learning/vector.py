@@ -26,8 +26,8 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     """Several `DecisionEnv` in worker processes, with observations in shared memory.
 
     Environments are divided among the processes, and `step` waits for the slowest process. The time
-    from one decision to the next varies greatly; with 8 or more environments per process it evens
-    out.
+    from one decision to the next varies greatly; with 8 or more environments per process, the
+    differences even out.
 
     The step after the last one of an episode starts the next episode, whatever its action, with
     reward 0 (Gymnasium's mode `NEXT_STEP`). `info` has arrays of shape (N,): `elapsed_s`, `now_s`,

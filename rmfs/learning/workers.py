@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Shapes = dict[str, tuple[tuple[int, ...], str]]
 
 FEW_COLLECTIONS = 50_000
-"""Allocations between garbage collections; runs create hardly any reference cycles."""
+"""Number of allocations between garbage collections, as runs create hardly any reference cycles."""
 
 
 def shapes_of(env: DecisionEnv) -> Shapes:
@@ -45,7 +45,7 @@ def shapes_of(env: DecisionEnv) -> Shapes:
 
 @dataclass
 class Board:
-    """Inputs and outputs of N environments: an array per name with the first axis of length N.
+    """Inputs and outputs of N environments: one array per name, with a first axis of length N.
 
     Attributes
     ----------

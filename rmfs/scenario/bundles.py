@@ -31,7 +31,7 @@ class BundleSource:
     return_share
         Probability that a bundle is a return of a single unit from a customer.
     path
-        Numbers below the stream, for bundles that are counted separately.
+        Further numbers of the substream, for bundles that are counted separately.
     """
 
     def __init__(

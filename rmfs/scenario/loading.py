@@ -67,7 +67,7 @@ def load_with_notes(
 
 
 def asked_of_layout(name_or_path: str | Path) -> list[tuple[list[str], Any]]:
-    """Return the overrides that a scenario of RAWSim-O implies for the layout; ours imply none.
+    """Return the overrides that a scenario of RAWSim-O implies for the layout; other files: none.
 
     Raises
     ------

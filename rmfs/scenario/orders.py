@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.skus import SkuSet
 
 DRAWS_PER_LINE = 32
-"""Number of draws by popularity for a line before the SKUs that qualify are looked up."""
+"""Number of draws by popularity for a line before the SKUs that qualify are listed."""
 
 
 class OrderContent(NamedTuple):
@@ -31,7 +31,7 @@ class OrderContent(NamedTuple):
     Attributes
     ----------
     skus, units
-        The SKU of each line, all different, and how many units of it.
+        SKU and number of units of each line; all SKUs are different.
     due_offset_s
         Time from arrival to due time.
     redraws
@@ -68,7 +68,7 @@ class OrderSource:
     source
         Name of the scenario, for messages.
     path
-        Numbers below the stream, for orders that are counted separately.
+        Further numbers of the substream, for orders that are counted separately.
 
     Raises
     ------

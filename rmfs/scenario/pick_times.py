@@ -76,7 +76,7 @@ def learned(given: Learning | None, units: float) -> float:
     """Return the factor on the time of the next unit after a number of units.
 
     Unit n takes T1 (M + (1 - M) n**-b) with b = -log2(rate): Wright (1936) for M = 0, De Jong
-    (1957) with the incompressible share M. The time of unit `standard_units` is the unit.
+    (1957) with the incompressible share M. The factor is relative to unit number `standard_units`.
     """
     if given is None:
         return 1.0

@@ -25,9 +25,9 @@ class Substreams:
     seed
         The run's seed, 0 or greater.
     stream
-        Which stream of the tree.
+        Name of the stream in the tree.
     path
-        Further numbers below the stream: each has substreams of its own.
+        Further numbers below the stream; each path has its own substreams.
     """
 
     def __init__(self, seed: int, stream: Stream, path: tuple[int, ...] = ()) -> None:

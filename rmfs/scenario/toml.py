@@ -40,12 +40,12 @@ def _with_comment(line: str, comment: str | None) -> str:
 
 
 def toml_value(given: Any) -> str:
-    """Return a value as it stands in a TOML file.
+    """Return a value as TOML text.
 
     Raises
     ------
     TypeError
-        If TOML has no such value.
+        If TOML cannot represent the value.
     """
     if isinstance(given, bool):
         return str(given).lower()

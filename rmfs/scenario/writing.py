@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
-    """Write a scenario together with the files to which it refers, in our formats.
+    """Write a scenario together with the files to which it refers, in the formats of rmfs.
 
     Parameters
     ----------

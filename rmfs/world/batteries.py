@@ -26,7 +26,7 @@ class Levels(Protocol):
         ...
 
     def level_j(self, robot: int) -> float:
-        """Return the energy in the battery of a robot, J."""
+        """Return the energy in the battery of a robot, in J."""
         ...
 
     def exchange_battery(self, robot: int, level_j: float) -> None:
@@ -67,11 +67,11 @@ class Batteries:
         self.strandings: list[tuple[float, int]] = []
 
     def usable_j(self, robot: int) -> float:
-        """Return the energy a robot may use before it reaches its reserve, J."""
+        """Return the energy that a robot may use before it reaches its reserve, in J."""
         return self._levels.level_j(robot) - self.least_j - self.reserve_j
 
     def levels_j(self) -> NDArray[np.float64]:
-        """Energy in each battery, shape (R,), J."""
+        """Energy in each battery, shape (R,), in J."""
         levels: NDArray[np.float64] = self._levels.energy()["level_j"]
         return levels
 
@@ -85,7 +85,7 @@ class Batteries:
         return shares
 
     def mean_draw_w(self, now_s: float) -> float:
-        """Return the mean power of a robot since time zero, W; 0 at time zero."""
+        """Return the mean power of a robot since time zero, in W; 0 at time zero."""
         used_j = float(self._levels.energy()["ever_used_j"].mean())
         return used_j / now_s if now_s > 0 else 0.0
 
@@ -104,7 +104,7 @@ class Batteries:
         self.exchange(robot, max(self.given.rescue_share, self.share(robot)))
 
     def seconds(self, from_share: float, to_share: float, power_w: float) -> float:
-        """Return how long charging takes from one level to another; infinite if it is impossible.
+        """Return the charging time from one level to another, in s; infinite if it is impossible.
 
         The inverse of `Battery::charged` in rmfs/traffic/src/energy.rs.
         """
@@ -123,7 +123,7 @@ class Batteries:
         return constant + (1 - bend) / pace * log((1 - begun) / (1 - to_share))
 
     def charged(self, from_share: float, power_w: float, seconds: float) -> float:
-        """Level after some time at a charger, as a share."""
+        """Return the level after some time at a charger, as a share."""
         bend = self.given.taper_from_share
         pace = power_w / self.capacity_j
         constant_for = max((bend - from_share) / pace, 0.0)
@@ -136,6 +136,6 @@ class Batteries:
 
 
 def initial_j(given: Battery, robots: int, draw: Callable[[int], NDArray[np.float64]]) -> Any:
-    """Draw the initial energy in each battery, shape (R,), J."""
+    """Draw the initial energy in each battery, shape (R,), in J."""
     low, high = given.initial_least_share, given.initial_most_share
     return (low + (high - low) * draw(robots)) * given.capacity_wh * J_PER_WH

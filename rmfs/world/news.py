@@ -1,4 +1,4 @@
-"""Change notifications for those who keep lists of their own instead of checking everything."""
+"""Change notifications for code that keeps lists up to date instead of checking everything."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Follower:
     Parameters
     ----------
     news
-        What is followed; initially everything counts as changed.
+        The notifications to follow; initially everything counts as changed.
 
     Attributes
     ----------

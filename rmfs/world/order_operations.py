@@ -90,7 +90,7 @@ class OrderOperations(WorldState):
         Returns
         -------
         Order
-            What occupies the slot: the order, or its part.
+            The order, or its part, that occupies the slot.
 
         Raises
         ------
@@ -122,13 +122,12 @@ class OrderOperations(WorldState):
         """Assign some lines of an order of the backlog to a pick station, which splits the order.
 
         They join the part of the order at the station, or become a part of their own, which takes a
-        slot. If they are all that is left and there is no such part, the order itself takes the
-        slot.
+        slot. If no other lines are left and there is no such part, the order itself takes the slot.
 
         Returns
         -------
         Order
-            What is now at the station: the part, or the order itself.
+            The part, or the order itself, that is now at the station.
 
         Raises
         ------

@@ -47,7 +47,7 @@ class Picker:
     station
         Current station, or -1 while away.
     since_s
-        When the picker came there.
+        Time at which the picker came there, in s.
     units
         Units picked since time zero.
     fatigue
@@ -119,18 +119,18 @@ class Staff:
     Attributes
     ----------
     pickers
-        By index.
+        The pickers, by index.
     at_station
         The picker at each pick station, or None.
     next_change_s
-        When pickers come or leave next; infinite if never.
+        Time at which pickers come or leave next; infinite if never.
     unit_times
         Distribution of the time per unit for a picker of standard speed.
 
     Raises
     ------
     InputError
-        If the file of measured times is broken.
+        If the file of measured times is invalid.
     """
 
     def __init__(self, given: Pickers, pickers: Sequence[Picker], unit_s: Sequence[float]) -> None:
@@ -201,12 +201,12 @@ class Staff:
         return self.unit_times.least_s(station_s) * least_factor(self.given)
 
     def verify(self) -> None:
-        """Check by recounting that everybody is where the stations say.
+        """Check that pickers and stations agree on who is where.
 
         Raises
         ------
         AssertionError
-            If not.
+            If they do not.
         """
         told = {(one.index, one.station) for one in self.pickers if one.station >= 0}
         there = {(one.index, n) for n, one in enumerate(self.at_station) if one is not None}

@@ -27,9 +27,9 @@ class Tote:
     station
         The pick station.
     released_s
-        When it left the station.
+        Time at which it left the station.
     arrived_s
-        When it reached the wall; nan while on its way, and if it never goes there.
+        Time at which it reached the wall; nan while on its way, and if it never goes there.
     by_hand
         Whether it was carried there by hand after its station had waited too long.
     """
@@ -58,9 +58,9 @@ class Parcel:
     kept
         Slots of the wall that it occupies or has reserved.
     consolidated_s
-        When the last of its totes reached the wall.
+        Time at which the last of its totes reached the wall.
     packing_s, packed_s
-        When a packer started and finished.
+        Times at which a packer started and finished.
     """
 
     order: Order
@@ -85,9 +85,9 @@ class HeldTote:
     Attributes
     ----------
     order
-        What occupies the slot of the station.
+        The order or part that occupies the slot of the station.
     since_s
-        When it was ready to leave.
+        Time at which it was ready to leave.
     timer
         Identifies the time at which it is carried away by hand.
     """
@@ -191,12 +191,12 @@ class PutWall:
         return int(not last and (self.slot_per_part or order not in self.parcels))
 
     def verify(self) -> None:
-        """Check what is known by recounting.
+        """Check the counts by recounting.
 
         Raises
         ------
         AssertionError
-            Naming what is wrong.
+            If a count is wrong; the message names it.
         """
         kept = travelling = 0
         for parcel in self.parcels.values():

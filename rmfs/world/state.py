@@ -1,4 +1,4 @@
-"""The state of a warehouse: what there is, where it is, and counts of it."""
+"""The state of a warehouse: its objects, their places, and counts."""
 
 from __future__ import annotations
 
@@ -43,9 +43,10 @@ class WorldState:
     orders, bundles
         The two backlogs.
     pick_stations, replenishment_stations
-        In the order of the layout.
+        The stations, in the order of the layout.
     slot_news
-        Notifies of pick stations that were switched, reached or left, or gained or lost an order.
+        Notifies of pick stations that were switched on or off, that a robot reached or left, or
+        that gained or lost an order.
     work_news
         Notifies of stations, in the common numbering, that gained open work or have none left.
     work_stations
@@ -61,7 +62,7 @@ class WorldState:
     bundles_waiting
         Assigned bundles not yet part of a task, per replenishment station and pod, shape (S, P).
     robots
-        By index.
+        The robots, by index.
     asking, resting
         Robots without a task, in the order in which they became free; and robots at rest or on
         their way to rest.
@@ -163,5 +164,5 @@ class WorldState:
 
     @property
     def load(self) -> float:
-        """Space units stored, on their way to pods, and waiting; each bundle counts once."""
+        """Space units stored, on their way to pods, or waiting; each bundle counts once."""
         return self.inventory.stored_space + self.unstored_space

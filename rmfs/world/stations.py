@@ -80,7 +80,7 @@ class Station(Generic[T]):
         Raises
         ------
         AssertionError
-            Naming what is wrong.
+            If the state is inconsistent; the message names the error.
         """
         for pod, task in self.tasks.items():
             told = (task.pod, task.station, robots[task.robot].task)
@@ -140,7 +140,7 @@ class PickStation(Station[PickTask]):
         self.queued_requests = OpenRequests(queued_need, work_news, index)
 
     def changed(self) -> None:
-        """Notify those who keep lists of stations with slots."""
+        """Notify followers that keep lists of stations with slots."""
         self._slot_news.tell(self.index)
 
     @property

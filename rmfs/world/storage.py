@@ -39,18 +39,18 @@ class Storage:
     pod_at
         Pod stored at each waypoint, or -1.
     place_of
-        Where each pod is stored, or -1 while it is carried.
+        Waypoint at which each pod is stored, or -1 while it is carried.
     claimed_by
         Robot whose task each pod belongs to, or -1.
     kept_by
         Robot that keeps each waypoint, or -1.
     pod_waypoint
-        Where each pod is stored, or was stored last, shape (P,).
+        Waypoint at which each pod is stored, or was stored last, shape (P,).
     is_empty
         Places without a pod that no robot keeps: a pod may be stored there, shape (L,).
     is_restful
-        Places beneath a stored, unclaimed pod that no robot keeps: a robot may rest there,
-        shape (L,).
+        Places beneath a stored, unclaimed pod that no robot keeps: a robot may rest there, shape
+        (L,).
     is_stored
         Pods at a place, not on a robot, shape (P,).
     is_at_hand
@@ -135,8 +135,8 @@ class Storage:
         Parameters
         ----------
         rest
-            Where the robot's current plan ends. A place to which it has been sent but has no plan
-            yet is kept as well, and so is the place of its task.
+            Waypoint at which the robot's current plan ends. A place to which it has been sent but
+            has no plan yet is kept as well, and so is the place of its task.
         """
         goal = robot.task.place if robot.task is not None else -1
         left = [place for place in robot.places if place not in (robot.waypoint, rest, goal)]

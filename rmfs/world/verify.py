@@ -1,4 +1,4 @@
-"""Recount everything and compare: stock conservation, request conservation, derived counts."""
+"""Consistency checks by recounting: conservation of stock and requests, and derived counts."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def verify(world: World, orders: Iterable[Order] = ()) -> None:
     Raises
     ------
     AssertionError
-        Naming the first count that is wrong.
+        If a count is wrong; the message names the first one.
     """
     _stock(world)
     _requests(world)

@@ -18,20 +18,20 @@ if TYPE_CHECKING:
 class World(OrderOperations):
     """A warehouse and the operations that change it.
 
-    Operations raise ValueError where they would break a rule (a pod claimed twice, a unit bound
-    twice, a station overfilled); decisions have to respect these.
+    Operations raise ValueError if they would break a rule (a pod claimed twice, a unit bound twice,
+    a station overfilled); decisions must respect these rules.
     """
 
     # --- stock and work that appear ---------------------------------------------------------
 
     def stock(self, pods: list[int], skus: list[int], units: list[int]) -> None:
-        """Put the stock of time zero on the pods, one entry per bundle."""
+        """Put the initial stock on the pods, one entry per bundle."""
         for pod, sku, count in zip(pods, skus, units, strict=True):
             self.inventory.stock(pod, sku, count)
         self.units_initial += sum(units)
 
     def add_bundle(self, bundle: Bundle) -> None:
-        """Let a bundle join the backlog."""
+        """Add a bundle to the backlog."""
         self.bundles.add(bundle)
         self.bundles_created += 1
         self.unstored_space += bundle.space
@@ -40,7 +40,7 @@ class World(OrderOperations):
     # --- bundles --------------------------------------------------------------------------------
 
     def promise(self, bundle: Bundle, pod: int) -> None:
-        """Keep room on a pod for a bundle (the choice of RPS, not yet released)."""
+        """Reserve room on a pod for a bundle (the choice of RPS, not yet released)."""
         if bundle.pod >= 0:
             raise ValueError(f"bundle {bundle.index} has pod {bundle.pod} already")
         self.inventory.promise(pod, bundle.space)
@@ -48,7 +48,7 @@ class World(OrderOperations):
         self.bundles.promised(bundle, self.now_s)
 
     def release_bundles(self, pod: int) -> list[Bundle]:
-        """Release what is held back for a pod; returns the bundles that now are assigned."""
+        """Release the bundles held back for a pod; return those that are now assigned."""
         bundles = self.bundles.release(pod)
         for bundle in bundles:
             bundle.released = True
@@ -58,7 +58,7 @@ class World(OrderOperations):
         return assigned
 
     def choose_station(self, bundle: Bundle, station: int) -> bool:
-        """Reserve a station's space (the choice of ROA); returns whether the bundle is assigned."""
+        """Reserve a station's space (choice of ROA); return whether the bundle is assigned."""
         target = self._replenishment_station(station)
         if bundle.station >= 0:
             raise ValueError(f"bundle {bundle.index} has station {bundle.station} already")
@@ -80,7 +80,7 @@ class World(OrderOperations):
     # --- tasks ----------------------------------------------------------------------------------
 
     def start_pick(self, robot: Robot, pod: int, station: int) -> PickTask:
-        """Make the task to bring a pod to a pick station; binds all requests it can serve."""
+        """Start the task of bringing a pod to a pick station; bind all requests it can serve."""
         task = PickTask(robot.index, pod, station)
         self._begin_pod_task(robot, task)
         self.pick_stations[station].tasks[pod] = task
@@ -91,7 +91,7 @@ class World(OrderOperations):
         return task
 
     def extend_pick(self, task: PickTask, sku: int, late_bound: bool = True) -> int:
-        """Bind open requests for a SKU to the pod of a task; returns how many."""
+        """Bind open requests for a SKU to the pod of a task; return their number."""
         at_most = self.inventory.available.item(sku, task.pod)
         lines = self.pick_stations[task.station].requests.take(sku, at_most)
         if lines:
@@ -102,14 +102,14 @@ class World(OrderOperations):
     def extend_queued(
         self, task: PickTask, order: Order, *, whole: bool, late_bound: bool = True
     ) -> int:
-        """Bind open requests of a queued order to the pod of a task; returns how many.
+        """Bind open requests of a queued order to the pod of a task; return their number.
 
-        None if the pod is at the station already: it could only be sent away with them.
+        None are bound if the pod is already at the station, as it could not serve them there.
 
         Parameters
         ----------
         whole
-            Only if the pod serves all open requests of the order.
+            Bind requests only if the pod serves all open requests of the order.
         """
         if self.robots[task.robot].station == task.station:
             return 0
@@ -130,13 +130,13 @@ class World(OrderOperations):
         return bound
 
     def give_back(self, task: PickTask) -> int:
-        """Open the requests of a task again whose orders are still queued; returns how many."""
+        """Reopen the requests of a task whose orders are still queued; return their number."""
         picks = [pick for pick in task.picks if pick.line.order.station < 0]
         self._give_back(task, picks)
         return len(picks)
 
     def start_replenish(self, robot: Robot, pod: int, station: int) -> ReplenishTask:
-        """Make the task to bring a pod to a replenishment station for all its bundles there."""
+        """Start the task of bringing a pod to a replenishment station for all its bundles there."""
         task = ReplenishTask(robot.index, pod, station)
         self._begin_pod_task(robot, task)
         target = self._replenishment_station(station)
@@ -145,26 +145,26 @@ class World(OrderOperations):
         return task
 
     def extend_replenish(self, task: ReplenishTask) -> int:
-        """Add the bundles that wait at the station for the pod of a task; returns how many."""
+        """Add the bundles that wait at the station for the pod of a task; return their number."""
         bundles = self._replenishment_station(task.station).take(task.pod)
         task.bundles.extend(bundles)
         return len(bundles)
 
     def start_visit(self, task: VisitTask) -> VisitTask:
-        """Begin the task to bring a pod to a station of another kind."""
+        """Start the task of bringing a pod to a station of another kind."""
         robot = self.robots[task.robot]
         self._begin_pod_task(robot, task)
         self.stations[task.station].tasks[task.pod] = task
         return task
 
     def start_charge(self, task: ChargeTask) -> ChargeTask:
-        """Begin the task of going to a charger or battery swap."""
+        """Start the task of going to a charger or battery swap station."""
         self.stations[task.station].tasks[task.robot] = task
         self._set_task(self.robots[task.robot], task)
         return task
 
     def start_park(self, robot: Robot, place: int) -> Task:
-        """Make the task to store the pod a robot carries at an empty place."""
+        """Start the task of storing the carried pod at an empty place."""
         task = ParkTask(robot.index, robot.pod, place=place)
         if self.storage.pod_at[place] >= 0:
             raise ValueError(f"place {place} holds pod {self.storage.pod_at[place]}")
@@ -173,7 +173,7 @@ class World(OrderOperations):
         return task
 
     def start_reposition(self, robot: Robot, pod: int, place: int) -> Task:
-        """Make the task to fetch a pod and store it at an empty place."""
+        """Start the task of fetching a pod and storing it at an empty place."""
         if robot.pod >= 0:
             raise ValueError(f"robot {robot.index} carries pod {robot.pod} already")
         if self.storage.pod_at[place] >= 0:
@@ -184,7 +184,7 @@ class World(OrderOperations):
         return task
 
     def start_rest(self, robot: Robot, place: int) -> Task:
-        """Make the task to rest at a place, beneath a stored pod or not."""
+        """Start the task of resting at a place, beneath a stored pod or not."""
         task = RestTask(robot.index, place=place)
         self.storage.keep(robot, place)
         self._set_task(robot, task)
@@ -215,23 +215,23 @@ class World(OrderOperations):
     # --- what robots and stations do ------------------------------------------------------------
 
     def lift(self, robot: Robot, pod: int) -> None:
-        """Let a robot start to lift a pod."""
+        """Record that a robot starts to lift a pod."""
         self.storage.lift(pod)
         robot.pod = pod
 
     def set_down(self, robot: Robot, place: int) -> None:
-        """Let a robot end setting down its pod, which then is anyone's."""
+        """Record that a robot has set down its pod, which any robot may then take."""
         pod = robot.pod
         robot.pod = -1
         self.storage.set_down(pod, place)
 
     def pick_unit(self, task: PickTask, chosen: Pick | None = None) -> Pick:
-        """Let the next unit of a task leave its pod whose order is on the station.
+        """Pick the next unit of a task whose order is at the station.
 
         Parameters
         ----------
         chosen
-            Another one of these, to be picked first.
+            A unit of the task to be picked instead of the next one.
         """
         picks = task.picks
         pick = picks[0] if chosen is None else chosen
@@ -250,7 +250,7 @@ class World(OrderOperations):
         return pick
 
     def store_bundle(self, task: ReplenishTask) -> Bundle:
-        """Let the next bundle of a task go into its pod."""
+        """Store the next bundle of a task in its pod."""
         bundle = task.bundles.popleft()
         self.inventory.store(task.pod, bundle.sku, bundle.units)
         station = self._replenishment_station(task.station)

@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 class Queue:
     """The queue of a station, or of an elevator on one tier.
 
-    The queue of a station, or of an elevator on one tier.
+    Attributes
     ----------
     label
-        What messages call it.
+        Name of the queue in messages.
     head
         The waypoint of the station or elevator.
     places
-        From the head to the entrance.
+        Waypoints from the head to the entrance.
     of_elevator
         Whether an elevator is at its head.
     is_left

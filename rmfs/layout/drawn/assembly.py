@@ -29,7 +29,7 @@ def assembled(drawing: Drawing, given: Equipment, name: str) -> Layout:
     Parameters
     ----------
     given
-        Its robots, pods and stations.
+        Robots, pods and stations of the layout.
     name
         Name of the layout, if `given` has none.
 

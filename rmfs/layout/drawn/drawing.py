@@ -20,7 +20,7 @@ NEIGHBOURS: tuple[Cell, ...] = ((0, 1), (-1, 0), (0, -1), (1, 0))
 
 
 class Ground(IntEnum):
-    """What a cell is."""
+    """Type of a cell."""
 
     NOTHING = 0
     AISLE = 1
@@ -44,13 +44,13 @@ class Drawing:
     Attributes
     ----------
     ground
-        What each cell is (`Ground`), shape (H, W).
+        Type of each cell (`Ground`), shape (H, W).
     one_way
-        For aisles that lead to other aisles in one direction only, that direction.
+        Direction of aisle cells that lead to other aisles in one direction only.
     full, empty
         Storage places drawn with and without a pod; of the remaining ones, a share has one.
     robots
-        Where robots stand.
+        Cells at which robots stand.
     stands
         The stations.
     """

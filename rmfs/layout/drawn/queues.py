@@ -16,7 +16,7 @@ NUMBERS = "123456789"
 
 
 class ForkError(ValueError):
-    """Several cells could be the next place of a queue; has the cell behind it, and its rank."""
+    """Several cells could be the next place of a queue; stores the last cell and its rank."""
 
     def __init__(self, cell: Cell, rank: int) -> None:
         self.cell, self.rank = cell, rank
@@ -31,9 +31,9 @@ def drawn_queue(head: Cell, sign: Callable[[Cell], str], taken: set[Cell]) -> tu
     Parameters
     ----------
     sign
-        What is drawn at a cell.
+        Function that returns the sign drawn at a cell.
     taken
-        Cells of other queues; those of this one are added.
+        Cells of other queues; those of this queue are added.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def straight_queue(drawing: Drawing, head: Cell, length: int) -> tuple[Cell, ...
     Parameters
     ----------
     length
-        Number of places without the station; the queue is shorter where there is no room.
+        Number of places without the station; the queue is shorter if there is not enough room.
     """
     taken = set(drawing.robots)
 

@@ -1,8 +1,8 @@
 """The buffer of a station or elevator: a comb of parallel segments walked as a serpentine.
 
 RAWSim-O default layout: `entry_exit_distance + 1` segments of `buffer_width` tiles, perpendicular
-to the edge of the hall. The first begins at the entrance, the last ends at the exit, the station
-stands at the outer end of the last.
+to the edge of the hall. The first segment begins at the entrance, the last one ends at the exit,
+and the station is at the outer end of the last one.
 """
 
 from __future__ import annotations

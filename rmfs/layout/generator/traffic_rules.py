@@ -33,7 +33,7 @@ class TrafficRules:
     Parameters
     ----------
     parameters
-        Of the layout.
+        Parameters of the layout.
     kinds
         Kind of each tile, shape (rows, columns).
     """

@@ -22,7 +22,7 @@ class Rest:
     Attributes
     ----------
     until_us
-        When to ask again; `NEVER_US` if nothing holds the process back.
+        Time of the next attempt; `NEVER_US` if the process is not blocked.
     """
 
     def __init__(self, openings: Openings) -> None:
@@ -71,7 +71,7 @@ class BacklogOrders:
 
     @property
     def next_us(self) -> int:
-        """When a failed attempt may be repeated, or a down period ends."""
+        """Time at which a failed attempt may be repeated, or a down period ends."""
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> OrderArrival | None:
@@ -118,7 +118,7 @@ class BacklogBundles:
 
     @property
     def next_us(self) -> int:
-        """When a failed attempt may be repeated, or a down period ends."""
+        """Time at which a failed attempt may be repeated, or a down period ends."""
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> BundleArrival | None:

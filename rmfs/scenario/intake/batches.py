@@ -21,10 +21,10 @@ class Batch(NamedTuple):
     Attributes
     ----------
     time_s
-        Time of the cycle.
+        Time within the cycle, in s.
     lacks
-        Given the state and the number of arrivals in the batch so far, returns whether more are
-        needed.
+        Function of the state and of the number of arrivals in the batch so far; returns whether
+        more are needed.
     """
 
     time_s: float
@@ -50,8 +50,8 @@ class Batches(Generic[T]):
     cycle_s, gone_s
         Length of the cycle, and its advance at time zero.
     make
-        Creates the k-th thing of all batches at a time; None ends the batch because nothing can be
-        created.
+        Function that creates the k-th order or bundle of all batches at a time; None ends the
+        batch, as nothing can be created.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class Batches(Generic[T]):
         self._come = 0
 
     def draw(self, now_us: int, state: State) -> T | None:
-        """Return the next thing of the batches that are due."""
+        """Return the next order or bundle of the batches that are due."""
         while self.next_us <= now_us:
             if self._lacks(state, self._come):
                 thing = self._make(self._ordinal, now_us, state)

@@ -72,8 +72,9 @@ def export_stream(
 
     Raises
     ------
-    If the stream depends on events of a run (a constant backlog, rates tied to active stations,
-    batches that fill up): such a stream can only be recorded.
+    InputError
+        If the stream depends on events of a run (a constant backlog, rates tied to active stations,
+        batches that fill up); such a stream can only be recorded.
     """
     skus = sku_set(scenario.skus)
     recorder = StreamRecorder()

@@ -23,7 +23,7 @@ class OrderArrival(NamedTuple):
     time_us
         Current time.
     skus, units
-        The SKU of each line, all different, and how many units of it.
+        SKU and number of units of each line; all SKUs are different.
     due_us
         Due time.
     redraws
@@ -85,7 +85,7 @@ class Process(Protocol[T_co]):
 
     @property
     def next_us(self) -> int:
-        """When to ask again at the latest; `NEVER_US`: only after a change of state."""
+        """Latest time of the next call of `draw`; `NEVER_US`: only after a change of state."""
 
     def draw(self, now_us: int, state: State) -> T_co | None:
         """Return the next arrival due now, or None if there is no more."""
@@ -120,7 +120,7 @@ class Intake(Generic[T]):
 
     @property
     def next_us(self) -> int:
-        """When to ask again at the latest, after everything due has been taken."""
+        """Latest time of the next call of `due`, after everything due has been taken."""
         return min(process.next_us for process in self._processes)
 
     def redraw(self, now_us: int) -> None:

@@ -48,7 +48,7 @@ class NeededBundles:
 
     @property
     def next_us(self) -> int:
-        """When a failed attempt may be repeated, or a down period ends."""
+        """Time at which a failed attempt may be repeated, or a down period ends."""
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> BundleArrival | None:

@@ -17,7 +17,7 @@ class Site:
     Attributes
     ----------
     pick_stations, replenishment_stations
-        How many there are, active or not.
+        Numbers of stations, active or not.
     capacity
         Space units of all pods together.
     largest_pod
@@ -47,7 +47,7 @@ class State(Protocol):
 
     @property
     def load(self) -> float:
-        """Space units of what is stored, on its way into pods, and waiting."""
+        """Space units of units that are stored, on their way into pods, or waiting."""
 
     @property
     def uncommitted(self) -> NDArray[np.int64]:

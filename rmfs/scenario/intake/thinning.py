@@ -26,12 +26,12 @@ class Candidate(NamedTuple):
     Attributes
     ----------
     ordinal
-        Determines its contents.
+        Number of the candidate, which determines its contents.
     time_us
         Arrival time.
     needed_share
-        Accepted if a greater share of the stations is active, where rates are tied to them; below
-        1, so that it is always accepted if all are.
+        If rates are tied to stations, the candidate is accepted if more than this share of them is
+        active. It is below 1, so a candidate is always accepted if all stations are active.
     """
 
     ordinal: int
@@ -66,7 +66,7 @@ class Poisson:
         self._ordinal = 0
 
     def redraw(self, now_us: int) -> None:
-        """Redraw everything after a time: the process is memoryless."""
+        """Redraw everything after a time, which is valid as the process is memoryless."""
         self._rate.redraw(now_us)
         if self._rate.peak_per_h:
             self._time_us = now_us

@@ -24,7 +24,7 @@ class Timed(Generic[T]):
     Parameters
     ----------
     candidates
-        In order of time.
+        The candidates, in order of time.
     make
         Creates the arrival of a candidate.
     share

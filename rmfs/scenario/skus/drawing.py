@@ -24,7 +24,7 @@ _POPULARITY, _SPACE, _BUNDLE_UNITS, _PAIRS, _POINTS = range(5)
 
 
 def draw_sku_set(config: GeneratedSkus, seed: int) -> SkuSet:
-    """Draw SKUs; popularity, space, bundle sizes and affinity have a stream each.
+    """Draw SKUs, with separate random streams for popularity, space, bundle sizes and affinity.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def draw_bundle_units(distribution: Counts, seed: int, count: int) -> NDArray[np
 
 
 def draw_affinity(config: GeneratedAffinity, seed: int, count: int) -> Affinity:
-    """Draw pairs of SKUs; the weight of a pair is sqrt(2) less the distance of its SKUs.
+    """Draw pairs of SKUs; the weight of a pair is sqrt(2) minus the distance of its SKUs.
 
     Each SKU is a random point in the unit square, so that two SKUs that go well with a third go
     well with each other. A weight counts in both directions.

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 FORMAT = "rmfs-skus/1"
 
-"""A million SKUs take 60 MiB, a million pairs as much."""
+"""Format of the file; a million SKUs take 60 MiB, and so do a million pairs."""
 
 # a wrong value ends the reading, so that a message cannot be as long as the file
 Id = Annotated[int, Field(ge=-(2**53), le=2**53)]
@@ -96,8 +96,8 @@ def read_sku_set(path: Path) -> SkuSet:
     Raises
     ------
     InputError
-        If the file cannot be read or does not describe SKUs, or if it is not the set whose digest
-        it gives.
+        If the file cannot be read or does not describe SKUs, or its digest does not match its
+        contents.
     """
     source = str(path)
     given = validate(_SkuSetFile, _parsed(path), source)

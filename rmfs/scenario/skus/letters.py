@@ -1,7 +1,7 @@
 """Coloured letters as SKUs, after Alphabet Soup.
 
-The simulator "Alphabet Soup" emulates orders as words: each letter is a tile of some colour that
-has to be picked. RAWSim-O kept that as its letter mode (item type Letter).
+The simulator "Alphabet Soup" represents orders as words: each letter is a coloured tile that has to
+be picked. RAWSim-O has the same as its letter mode (item type Letter).
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Alphabet:
     Attributes
     ----------
     words
-        Each as the numbers of its letters.
+        The words, each as the numbers of its letters.
     letters
         All letters of the words, in order.
     colours
@@ -58,7 +58,8 @@ class Alphabet:
 def letter_sku_set(config: LetterSkus) -> SkuSet:
     """Return the SKUs of a list of words.
 
-    A letter is as popular as it is frequent in all words together, a colour as its weight says.
+    The popularity of a SKU is the frequency of its letter in all words times the share of its
+    colour.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A picture of how popular SKUs are."""
+"""Plots of the popularity of SKUs."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def draw_popularity(skus: SkuSet, ax: Axes, *, cumulative: bool = False) -> None
     Parameters
     ----------
     ax
-        Where to draw.
+        Axes to draw on.
     cumulative
-        Draw the share of each SKU and all more popular ones together; the thin line is what it
-        would be if all were equally popular.
+        Draw cumulative shares, from the most popular SKU on; a thin line shows the case of equal
+        popularity.
     """
     shares = np.sort(skus.by_popularity.probabilities)[::-1]
     rank = np.arange(1, len(shares) + 1) / len(shares)

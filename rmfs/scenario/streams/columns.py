@@ -11,26 +11,26 @@ if TYPE_CHECKING:
     from rmfs.scenario.streams.rows import Rows
 
 MOST_ROWS = 5_000_000
-"""Rows of a file: thirty times what ten busy pick stations handle in two days."""
+"""Maximum number of rows of a file: thirty times what ten busy pick stations handle in two days."""
 
 
 class Columns:
-    """Where in a row each column is.
+    """The position of each column in a row.
 
-    Columns of other names are the user's own; one without a name, as pandas writes for its index,
-    is left out.
+    Columns with other names are the user's own; a column without a name, as pandas writes for its
+    index, is ignored.
 
     Parameters
     ----------
     names
-        As the file gives them.
+        Names of the columns in the file.
     rows
-        What is to read the rows; it is given the names of the user's own columns.
+        Receiver of the rows, to which the names of the user's own columns are passed.
 
     Raises
     ------
     ValueError
-        If a column is missing, there twice, or looks like a slip of the pen.
+        If a column is missing or duplicate, or its name looks like a typing error.
     """
 
     def __init__(self, names: Sequence[str], rows: Rows) -> None:
@@ -57,12 +57,12 @@ class Columns:
         rows.begin([names[at] for at in further])
 
     def arranged(self, fields: Sequence[str]) -> list[str]:
-        """Return the fields of a row in the order that is expected, empty where there is none.
+        """Return the fields of a row in the expected order, empty for missing columns.
 
         Raises
         ------
         ValueError
-            If the row has another number of fields than the file has columns.
+            If the number of fields differs from the number of columns.
         """
         if len(fields) != self._width:
             raise ValueError(f"{len(fields)} fields, expected {self._width}")

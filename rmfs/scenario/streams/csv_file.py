@@ -1,4 +1,4 @@
-"""Rows of a CSV file, however long, wrong or binary it is."""
+"""Rows of a CSV file, with protection against oversized, invalid and binary files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.streams.rows import Rows
 
 LONGEST_LINE = 4096
-"""Bytes of a line."""
+"""Maximum length of a line in bytes."""
 
 
 class _UnreadableError(ValueError):
@@ -22,10 +22,10 @@ class _UnreadableError(ValueError):
 
 
 def read_csv(path: Path, rows: Rows, problems: Problems) -> None:
-    """Hand the rows of a CSV file on; line 1 holds the names of the columns.
+    """Pass the rows of a CSV file to a receiver; line 1 contains the column names.
 
-    A line is read only as far as it may reach, so that memory is bounded. After a line that is
-    too long or not text reading ends.
+    A line is read only up to the maximum length, so memory is bounded. Reading ends after a line
+    that is too long or is not text.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a file of orders says beside SKUs, units and times: kept, so that results can be joined."""
+"""Further contents of a file of orders, which are kept so that results can be joined with them."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class OrderFile:
-    """Names and further columns of n orders with m lines in all, as their file has them.
+    """Names and further columns of n orders with a total of m lines, as in their file.
 
-    Of bundles each is an order of one line.
+    In a file of bundles, each bundle is an order of one line.
 
     Attributes
     ----------
     names
-        Of each order, n of them.
+        Name of each order, n texts.
     line
-        Line (CSV) or row (Parquet) of the file in which each order line stands, shape (m,).
+        Number of the line (CSV) or row (Parquet) of each order line in the file, shape (m,).
     columns
-        Per further column of the file its m texts: the place of each, shape (m,), in a tuple of
-        those that occur.
+        For each further column of the file, its m texts: an array of positions, shape (m,), in a
+        tuple of the distinct texts.
     """
 
     names: tuple[str, ...]
@@ -37,12 +37,12 @@ class OrderFile:
 
 
 class OrderFileBuilder:
-    """Collects an `OrderFile`; a text that comes again takes 4 bytes.
+    """Builds an `OrderFile`; a repeated text takes 4 bytes.
 
     Parameters
     ----------
     columns
-        Names of the further columns.
+        Names of the further columns of the file.
     """
 
     def __init__(self, columns: Sequence[str]) -> None:
@@ -53,11 +53,11 @@ class OrderFileBuilder:
         self._texts: list[dict[str, int]] = [{} for _ in columns]
 
     def add_order(self, name: str) -> None:
-        """Begin an order."""
+        """Start an order."""
         self._names.append(name)
 
     def add_line(self, number: int, further: Sequence[str]) -> None:
-        """Add a line to the last order: its number in the file, and its further fields."""
+        """Add a line to the last order, given its number in the file and its further fields."""
         self._line.append(number)
         for codes, texts, text in zip(self._codes, self._texts, further, strict=True):
             codes.append(texts.setdefault(text, len(texts)))

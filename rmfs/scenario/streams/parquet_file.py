@@ -1,4 +1,4 @@
-"""Rows of a Parquet file, read and written."""
+"""Reading and writing of rows of Parquet files."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 ROWS_AT_ONCE = 1 << 14
 
 LARGEST_HEADER = 1 << 24
-"""Bytes that descriptions in the file may claim."""
+"""Maximum size in bytes of the metadata of a file."""
 
 
 def read_parquet(path: Path, rows: Rows, problems: Problems) -> None:
-    """Hand the rows of a Parquet file on, as text; row 1 is the first.
+    """Pass the rows of a Parquet file to a receiver, as text; row 1 is the first.
 
     Raises
     ------

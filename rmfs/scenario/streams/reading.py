@@ -1,4 +1,4 @@
-"""Streams from files that anybody wrote."""
+"""Reading of streams from files."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def read_orders(
     Parameters
     ----------
     zero
-        The moment of time zero. Default: midnight before the first order, where times are in ISO
+        Date and time of time zero. Default: midnight before the first order, if times are in ISO
         8601.
     classes
         Names of the classes of orders, for a column priority; it may be empty or missing.
@@ -42,7 +42,7 @@ def read_orders(
     Raises
     ------
     InputError
-        One line that names the wrong lines, each with its column and the reason.
+        One line that lists the invalid lines, each with its column and the reason.
     """
     problems = Problems(path)
     rows = OrderRows(skus, problems, _word(path), zero, classes)
@@ -56,8 +56,8 @@ def read_bundles(
     """Read bundles from a .csv or .parquet file.
 
     The columns are time (s or ISO 8601, not decreasing), sku (its name or id) and quantity (units),
-    in any order; order (any name) may be there, due must be empty. Each line is a bundle. Further
-    columns are kept (`BundleStream.file`).
+    in any order; a column order (any name) is allowed, and due must be empty. Each line is a
+    bundle. Further columns are kept (`BundleStream.file`).
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def read_bundles(
     Raises
     ------
     InputError
-        One line that names the wrong lines, each with its column and the reason.
+        One line that lists the invalid lines, each with its column and the reason.
     """
     problems = Problems(path)
     rows = BundleRows(skus, problems, _word(path), largest, zero)
@@ -78,7 +78,7 @@ def read_bundles(
 
 
 def first_moment(path: Path) -> datetime | None:
-    """Return the time of the first row of a file, if it is one in ISO 8601 that can be read."""
+    """Return the time of the first row of a file if it is valid ISO 8601."""
     try:
         _read(path, _FirstMoment(), Problems(path))
     except _FoundError as found:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 MOST_UNITS = 1_000_000
 
 LONGEST_NAME = 200
-"""Characters in the name of an order."""
+"""Maximum length of the name of an order."""
 
 MOST_COMPARED = 10_000
 """Maximum number of SKUs searched for a similar name in error messages."""
@@ -141,7 +141,7 @@ class OrderRows(_StreamRows):
     word
         Word for a row in messages: line or row.
     zero
-        The moment of time zero, for times in ISO 8601 (see `Times`).
+        Date and time of time zero, for times in ISO 8601 (see `Times`).
     classes
         Names of the classes of orders; without any, a column `priority` is the user's own.
     """
@@ -241,7 +241,7 @@ class BundleRows(_StreamRows):
     largest
         Space units of the largest pod.
     zero
-        The moment of time zero, for times in ISO 8601 (see `Times`).
+        Date and time of time zero, for times in ISO 8601 (see `Times`).
     """
 
     required = frozenset(("time", "sku", "quantity"))
@@ -281,4 +281,4 @@ class BundleRows(_StreamRows):
         self.file.add_line(number, further)
 
     def end(self) -> None:
-        """Nothing is left to check."""
+        """Do nothing, as nothing is left to check."""

@@ -29,14 +29,14 @@ class _Frozen:
 
 @dataclass(frozen=True)
 class OrderStream(_Frozen):
-    """n orders with m lines in all, in order of time.
+    """A stream of n orders with a total of m lines, in order of time.
 
     Attributes
     ----------
     time_us
-        When each order arrives, shape (n,).
+        Arrival time of each order, shape (n,).
     due_us
-        When each is due, shape (n,); `NO_DUE_US` where none is given.
+        Due time of each order, shape (n,); `NO_DUE_US` if it has none.
     first_line
         Index of the first line of each order, and finally m, shape (n + 1,).
     sku, units
@@ -46,7 +46,7 @@ class OrderStream(_Frozen):
     classes
         Names of the classes of orders, if there are classes.
     priority
-        Class of each order, shape (n,); -1 where none is given. None if there are no classes.
+        Class of each order, shape (n,); -1 if it has none. None if there are no classes.
     """
 
     time_us: NDArray[np.int64]
@@ -69,14 +69,14 @@ class OrderStream(_Frozen):
 
 @dataclass(frozen=True)
 class BundleStream(_Frozen):
-    """n bundles in order of time.
+    """A stream of n bundles, in order of time.
 
     Attributes
     ----------
     time_us
-        When each arrives, shape (n,).
+        Arrival time of each bundle, shape (n,).
     sku, units
-        SKU (index) and units of each, shape (n,).
+        SKU (index) and units of each bundle, shape (n,).
     file
         Additional contents of the file from which they were read, if any.
     """

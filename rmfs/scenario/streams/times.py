@@ -1,4 +1,4 @@
-"""Times in a file: seconds from time zero, or moments in ISO 8601."""
+"""Times in a file: seconds from time zero, or date and time in ISO 8601."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from datetime import datetime, timedelta
 from rmfs.scenario.clock import nearest_us
 
 LATEST_S = 1e9
-"""Latest time in a file: thirty years."""
+"""Latest time in a file, in s: thirty years."""
 
 EXAMPLE = "2026-03-01T08:00:00"
 
@@ -16,17 +16,17 @@ _US = timedelta(microseconds=1)
 
 
 class FieldError(ValueError):
-    """A field is wrong: its column, why, and what would be valid."""
+    """An invalid field; the error has its column, the reason, and what would be valid."""
 
 
 class Times:
-    """Reads the fields of a file that hold times; all of them are seconds, or all are moments.
+    """Reads the times in a file, which must all be in seconds or all in ISO 8601.
 
     Parameters
     ----------
     zero
-        The moment of time zero. Default: midnight before the first moment that is read. Without a
-        zone it is in the zone of that moment.
+        Date and time of time zero. Default: midnight before the first time that is read. Without a
+        time zone, that of the first time is assumed.
     """
 
     def __init__(self, zero: datetime | None = None) -> None:
@@ -34,12 +34,12 @@ class Times:
         self._moments: bool | None = None
 
     def us(self, column: str, text: str) -> int:
-        """Return a field in us from time zero.
+        """Return the time in a field, in microseconds from time zero.
 
         Raises
         ------
         FieldError
-            If it is no time, another kind of time than the fields before, or out of bounds.
+            If it is not a time, is in another format than earlier times, or is out of bounds.
         """
         moment = self._moment(column, text)
         if moment is not None:
@@ -82,7 +82,7 @@ class Times:
 
 
 def parsed(text: str) -> datetime | None:
-    """Return the moment that a text in ISO 8601 names, or None."""
+    """Parse date and time in ISO 8601; None if it is invalid."""
     try:
         return datetime.fromisoformat(text)
     except ValueError:
@@ -90,17 +90,17 @@ def parsed(text: str) -> datetime | None:
 
 
 def midnight(moment: datetime) -> datetime:
-    """Return the beginning of a day, in the zone of a moment of it."""
+    """Return midnight before a given time, in the same time zone."""
     return moment.replace(hour=0, minute=0, second=0, microsecond=0)
 
 
 def number(column: str, text: str) -> float:
-    """Return the finite number that a field holds.
+    """Return the finite number in a field.
 
     Raises
     ------
     FieldError
-        If it holds none.
+        If the field does not contain one.
     """
     found = float(text) if is_number(text) else math.nan
     if math.isfinite(found):
@@ -110,7 +110,7 @@ def number(column: str, text: str) -> float:
 
 
 def is_number(text: str) -> bool:
-    """Say whether a field holds a number, if only nan."""
+    """Return whether a field contains a number, including nan."""
     try:
         float(text)
     except ValueError:

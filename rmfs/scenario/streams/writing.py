@@ -40,12 +40,12 @@ def write_stream(stream: Stream, skus: SkuSet, path: Path) -> str:
     skus
         The SKUs, whose ids are written.
     path
-        Ends in .csv or .parquet.
+        The file, with the suffix .csv or .parquet.
 
     Raises
     ------
     InputError
-        If the name ends otherwise or the file cannot be written.
+        If the suffix is another one, or the file cannot be written.
     """
     suffix = path.suffix.lower()
     if suffix not in (".csv", ".parquet"):
@@ -62,7 +62,7 @@ def write_stream(stream: Stream, skus: SkuSet, path: Path) -> str:
 
 
 def write_streams(recorded: StreamRecorder, skus: SkuSet, folder: Path) -> dict[str, str]:
-    """Write what a run was asked for as `orders.csv` and `bundles.csv`; return their digests.
+    """Write the arrivals of a run to `orders.csv` and `bundles.csv`; return their digests.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Synthetic twins: a generator fitted to a file of orders, which may be published in its place."""
+"""Synthetic twins: generators fitted to files of orders, which can be published instead of them."""
 
 from rmfs.scenario.twin.fitting import Twin as Twin
 from rmfs.scenario.twin.fitting import fit_twin as fit_twin

@@ -1,8 +1,8 @@
-"""Which SKUs are ordered together: how much more often pairs come again than by chance.
+"""Affinity of SKUs, measured by how much more often pairs recur than by chance.
 
-The generator lets a further line follow the line before with some probability: its SKU is then one
-that goes with that of the line before. This probability is found by simulating the generator until
-pairs of neighbouring lines come again as often as in the file.
+In the generator, the SKU of a further line is drawn with some probability from those that are
+ordered together with the SKU of the previous line. This probability is fitted by simulating the
+generator until pairs of neighbouring lines recur as often as in the file.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ if TYPE_CHECKING:
 
 LEAST_PAIRS = 200
 GROUPS = 20
-"""Parts of the orders that are left out in turn (jackknife)."""
+"""Number of groups of orders that are left out in turn (jackknife)."""
 SHARES = (0.0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9)
 DRAWS = 4
-"""Sets of SKUs that are drawn for each share."""
+"""Number of sets of SKUs drawn for each share."""
 MOST_ORDERS = 20_000
 TRIES = 16
-"""Draws of a line until it has a SKU that its order lacks."""
+"""Maximum number of draws of a line to find a SKU that its order does not contain yet."""
 
 
 def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> float:
-    """Return how much more often pairs come again than if their ends were independent.
+    """Return the ratio of recurring pairs to the number expected for independent SKUs.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> floa
 def neighbours(
     sku: NDArray[np.int64], first_line: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Return the SKUs of lines that follow each other in an order, and the order."""
+    """Return the SKUs of consecutive lines of the same order, and the index of the order."""
     order = np.repeat(np.arange(len(first_line) - 1), np.diff(first_line))
     here = np.flatnonzero(order[1:] == order[:-1])
     return sku[here], sku[here + 1], order[here]
@@ -77,16 +77,16 @@ def neighbours(
 def fit_affinity(
     sku: NDArray[np.int64], first_line: NDArray[np.int64], skus: Drawn, seed: int
 ) -> Estimate | None:
-    """Find the share of further lines that follow affinity; none if there are too few pairs.
+    """Fit the share of further lines drawn by affinity; None if there are too few pairs.
 
     Parameters
     ----------
     sku, first_line
-        Of an order stream.
+        SKU of each line, and first line of each order, as in an order stream.
     skus
-        Makes the SKUs of the twin, of a share of affinity and a seed.
+        Function that creates the SKUs of the twin from a share of affinity and a seed.
     seed
-        Of the simulations.
+        Seed of the simulations.
     """
     first, second, order = neighbours(sku, first_line)
     number = int(sku.max()) + 1
@@ -137,23 +137,23 @@ def drawn_skus(skus: GeneratedSkus, weights: NDArray[np.float64] | None) -> Draw
 
 
 def with_affinity(skus: GeneratedSkus, share: float) -> GeneratedSkus:
-    """Return SKUs of which each goes with two others in the mean."""
+    """Return SKUs with affinity, in which each is paired with two others on average."""
     pairs = min(skus.count, skus.count * (skus.count - 1) // 2)
     given = GeneratedAffinity(share=round(share, 6), pairs=pairs, default_weight=0.0)
     return skus.model_copy(update={"affinity": given})
 
 
 def simulated_lift(lines: NDArray[np.int64], skus: SkuSet, rng: np.random.Generator) -> float:
-    """Return the lift of orders with these numbers of lines, as the generator draws them.
+    """Return the lift of simulated orders with given numbers of lines.
 
     Parameters
     ----------
     lines
-        Lines of each order, shape (n,).
+        Number of lines of each order, shape (n,).
     skus
         The SKUs, with affinity.
     rng
-        Draws the orders.
+        Random stream that draws the orders.
     """
     draw = _Lines(skus, rng)
     lines = lines[lines > 1]

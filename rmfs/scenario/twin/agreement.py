@@ -1,4 +1,4 @@
-"""The orders of a file and orders of its twin, figure by figure."""
+"""Comparison of the orders of a file with those of its twin."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MOST_WORK = 1e9
 MOST_ORDERS = 50_000
-"""Of the twin, so that no table takes minutes."""
+"""Maximum number of simulated orders of the twin, which limits the computing time."""
 
 
 def agreements(
@@ -37,15 +37,15 @@ def agreements(
     Parameters
     ----------
     skus
-        Those of the scenario.
+        SKUs of the scenario.
     days
-        Over which the orders come.
+        Number of days over which the orders arrive.
     cycle_h
-        Hours after which rates come again.
+        Length of the cycle of rates, in h.
     seed
-        Of the run whose orders are compared.
+        Seed of the run whose orders are compared.
     p_popularity, p_arrivals
-        Of the tests of the fits.
+        p values of the goodness-of-fit tests.
     """
     rate_per_day = len(stream) / days
     # a line that follows affinity costs time in proportion to the SKUs

@@ -1,4 +1,4 @@
-"""When orders come: a Poisson rate for each hour of the day, or of the week."""
+"""Fit of arrivals: a Poisson rate for each hour of the day or the week."""
 
 from __future__ import annotations
 
@@ -16,16 +16,17 @@ HOUR_US = 3_600_000_000
 
 
 class Arrivals(NamedTuple):
-    """Rates.
+    """Fitted arrival rates.
 
     Attributes
     ----------
     mean
-        Orders per hour.
+        Mean number of orders per hour.
     hours
-        The rate of each hour of the cycle.
+        Rate of each hour of the cycle.
     dispersion, p
-        Variance over mean of the orders of an hour, 1 for a Poisson process, and its test.
+        Ratio of variance to mean of the number of orders per hour (1 for a Poisson process), and
+        the p value of its test.
     """
 
     mean: Estimate
@@ -35,16 +36,16 @@ class Arrivals(NamedTuple):
 
 
 def fit_arrivals(time_us: NDArray[np.int64], days: int, cycle_h: int) -> Arrivals:
-    """Fit the rates.
+    """Fit the arrival rates.
 
     Parameters
     ----------
     time_us
-        When each order comes, from midnight of the first day, shape (n,).
+        Arrival time of each order since midnight of the first day, shape (n,).
     days
-        Days that were watched, all of them whole.
+        Number of observed days, all of them complete.
     cycle_h
-        Hours after which rates come again: 24 or 168.
+        Length of the cycle of rates, in h: 24 or 168.
     """
     each = np.bincount(time_us // HOUR_US, minlength=days * 24)
     of_cycle = np.arange(days * 24) % cycle_h

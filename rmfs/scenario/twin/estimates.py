@@ -16,7 +16,7 @@ LEVEL = 0.95
 
 
 class Estimate(NamedTuple):
-    """A parameter.
+    """An estimated parameter.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class Agreement(NamedTuple):
     name
         Name of the figure.
     data, twin
-        The figure of both; empty (nan) for a test of the model alone.
+        Value of the figure in each; nan for a test of the model alone.
     p
         Probability of such a deviation if the model holds; nan without a test.
     """
@@ -57,7 +57,7 @@ def shares(name: str, counts: NDArray[np.int64]) -> list[Estimate]:
     Parameters
     ----------
     counts
-        How often each occurs, shape (n,).
+        Number of occurrences of each, shape (n,).
     """
     total = int(counts.sum())
     z = stats.norm.ppf(0.5 + LEVEL / 2)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 DAY_H = 24
 WEEK_H = 168
 MOST_UNSEEN = 20
-"""Maximum ratio of unseen to seen SKUs; beyond, gamma weights are meaningless."""
+"""Maximum ratio of unseen to seen SKUs, above which gamma weights are meaningless."""
 MOST_LISTED = 200
 """Maximum number of lines of an order, or units of a line; larger ones count as this."""
 
@@ -44,13 +44,13 @@ class Twin:
     Attributes
     ----------
     scenario
-        Generates orders like those of the file.
+        Scenario that generates orders like those of the file.
     estimates
         Its parameters, with their intervals.
     agreements
         Figures of the orders of the file and of orders of the twin.
     orders
-        Orders that were fitted.
+        Number of orders in the file.
     skus
         SKUs of the twin, if they cannot be drawn from the scenario and need a file.
     """
@@ -83,7 +83,7 @@ def fit_twin(
     Raises
     ------
     InputError
-        If the file is broken, or holds too few orders.
+        If the file is invalid, or contains too few orders.
     """
     skus = sku_set(SkuFile(file=path))
     stream = read_orders(path, skus)

@@ -1,8 +1,8 @@
-"""How popular SKUs are: gamma weights, fitted to how often each SKU was ordered.
+"""Fit of popularity: gamma weights, fitted to the number of times each SKU was ordered.
 
-One line of each order is used, because lines of an order are not independent but orders are. With
-gamma weights such counts are negative binomial, and SKUs that were never ordered are not in the
-file: the likelihood is that of positive counts, and also yields the total number of SKUs.
+One line of each order is used, because orders are independent but lines of the same order are not.
+With gamma weights, the counts are negative binomial. SKUs that were never ordered are not in the
+file, so the likelihood of positive counts is used, which also yields the total number of SKUs.
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ if TYPE_CHECKING:
 LEAST_SKUS = 10
 LEAST_IN_BIN = 5.0
 FACTORS = (0.03, 0.1, 0.3, 1.0)
-"""Of the mean of the counts above 0: where the mean of all is looked for at first."""
+"""Factors on the mean of the positive counts, at which the search for the overall mean starts."""
 
 
 class Popularity(NamedTuple):
-    """Gamma weights.
+    """Fitted gamma weights.
 
     Attributes
     ----------
     shape
-        Of the gamma distribution, whose mean is 1.
+        Shape of the gamma distribution, whose mean is 1.
     skus
-        How many SKUs there are, those never ordered among them.
+        Total number of SKUs, including those never ordered.
     p
-        Of a chi-square test of the counts.
+        p value of a chi-square test of the counts.
     """
 
     shape: Estimate
@@ -49,7 +49,7 @@ def fit_popularity(counts: NDArray[np.int64]) -> Popularity:
     Parameters
     ----------
     counts
-        Of each SKU seen how often it was ordered, from 1, shape (K,).
+        Number of times each ordered SKU was ordered, at least 1, shape (K,).
 
     Raises
     ------
