@@ -32,7 +32,7 @@ class Measure(Observer):
     columns: ClassVar[Sequence[Column]] = ()
 
     def footprint(self, run: EndedRun) -> Mapping[str, Any]:
-        """Return the value of every column, by name, for the measured time.
+        """Return the values of the columns by name, for the measured time.
 
         Parameters
         ----------

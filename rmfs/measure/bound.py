@@ -1,6 +1,6 @@
 """The proven upper bound on the throughput of a run, computed by the optimisation package.
 
-Nothing of `solvers` is imported here: like controllers that ask optimisers, the bound is found by
+This module does not import `solvers`: like controllers that use optimisers, the bound is found by
 name.
 """
 
@@ -22,7 +22,7 @@ BOUND = "rmfs.solvers.run_bound:units_per_h_bound"
 
 
 class BoundExceededWarning(UserWarning):
-    """A run did more than is possible: a defect of the simulator or of the proof of the bound."""
+    """A run exceeded the bound, which means a defect of the simulator or of the bound's proof."""
 
 
 def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration_s: float) -> float:
@@ -60,7 +60,7 @@ def at_best(layout: Layout, staff: Staff | None) -> Layout | None:
 
 
 def warn_if_exceeded(units_per_h: float, bound: float) -> None:
-    """Warn if a run picked more than any run can.
+    """Warn if a run picked more than its upper bound.
 
     Parameters
     ----------

@@ -90,7 +90,6 @@ def better_of(column: str) -> Better:
 
     The result is "neither" for inputs, counts that are only means to an end (tasks, trips,
     decisions), shares that may be high for good or bad reasons (busy robots), and unknown columns.
-    shares that may be high for good and for bad reasons (busy robots), and of unknown columns.
     """
     found = footprint_column(column)
     return NEITHER if found is None else found.better

@@ -53,7 +53,7 @@ class Measured(Protocol):
 
     @property
     def wall_s(self) -> float:
-        """Wall time of the simulation."""
+        """Wall time of the simulation, in s."""
 
 
 class Recorded(Measured, Protocol):

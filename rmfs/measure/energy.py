@@ -68,7 +68,7 @@ class EnergyLog:
             self._units.setdefault(station, []).append(order)
 
     def left(self, station: int, robot: int) -> None:
-        """Divide the energy drawn by the robot among the units of its visit."""
+        """Divide the energy drawn by the robot among the units of the visit."""
         orders = self._units.pop(station, None)
         if self._traffic is None or not orders:
             return

@@ -64,7 +64,7 @@ class Happening(IntEnum):
     """An order has a line for units of a SKU (order, sku, units). With a station: the line was
     assigned there with a part of the split order."""
     ORDER_DUE = 15
-    """When an order is due (order, units: whole seconds since the start of the run)."""
+    """Due time of an order (order, units: whole seconds since the start of the run)."""
     ORDER_CUT = 16
     """Stock could not serve an order completely (order, units left); its new lines follow."""
     ORDER_CANCELLED = 17
@@ -160,7 +160,7 @@ class EventLog(Observer):
         return dict(zip(COLUMNS, rows.T, strict=True))
 
     def run_started(self, run: Observed) -> None:
-        """Write down the stock, and what is in batteries."""
+        """Record the stock and the levels of batteries."""
         self._world = run.world
         contained = run.world.inventory.contained
         for sku, pod in np.argwhere(contained).tolist():
@@ -169,19 +169,19 @@ class EventLog(Observer):
         self.sampled(0.0)
 
     def run_ended(self, time_s: float) -> None:
-        """Let go of what is no record."""
+        """Release references to the run."""
         self._world = None
         self._bound.clear()
 
     def sampled(self, time_s: float) -> None:
-        """What is in all batteries."""
+        """Record the levels of all batteries."""
         batteries = None if self._world is None else self._world.batteries
         if batteries is not None:
             for robot, share in enumerate(batteries.shares().tolist()):
                 self._add_level(time_s, robot, share)
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
-        """A robot has a task."""
+        """Record that a robot has got a task."""
         now_us, detail = round(time_s * 1e6), self._detail(kind)
         self._rows.extend(_row(now_us, Happening.TASK, robot, -1, station, -1, -1, 0, detail))
         if self._world is not None and self._world.batteries is not None:
@@ -190,7 +190,7 @@ class EventLog(Observer):
             self.picks_changed(time_s, robot)
 
     def picks_changed(self, time_s: float, robot: int) -> None:
-        """The pod of a robot is to be picked for more, or for less."""
+        """Record units bound to, or unbound from, the pod of a robot."""
         if self._world is None:
             return
         task = self._world.robots[robot].task
@@ -205,7 +205,7 @@ class EventLog(Observer):
             self._rows.extend(_row(now_us, kind, *whom, order, sku, units, -1))
 
     def order_created(self, order: Order) -> None:
-        """An order arrived."""
+        """Record the arrival of an order."""
         self._add_order(order.created_s, Happening.ORDER_CREATED, order)
         self._add_lines(order.created_s, order)
         if isfinite(order.due_s):
@@ -214,28 +214,28 @@ class EventLog(Observer):
             self._rows.extend(_row(now_us, due, -1, -1, -1, index, -1, due_s, -1))
 
     def order_cut(self, order: Order) -> None:
-        """Stock could not serve all of an order."""
+        """Record that an order was cut."""
         self._add_order(self._now_s, Happening.ORDER_CUT, order)
         self._add_lines(self._now_s, order)
 
     def order_cancelled(self, order: Order) -> None:
-        """An order was given up."""
+        """Record that an order was cancelled."""
         self._add_order(order.cancelled_s, Happening.ORDER_CANCELLED, order)
 
     def order_assigned(self, order: Order) -> None:
-        """An order is on a station."""
+        """Record that an order was assigned to a station."""
         # lines may join a part that has been there for a while: its own time is that of the first
         self._add_order(self._now_s, Happening.ORDER_ASSIGNED, order)
         if order.whole is not None:
             self._add_lines(self._now_s, order)
 
     def slot_freed(self, order: Order) -> None:
-        """A part of an order left its slot."""
+        """Record that a part of an order left its slot."""
         if order.whole is not None or order.parts:
             self._add_order(self._now_s, Happening.PART_COMPLETED, order)
 
     def order_completed(self, order: Order) -> None:
-        """An order is done."""
+        """Record that an order was completed."""
         self._add_order(order.completed_s, Happening.ORDER_COMPLETED, order)
 
     def unit_picked(
@@ -248,7 +248,7 @@ class EventLog(Observer):
         station: int,
         late_bound: bool,
     ) -> None:
-        """A unit left a pod."""
+        """Record that a unit was picked."""
         now_us, picked = round(time_s * 1e6), Happening.UNIT_PICKED
         known = self._bound.get(robot)
         if known is not None:
@@ -257,34 +257,34 @@ class EventLog(Observer):
         self._rows.extend(_row(now_us, picked, robot, pod, station, order.index, sku, 1, -1))
 
     def bundle_created(self, bundle: Bundle) -> None:
-        """A bundle arrived."""
+        """Record the arrival of a bundle."""
         self._add_bundle(bundle.created_s, Happening.BUNDLE_CREATED, bundle)
 
     def bundle_assigned(self, bundle: Bundle) -> None:
-        """A bundle has pod and station."""
+        """Record that a bundle was assigned a pod and a station."""
         self._add_bundle(bundle.assigned_s, Happening.BUNDLE_ASSIGNED, bundle)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
-        """A bundle is in its pod."""
+        """Record that a bundle was stored."""
         self._add_bundle(bundle.stored_s, Happening.BUNDLE_STORED, bundle, robot)
 
     def visit_started(self, time_s: float, station: int, pod: int, robot: int) -> None:
-        """A pod is at a station."""
+        """Record that a pod reached a station."""
         now_us = round(time_s * 1e6)
         self._rows.extend(_row(now_us, Happening.VISIT_STARTED, robot, pod, station, -1, -1, 0, -1))
 
     def visit_ended(self, time_s: float, station: int, pod: int, robot: int) -> None:
-        """A pod leaves a station."""
+        """Record that a pod leaves a station."""
         now_us = round(time_s * 1e6)
         self._rows.extend(_row(now_us, Happening.VISIT_ENDED, robot, pod, station, -1, -1, 0, -1))
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
-        """A station was switched."""
+        """Record that a station was switched on or off."""
         now_us, switched = round(time_s * 1e6), Happening.STATION_SWITCHED
         self._rows.extend(_row(now_us, switched, -1, -1, station, -1, -1, int(active), -1))
 
     def controller_exchanged(self, time_s: float, problem: str, name: str) -> None:
-        """A controller was exchanged."""
+        """Record that a controller was exchanged."""
         detail = self._detail(f"{problem}={name}")
         now_us, exchanged = round(time_s * 1e6), Happening.CONTROLLER_EXCHANGED
         self._rows.extend(_row(now_us, exchanged, -1, -1, -1, -1, -1, 0, detail))

@@ -174,7 +174,7 @@ class RunFolder(Results):
 
     @property
     def trace(self) -> pd.DataFrame:
-        """Every piece of motion.
+        """All pieces of motion.
 
         Raises
         ------
@@ -194,7 +194,7 @@ class RunFolder(Results):
         return read_layout(self.path)
 
     def check(self) -> CheckReport:
-        """Have the independent checker verify that the motion is safe.
+        """Verify with the independent checker that the motion is safe.
 
         Raises
         ------

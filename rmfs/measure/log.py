@@ -1,8 +1,8 @@
 """Rows of fixed types in one growing block of memory.
 
-A long run records millions of rows. As tuples each would take some 200 bytes and objects of its
-own; packed, a row takes the bytes of its values, and columns can be extracted without converting
-each value.
+A long run records millions of rows. As a tuple, each would take about 200 bytes and several
+objects; a packed row takes only the bytes of its values, and columns can be extracted without
+converting single values.
 """
 
 from __future__ import annotations

@@ -7,9 +7,9 @@ from pathlib import Path
 
 
 def peak_rss_mb() -> float:
-    """Return the largest resident memory of this process so far, in MB (10^6 bytes), or nan.
+    """Return the peak resident memory of this process, in MB (10^6 bytes), or nan.
 
-    Read from the kernel's own high-water mark where there is one: `getrusage` also counts the
+    It is read from the kernel's high-water mark if available, because `getrusage` also includes the
     process that started this one.
     """
     try:

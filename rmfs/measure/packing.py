@@ -53,7 +53,7 @@ class PackingLog:
             self.totes.add(parcel.order.index, tote.station, *times, tote.by_hand)
 
     def ended(self, time_s: float) -> None:
-        """Record what is not packed yet."""
+        """Record the parcels that are not packed yet."""
         wall = None if self._world is None else self._world.put_wall
         if wall is None:
             return
@@ -64,7 +64,7 @@ class PackingLog:
 
 
 def parcel_row(parcel: Parcel) -> tuple[Any, ...]:
-    """Return what the tables need of a parcel."""
+    """Return the data of a parcel for the tables."""
     order = parcel.order
     first_s = parcel.totes[0].arrived_s
     for tote in parcel.totes:

@@ -50,7 +50,7 @@ PACKAGES = (
 """Packages whose version is recorded: all dependencies, including solvers."""
 
 MARK = "+"
-"""Separates the name of a set of controllers from interactive exchanges."""
+"""Separator between the name of a set of controllers and interactive exchanges."""
 
 KINDS: dict[str, instances.Kind] = {
     "layout": "layouts",
@@ -62,7 +62,7 @@ KINDS: dict[str, instances.Kind] = {
 def describe(
     run: Recorded, report: CheckReport | None = None, inputs: Mapping[str, str] | None = None
 ) -> dict[str, Any]:
-    """Return everything needed to know what was run, and to repeat it.
+    """Return everything needed to identify and repeat the run.
 
     Parameters
     ----------

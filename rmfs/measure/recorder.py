@@ -275,7 +275,7 @@ class Recorder(Observer):
         del self.open_bundles[bundle.index]
 
     def visit_started(self, time_s: float, station: int, pod: int, robot: int) -> None:
-        """A pod is at the station."""
+        """Record that a pod is at the station."""
         self._at_station[station] = (time_s, pod, robot)
 
     def visit_ended(self, time_s: float, station: int, pod: int, robot: int) -> None:
@@ -319,7 +319,7 @@ class Recorder(Observer):
         self.questions.append(call)
 
     def optimiser_answered(self, call: Call) -> None:
-        """Write the solution down; what it is used for, the call counts."""
+        """Record the solution; the call counts how it is used."""
         if call.solution is not None:
             self.solutions[call.number] = to_text(call.solution)
 
@@ -329,7 +329,7 @@ class Recorder(Observer):
 
 
 def order_row(order: Order) -> tuple[Any, ...]:
-    """Return what the tables need of an order."""
+    """Return the data of an order for the tables."""
     return (
         order.index,
         order.station,
@@ -347,7 +347,7 @@ def order_row(order: Order) -> tuple[Any, ...]:
 
 
 def bundle_row(bundle: Bundle) -> tuple[Any, ...]:
-    """Return what the tables need of a bundle."""
+    """Return the data of a bundle for the tables."""
     return (
         bundle.stored_s,
         bundle.created_s,

@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 FRAME_HEIGHT = 640
-"""Height (pixels) of the frame in a notebook: panel and picture can be read in it."""
+"""Height of the frame in a notebook, in pixels, at which panel and floor plan are legible."""
 
 
 @dataclass(frozen=True, slots=True)
 class Replay:
-    """A page with the replay of a run; it shows itself in a notebook.
+    """A page with the replay of a run, which displays itself in a notebook.
 
-    The frame holds the whole page, not a link to a file: it is still there when the notebook is
-    sent to somebody, and needs no server.
+    The frame contains the whole page, not a link to a file, so it is kept when the notebook is sent
+    to others, and needs no server.
 
     Attributes
     ----------
@@ -45,6 +45,6 @@ class Replay:
 
 
 def in_notebook() -> bool:
-    """Whether this runs in a notebook, which shows what a cell returns."""
+    """Return whether this runs in a notebook, which displays the value of a cell."""
     shell = sys.modules.get("IPython")
     return shell is not None and type(shell.get_ipython()).__name__ == "ZMQInteractiveShell"

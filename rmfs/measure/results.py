@@ -45,7 +45,7 @@ class Results(ABC):
 
     @abstractmethod
     def check(self) -> CheckReport:
-        """Have the independent checker verify that the motion is safe; needs a recorded trace.
+        """Verify with the independent checker that the motion is safe; needs a recorded trace.
 
         Raises
         ------

@@ -50,7 +50,7 @@ def require_columns(path: Path, table: Any, names: Sequence[str]) -> None:
     Raises
     ------
     InputError
-        Names the first invalid column.
+        If a column is invalid; the message names the first one.
     """
     from pyarrow import types  # type: ignore[import-untyped]
 
@@ -84,7 +84,7 @@ def require_motion(path: Path, motion: pd.DataFrame, layout: Layout, end_us: int
     Raises
     ------
     InputError
-        Names the first impossible row.
+        If a row is impossible; the message names the first one.
     """
     _within(
         path,

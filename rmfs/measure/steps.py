@@ -61,7 +61,7 @@ class Steps:
         return fsum(self.at(knots[:-1]) * np.diff(knots)) / (end_s - begin_s)
 
     def most(self, begin_s: float, end_s: float) -> float:
-        """Return the greatest value within an interval; nan if it is empty."""
+        """Return the maximum within an interval; nan if it is empty."""
         if end_s <= begin_s:
             return float("nan")
         inside = self._times[(self._times > begin_s) & (self._times < end_s)]

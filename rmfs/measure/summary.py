@@ -50,7 +50,7 @@ class Summary:
     Attributes
     ----------
     title
-        What was simulated.
+        Description of the simulated inputs.
     rows
         Labels and values; those of users' measures come last.
     """

@@ -77,7 +77,7 @@ def require_told(path: Path, parameters: dict[str, Any]) -> None:
     Raises
     ------
     InputError
-        Names what is missing or invalid.
+        If something is missing or invalid; the message names it.
     """
     lacking = [key for key, field in Told.model_fields.items() if field.is_required()]
     lacking = [key for key in lacking if key not in parameters]

@@ -10,11 +10,11 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 BATCH = 5
-"""Observations per batch mean: the 5 of MSER-5."""
+"""Number of observations per batch mean: the 5 of MSER-5."""
 
 
 def mser(values: ArrayLike, batch: int = BATCH) -> int | None:
-    """Return how many observations to drop by the marginal standard error rule.
+    """Return the number of observations to drop, by the marginal standard error rule.
 
     Of the batch means Z_1 ... Z_n the first d are dropped, where d <= n / 2 minimises
     sum over j > d of (Z_j - mean)² / (n - d)² (White 1997; MSER-5 with batches of five).
@@ -74,7 +74,7 @@ def settled(smooth: ArrayLike, tolerance: float = 0.05) -> int | None:
     Returns
     -------
     int | None
-        None if it leaves the band again in the second half.
+        The index; None if the series leaves the band again in the second half.
     """
     values = np.asarray(smooth, np.float64)
     half = len(values) // 2

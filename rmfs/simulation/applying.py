@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Applying:
-    """Applies decisions, each as soon as it is made.
+    """Applies each decision as soon as it is made.
 
     Parameters
     ----------

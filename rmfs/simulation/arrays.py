@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 
 class ArrayPickler(pickle.Pickler):
-    """Pickles views of arrays as views, whereas NumPy alone makes independent copies.
+    """Pickler that keeps views of arrays as views, whereas NumPy alone makes independent copies.
 
     Parameters
     ----------
     aside
-        Takes the contents of arrays, which are then not part of the stream.
+        Receives the contents of arrays, which are then not part of the stream.
     """
 
     def __init__(

@@ -146,27 +146,27 @@ class ArrivalProcess:
 
     @property
     def load(self) -> float:
-        """Space units of what is stored, on its way into pods, and waiting."""
+        """Space units of units that are stored, on their way into pods, or waiting."""
         return self._world.load
 
     @property
     def uncommitted(self) -> NDArray[np.int64]:
-        """Units of each SKU stored less those that orders want."""
+        """Stored units of each SKU minus ordered units."""
         return self._world.inventory.uncommitted
 
     @property
     def incoming(self) -> NDArray[np.int64]:
-        """Units of each SKU in bundles that have come and are not stored yet."""
+        """Units of each SKU in bundles that have arrived and are not stored yet."""
         return self._world.incoming
 
     @property
     def active_pick_share(self) -> float:
-        """Active pick stations / all of them; one is counted at least."""
+        """Share of active pick stations; at least one counts as active."""
         return _active_share(self._world.pick_stations)
 
     @property
     def active_replenishment_share(self) -> float:
-        """Active replenishment stations / all of them; one is counted at least."""
+        """Share of active replenishment stations; at least one counts as active."""
         return _active_share(self._world.replenishment_stations)
 
 

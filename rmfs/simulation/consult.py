@@ -100,7 +100,7 @@ class PhaseConsult:
 
 
 class OutsideConsult(PhaseConsult):
-    """The same while some of these problems are decided outside."""
+    """As `PhaseConsult`, while some of these problems are decided outside."""
 
     def __init__(
         self, world: World, controllers: ControllerSet, deciding: Deciding, outside: Outside
@@ -128,7 +128,7 @@ class OutsideConsult(PhaseConsult):
         return self._asked(question, lambda: super(OutsideConsult, self).place_for(robot))
 
     def may_move(self) -> bool:
-        """Whether repositioning may: who decides outside may have one."""
+        """Whether repositioning may have a pod to move; always true if it is decided outside."""
         return Problem.REPOSITIONING in self._outside.problems or super().may_move()
 
     def move_for(self, robot: Robot) -> Move | None:

@@ -82,12 +82,12 @@ class ControllerSet:
         self._connect()
 
     def made(self, choice: Choice) -> Controller[Any]:
-        """Make the next controller of a problem, and do nothing with it.
+        """Create a controller for a problem without installing it.
 
         Raises
         ------
         InputError
-            If it does not go with the layout or the scenario.
+            If it is incompatible with the layout or the scenario.
         """
         problem = choice.problem
         number = self._generations[problem]

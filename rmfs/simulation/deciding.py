@@ -141,13 +141,13 @@ class Deciding:
         Raises
         ------
         Awaits
-            If the outside has to answer first. The rule is then in its state after its last
-            decision, and must be asked again.
+            If a question must be answered outside first. The rule is then in its state after its
+            last decision, and must be asked again.
 
         Parameters
         ----------
         decide
-            Asks for decisions, or passes on the answer of an optimiser.
+            Function that asks for decisions, or passes on the answer of an optimiser.
         outside
             Holds the answers given so far.
         state

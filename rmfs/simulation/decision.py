@@ -91,7 +91,7 @@ class Decision:
 
     @property
     def stations(self) -> tuple[int, ...]:
-        """The station that needs a pod, or the options for the next station."""
+        """The station that needs a pod, or the possible next stations."""
         return self._question.stations
 
     @property
@@ -121,8 +121,8 @@ class Decision:
         Raises
         ------
         ImpossibleError
-            If the answer is impossible; says why. Nothing has changed, and the question remains
-            open.
+            If the answer is impossible; the message says why. Nothing has changed, and the question
+            remains open.
         """
         self._refuse_answered()
         reason = why_not(given, self._question, self.view)

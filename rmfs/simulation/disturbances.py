@@ -68,7 +68,7 @@ class DisturbanceSource:
     Attributes
     ----------
     begun
-        Disturbances so far, by start; those that have not ended have an end far in the future.
+        Disturbances so far, by start; the end of those in progress is far in the future.
 
     Raises
     ------
@@ -112,7 +112,7 @@ class DisturbanceSource:
         return [(one.element, one.from_us, one.to_us, share) for one in slow]
 
     def within(self, start_s: float, end_s: float) -> tuple[int, float]:
-        """Return how many occurred in a time interval, and their total duration within it."""
+        """Return the number of disturbances in a time interval, and their total duration."""
         start_us, end_us = round(start_s * 1e6), round(end_s * 1e6)
         parts = [
             min(one.to_us, end_us) - max(one.from_us, start_us)

@@ -31,7 +31,7 @@ def model_of(given: Energy) -> list[float]:
 
 
 class PodMasses(Observer):
-    """Updates the mass of each pod in traffic: the pod itself and its contents.
+    """Keeps the mass of each pod in traffic up to date: the pod itself and its contents.
 
     Parameters
     ----------
@@ -61,11 +61,11 @@ class PodMasses(Observer):
         station: int,
         late_bound: bool,
     ) -> None:
-        """A pod is lighter by a unit."""
+        """Reduce the mass of a pod by one unit."""
         self._weigh(pod)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
-        """A pod is heavier by a bundle."""
+        """Increase the mass of a pod by a bundle."""
         self._weigh(bundle.pod)
 
     def _weigh(self, pod: int) -> None:

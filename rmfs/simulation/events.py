@@ -26,7 +26,7 @@ class Events(Observer):
         return tuple(self._observers)
 
     def tell(self, observers: Sequence[Observer]) -> None:
-        """Notify these observers, and no others, from now on."""
+        """Notify only these observers from now on."""
         self._observers = list(observers)
         for name in _CALLBACKS:
             listeners = [

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
 SHARE = 0.5
-"""A rule is idle if it decided nothing in this last part of the run ..."""
+"""A rule is idle if it decided nothing in this last share of the run ..."""
 LEAST_S = 300.0
 """... and in at least this much simulated time."""
 

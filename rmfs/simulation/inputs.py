@@ -55,7 +55,7 @@ def load_inputs(
     Raises
     ------
     InputError
-        If an argument is wrong; names it and the valid values.
+        If an argument is wrong; the message names it and the valid values.
     """
     given = _split(overrides)
     asked = [] if isinstance(work, Scenario) else scenario.asked_of_layout(work)

@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 
 class Kernel(Loop):
-    """One run: its parts, each given only what it needs of the others; `Loop` drives it.
+    """One run and its parts, which know each other only as far as necessary; `Loop` drives it.
 
     Parameters
     ----------
@@ -65,8 +65,8 @@ class Kernel(Loop):
     observers
         Notified of everything that happens.
     outside
-        Decision problems that `step` hands out, such as `["poa", "pps"]`. Their controllers stay
-        installed: they determine when they would be asked, and give advice.
+        Decision problems that `step` returns for decisions outside, such as `["poa", "pps"]`. Their
+        controllers stay installed: they determine when they would be asked, and give advice.
     pacing
         How simulated time accounts for the computation of optimisers.
     traffic
@@ -243,7 +243,7 @@ class Kernel(Loop):
         Parameters
         ----------
         watch
-            Observes the consequences.
+            Observer of the consequences.
         """
         *inside, triggers = self.events.observers
         kept = [one for one in inside if type(one) is not Observer]

@@ -42,19 +42,19 @@ class LateBinding(Observer):
         self._pods: list[int] = []
 
     def order_assigned(self, order: Order) -> None:
-        """Remember an order put on a pick station."""
+        """Record an order assigned to a pick station."""
         self._orders.append(order)
 
     def order_queued(self, order: Order) -> None:
-        """Remember an order that joined a pool."""
+        """Record an order that joined a pool."""
         self._queued.append(order)
 
     def bundle_assigned(self, bundle: Bundle) -> None:
-        """Remember a bundle assigned to station and pod."""
+        """Record a bundle assigned to a station and a pod."""
         self._bundles.append(bundle)
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
-        """Remember a pod that has just been lifted for a station."""
+        """Record a pod that has just been lifted for a station."""
         task = self._world.robots[robot].task
         if task is not None and task.station >= 0:
             self._pods.append(pod)
@@ -68,7 +68,7 @@ class LateBinding(Observer):
                 self._bind_queued(task, queued.values(), late_bound=False)
 
     def bind(self) -> None:
-        """Extend tasks by the work that has arisen since the last call."""
+        """Extend tasks by the work that has become available since the last call."""
         given = self._controllers[Problem.PPS].parameters
         if given.late_bundles:
             for bundle in self._bundles:

@@ -36,7 +36,7 @@ STALL_S = 3600.0
 
 
 class StalledError(RuntimeError):
-    """Nothing can move any more; the message lists every robot."""
+    """No robot can move any more; the message lists every robot."""
 
 
 class Loop:
@@ -106,7 +106,7 @@ class Loop:
         RuntimeError
             If a decision must be made outside; use `step` instead.
         StalledError
-            If nothing can move any more (only possible in a layout that is not well-formed).
+            If no robot can move any more (only possible in a layout that is not well-formed).
         OptimiserError
             If an optimiser fails and the pacing is a reproducible one.
         ReplayError

@@ -54,11 +54,11 @@ class OptimiserGateway:
 
     @property
     def waits(self) -> bool:
-        """Whether the pacing may have to wait for a running solver, so that `limit_us` applies."""
+        """Whether the pacing may have to wait for a running solver; then `limit_us` applies."""
         return self._pacing.waits
 
     def begin(self, modules: Iterable[str]) -> None:
-        """Prepare, before wall time is measured.
+        """Prepare the optimisers, before wall time is measured.
 
         Parameters
         ----------
@@ -68,7 +68,7 @@ class OptimiserGateway:
         self._pacing.begin(dict.fromkeys(modules), self._give)
 
     def ask(self, problem: Problem, controller: Controller[Any], ask: Ask[Any]) -> None:
-        """Submit a question; if the answer takes no time, it is applied before this returns."""
+        """Submit a question; an answer without delay is applied before this returns."""
         now_us = self._agenda.now_us
         state = digest((now_us, str(problem), _tracks(self._world), ask.question))
         call = Call(self._asked, problem, controller, ask, now_us, state)
@@ -82,7 +82,7 @@ class OptimiserGateway:
             self._asking = False
 
     def limit_us(self, now_us: int) -> int:
-        """Return the latest time up to which may be simulated now."""
+        """Return the latest time that may be simulated now."""
         return self._pacing.limit_us(now_us)
 
     def end(self) -> None:

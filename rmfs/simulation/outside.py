@@ -128,13 +128,13 @@ class Outside:
         Parameters
         ----------
         otherwise
-            Asks the installed controller; its answer is stored as well, so that it is asked only
-            once.
+            Function that asks the installed controller; its answer is stored as well, so that it is
+            asked only once.
 
         Raises
         ------
         Awaits
-            If the outside has to answer first.
+            If the question must be answered outside first.
         """
         if self.knows(question):
             answer = self.given[self.taken][1]

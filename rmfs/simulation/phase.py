@@ -132,12 +132,12 @@ class DecisionPhase:
             self._due.want(problem)
 
     def require_possible(self, choice: Choice) -> None:
-        """Make sure that a controller could be installed now, and change nothing.
+        """Check that a controller could be installed now, without changing anything.
 
         Raises
         ------
         InputError
-            If it does not go with the layout or the scenario.
+            If it is incompatible with the layout or the scenario.
         """
         self._controllers.made(choice)
 
@@ -157,7 +157,7 @@ class DecisionPhase:
     # --- the steps --------------------------------------------------------------------------------
 
     def settle(self) -> bool:
-        """Process the steps that are due; return False if the outside has to decide."""
+        """Process the steps that are due; return False if a decision must be made outside."""
         outside, due, storage, what = self.outside, self._due, self._world.storage, self._steps
         if outside.pending is not None or (self._interrupted and not self._go_on()):
             return False
@@ -247,7 +247,7 @@ class DecisionPhase:
             self._dispatch.start_prepared(robot, self._consult)
 
     def prepare(self, decision: say.Prepare, call: Call | None) -> None:
-        """Store tasks for later, or start the first if the robot has nothing better to do."""
+        """Store tasks for later, or start the first one if the robot is free."""
         robot = decision.robot
         rule = self._controllers[Problem.TA]
         self._dispatch.prepare(decision, call)

@@ -63,9 +63,9 @@ class Run(Results):
     wall_s
         Wall time of the simulation, without loading.
     world, traffic
-        Their final state.
+        The final state of world and traffic.
     statistics
-        For each decision problem, how often its controller was asked and how long it took.
+        For each decision problem, number and duration of calls of its controller.
     recorder
         The recorded data.
     measures
@@ -133,7 +133,7 @@ class Run(Results):
         return self._ended.tables[name]
 
     def check(self) -> CheckReport:
-        """Have the independent checker verify that the motion is safe; fills `collisions`."""
+        """Verify with the independent checker that the motion is safe; fills `collisions`."""
         until_us = round(self.end_s * 1e6)
         slow = [Slow(*one) for one in self.slow_robots]
         self._require_trace()
@@ -151,7 +151,7 @@ class Run(Results):
 
     @property
     def trace(self) -> dict[str, NDArray[Any]]:
-        """Every piece of motion; only if the trace was recorded."""
+        """All pieces of motion; only if the trace was recorded."""
         return self.traffic.trace() if self._sent is None else self._sent.trace
 
     @property

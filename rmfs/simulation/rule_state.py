@@ -1,4 +1,4 @@
-"""A rule's own state, kept and restored: what it remembers, not the warehouse it looks at."""
+"""Saving and restoring a rule's own state, without the state of the warehouse."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 _WORLD = ("rmfs.world.", "rmfs.layout.", "rmfs.scenario.", "rmfs.traffic.", "rmfs.simulation.")
 _ATOMS = (Parameters, View, Travel, Tracker, Call)
 _KNOWN: dict[type, bool] = {}
-"""Whether objects of a type are referred to: told once per type, there are hundreds of objects."""
+"""Whether objects of a type are stored by reference, cached by type."""
 
 
 class Kept(NamedTuple):
-    """What a controller remembered: pickled, what that refers to, and calls with their counts."""
+    """A saved state of a controller: pickled state, its references, and calls with their counts."""
 
     content: bytes
     shared: list[object]
@@ -32,15 +32,15 @@ class Kept(NamedTuple):
 
 
 class RuleState:
-    """Keeps copies of what controllers remember.
+    """Saves and restores the states of controllers.
 
-    Robots, orders, pods and everything else in the world are referred to, not copied. So are the
-    view, the parameters, and trackers, which follow events and do not change when a rule decides.
-    For a call, the rule's counts and its progress are kept.
+    Robots, orders, pods and everything else in the world are stored by reference, not copied. So
+    are the view, the parameters, and trackers, which follow events and do not change when a rule
+    decides. For a call, the rule's counts and its progress are saved.
     """
 
     def keep(self, controller: Controller[Any], answer: Call | None) -> Kept:
-        """Copy what a controller remembers, and how far it has come with an answer."""
+        """Save the state of a controller, and its progress with an answer."""
         shared: list[object] = []
         stream = io.BytesIO()
         _Keeper(stream, controller, shared).dump(vars(controller))
@@ -49,7 +49,7 @@ class RuleState:
         return Kept(stream.getvalue(), shared, counted)
 
     def restore(self, controller: Controller[Any], kept: Kept) -> None:
-        """Let a controller remember what it did when this was kept."""
+        """Restore the saved state of a controller."""
         remembered: dict[str, Any] = _Restorer(io.BytesIO(kept.content), kept.shared).load()
         vars(controller).clear()
         vars(controller).update(remembered)

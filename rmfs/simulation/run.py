@@ -86,7 +86,7 @@ def simulate(
     trace
         Whether to record every piece of motion and all events.
     events
-        Where to record events, to read them during the run; implies `trace`.
+        Log in which to record events, to be read during the run; implies `trace`.
     streams
         Records all arriving orders and bundles, for `rmfs.scenario.write_stream`.
     progress
@@ -104,7 +104,7 @@ def simulate(
     Raises
     ------
     InputError
-        If an argument is wrong; names it and the valid values.
+        If an argument is wrong; the message names it and the valid values.
     """
     simulation = Simulation(
         layout,
@@ -138,14 +138,14 @@ class Simulation(Kernel):
 streams, remark, allow_not_well_formed, traffic_maker
         As for `simulate`.
     outside
-        Decision problems that `step` hands out, such as `["poa", "pps"]`.
+        Decision problems decided outside through `step`, such as `["poa", "pps"]`.
     measured
         Whether to measure the run; without measuring it is slightly faster and has no result.
 
     Raises
     ------
     InputError
-        If an argument is wrong; names it and the valid values.
+        If an argument is wrong; the message names it and the valid values.
     """
 
     checks_layout: ClassVar[bool] = True

@@ -65,7 +65,7 @@ def refuse_other(path: Path, simulation: Kernel) -> None:
     Raises
     ------
     InputError
-        States what differs.
+        If the inputs differ; the message says where.
     """
     with path.open("rb") as file:
         header = _header(file.readline(), path)

@@ -67,9 +67,8 @@ class PickService:
     """The service of one pick station.
 
     A unit leaves its pod, and its request is fulfilled, when its pick starts. An order whose last
-    unit is picked leaves its slot when the station has finished that unit. A pod that has only
-    requests of queued orders waits for a slot if one is about to become free; otherwise it is sent
-    away.
+    unit is picked leaves its slot when the station has finished that unit. A pod with requests of
+    queued orders only waits for a slot if one is about to become free; otherwise it is sent away.
 
     Attributes
     ----------
@@ -269,7 +268,7 @@ class VisitService:
         raise NotImplementedError
 
     def done(self, task: VisitTask) -> None:
-        """Handle the end of this time; the robot then needs a task."""
+        """Handle the end of the stay; the robot then needs a task."""
 
     def go_on(self) -> None:
         """Start serving the pod at the head, if there is one."""

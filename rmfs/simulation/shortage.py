@@ -46,7 +46,7 @@ class ShortOrders(Observer):
         self._changed = changed
 
     def order_created(self, order: Order) -> None:
-        """Look at it later."""
+        """Schedule the check of a new order."""
         self._later(order)
 
     def _later(self, order: Order) -> None:

@@ -51,7 +51,7 @@ _LATE_BINDING_AFTER = frozenset(
 
 
 class Due:
-    """Which steps are due: one bit each.
+    """The steps that are due, one bit each.
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ class Due:
         self.bits |= 1 << ANSWERS
 
     def place_left(self) -> None:
-        """Record that a storage place was left: a robot may wait for an empty one."""
+        """Record that a storage place was left, for which a robot may be waiting."""
         if self._world.asking:
             self.bits |= 1 << TASKS
 

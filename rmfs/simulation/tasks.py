@@ -10,6 +10,6 @@ if TYPE_CHECKING:
 
 
 def end_task(world: World, events: Events, robot: int) -> None:
-    """End a robot's task: it needs a new one."""
+    """End a robot's task; the robot then needs a new one."""
     world.end_task(world.robots[robot])
     events.robot_free(robot)

@@ -26,15 +26,15 @@ class Triggers(Observer):
         self._place_left = due.place_left
 
     def order_created(self, order: Order) -> None:
-        """A new order may be assigned."""
+        """Signal that a new order can be assigned."""
         self._signal(Trigger.NEW_ORDER, order)
 
     def order_assigned(self, order: Order) -> None:
-        """An assigned order may mean work for robots."""
+        """Signal that an order was assigned, which may need pods."""
         self._signal(Trigger.ORDER_ASSIGNED, order)
 
     def order_queued(self, order: Order) -> None:
-        """Pods for a queued order may be fetched ahead of time."""
+        """Signal that an order was queued, for which pods may be fetched in advance."""
         self._signal(Trigger.ORDER_QUEUED, order)
 
     def unit_picked(
@@ -47,53 +47,53 @@ class Triggers(Observer):
         station: int,
         late_bound: bool,
     ) -> None:
-        """There is room on a pod."""
+        """Signal that a pod has more room."""
         self._signal(Trigger.UNIT_PICKED, (pod, sku))
 
     def slot_freed(self, order: Order) -> None:
-        """A station can take another order."""
+        """Signal that a station can take another order."""
         self._signal(Trigger.ORDER_COMPLETED, order)
 
     def bundle_created(self, bundle: Bundle) -> None:
-        """A bundle wants a pod and a station."""
+        """Signal that a bundle needs a pod and a station."""
         self._signal(Trigger.NEW_BUNDLE, bundle)
 
     def bundle_promised(self, bundle: Bundle) -> None:
-        """A pod was chosen."""
+        """Signal that the pod of a bundle was chosen."""
         self._signal(Trigger.BUNDLE_PROMISED, bundle)
 
     def bundles_released(self, pod: int) -> None:
-        """The choice of a pod may be acted on."""
+        """Signal that the choice of a bundle's pod was released."""
         self._signal(Trigger.BUNDLE_RELEASED, pod)
 
     def bundle_sent(self, bundle: Bundle) -> None:
-        """A station was chosen."""
+        """Signal that the station of a bundle was chosen."""
         self._signal(Trigger.BUNDLE_SENT, bundle)
 
     def bundle_assigned(self, bundle: Bundle) -> None:
-        """An assigned bundle may mean work for robots."""
+        """Signal that a bundle was assigned, which may need a pod."""
         self._signal(Trigger.BUNDLE_ASSIGNED, bundle)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
-        """There are more units in stock."""
+        """Signal that there are more units in stock."""
         self._signal(Trigger.BUNDLE_STORED, bundle)
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
-        """A station takes new work, or no longer."""
+        """Signal that a station was switched on or off."""
         self._signal(Trigger.STATION_SWITCHED, station)
 
     def robot_free(self, robot: int) -> None:
-        """A robot needs a task."""
+        """Signal that a robot needs a task."""
         self._signal(Trigger.ROBOT_FREE, robot)
 
     def place_left(self, robot: int) -> None:
-        """A robot may wait for an empty place."""
+        """Signal that a place was left, for which a robot may be waiting."""
         self._place_left()
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
-        """A pod is on its way."""
+        """Signal that a pod is on its way."""
         self._signal(Trigger.POD_LIFTED, pod)
 
     def visit_started(self, time_s: float, station: int, pod: int, robot: int) -> None:
-        """A pod is at a station."""
+        """Signal that a pod is at a station."""
         self._signal(Trigger.POD_AT_STATION, station)

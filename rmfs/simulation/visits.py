@@ -79,7 +79,7 @@ class Visits:
                 self.controllers.append(controller(kind, own, view, seed))
 
     def give(self) -> None:
-        """Send robots that need a task on the visits that are due."""
+        """Assign visits that are due to robots that need a task."""
         for robot in list(self._world.asking.values()):
             for controller in self.controllers:
                 visit = controller.visit_for(robot)

@@ -1,8 +1,7 @@
-"""The audit of a run: whether all that its files say is possible and fits together.
+"""The audit of a run: whether the contents of its files are possible and consistent.
 
-It reads the folder alone, and knows nothing of how a run is made: motion is proven safe by the
-trace checker, and the events are kept account of like the books of a firm. `rmfs check RUN` shows
-what it finds.
+It reads only the run folder and is independent of the simulation: motion is verified by the trace
+checker, and the events are audited like the books of a firm. `rmfs check RUN` prints the findings.
 """
 
 from __future__ import annotations
@@ -24,8 +23,8 @@ def audit(run: RunFolder) -> Audit:
     Raises
     ------
     InputError
-        If the run was made without a trace, a file is damaged, or names what is not there: what
-        cannot be looked at at all.
+        If the run cannot be audited: it was made without a trace, or a file is damaged or refers to
+        things that do not exist.
     """
     layout, motion, events = run.replayed()
     rows, skus, end_us = Rows.of(events), run.table("skus"), run.told.end_us

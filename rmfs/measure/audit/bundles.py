@@ -1,4 +1,4 @@
-"""Bundles from their arrival into their pods, and units that pods are brought for."""
+"""Audit of bundles, from arrival to storage, and of the units for which pods are brought."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ HAIR = 1e-6
 
 
 def check(layout: Layout, rows: Rows, skus: pd.DataFrame) -> Chapter:
-    """Follow every bundle: it comes, is given pod and station, and goes into that pod there."""
+    """Check that every bundle arrives, is assigned, and is stored as assigned."""
     steps = rows.of_kind(*STEPS)
     order = np.lexsort((steps.number, steps.order))
     mine = steps.taken(order)
@@ -57,7 +57,7 @@ def check(layout: Layout, rows: Rows, skus: pd.DataFrame) -> Chapter:
 
 
 def check_bound(rows: Rows) -> Chapter:
-    """A unit is picked from a pod that was brought for it."""
+    """Check that every unit is picked from a pod that was brought for it."""
     kinds = (Happening.UNITS_BOUND, Happening.UNITS_UNBOUND, Happening.UNIT_PICKED)
     mine = rows.of_kind(*kinds)
     units = np.where(mine.kind == Happening.UNITS_BOUND, mine.units, -mine.units).astype(np.float64)

@@ -1,4 +1,4 @@
-"""Orders from arrival to completion: whether each receives exactly what it asked for."""
+"""Audit of orders: whether each receives exactly the units ordered."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class _Orders:
 
 
 def check(rows: Rows) -> Chapter:
-    """Follow every order."""
+    """Check every order from arrival to completion."""
     orders = _Orders(rows.of_kind(*KINDS))
     orders.follow()
     open_ = [

@@ -1,4 +1,4 @@
-"""What an audit found, chapter by chapter."""
+"""The findings of an audit, by chapter."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ if TYPE_CHECKING:
     from rmfs.measure.checker import CheckReport
 
 SHOWN = 5
-"""Faults of a chapter that a summary shows."""
+"""Maximum number of faults of a chapter shown in a summary."""
 
 
 @dataclass(frozen=True, slots=True)
 class Chapter:
-    """One account of a run, and what is wrong with it.
+    """One part of an audit, with its faults.
 
     Attributes
     ----------
     name
-        Of what: `stock`, `orders`, ...
+        Name of the part: `stock`, `orders`, ...
     told
-        What was looked at, in words.
+        What was examined, in words.
     faults
-        One line for each thing that is wrong, by time; nothing if all is right.
+        One line per fault, by time; empty if there are none.
     """
 
     name: str
@@ -33,14 +33,14 @@ class Chapter:
 
 @dataclass(frozen=True, slots=True)
 class Audit:
-    """The verdict over a run, from its files alone.
+    """The result of an audit.
 
     Attributes
     ----------
     motion
-        What the trace checker says.
+        Result of the trace checker.
     chapters
-        The other accounts.
+        The other parts.
     """
 
     motion: CheckReport
@@ -48,11 +48,11 @@ class Audit:
 
     @property
     def ok(self) -> bool:
-        """Whether nothing is wrong."""
+        """Whether there are no faults."""
         return self.motion.ok and not any(chapter.faults for chapter in self.chapters)
 
     def summary(self) -> str:
-        """Return the verdict: a line for each chapter, and the first faults of each."""
+        """Return the result as text: one line per chapter, and the first faults of each."""
         lines = [f"motion: {self.motion.summary(SHOWN)}"]
         for chapter in self.chapters:
             if not chapter.faults:

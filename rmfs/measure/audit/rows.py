@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """Events in the order in which they happened, each array of shape (E,).
+    """Events in chronological order; each array has shape (E,).
 
     Attributes
     ----------
     number
-        Their row numbers in the file.
+        Row numbers of the events in the file.
     kind
-        `Happening`.
+        Kind of each event (`Happening`).
     """
 
     number: Integers
@@ -40,7 +40,7 @@ class Rows:
 
     @classmethod
     def of(cls, events: pd.DataFrame) -> Rows:
-        """Take the events of a run."""
+        """Create the rows from the events of a run."""
         numbers = {name: number for number, name in enumerate(KINDS)}
         kind = np.asarray(events["kind"].map(numbers), np.int64)
         names = ("time_us", "robot", "pod", "station", "order", "sku", "units")
@@ -52,20 +52,20 @@ class Rows:
         return len(self.number)
 
     def taken(self, which: NDArray[np.bool_] | Integers) -> Rows:
-        """Return the chosen ones."""
+        """Return the selected events."""
         return Rows(*(getattr(self, name)[which] for name in self.__slots__))
 
     def of_kind(self, *kinds: Happening) -> Rows:
-        """Return those of some kinds."""
+        """Return the events of some kinds."""
         return self.taken(np.isin(self.kind, kinds))
 
     def tell(self, row: int, what: str) -> str:
-        """Return a line on one of them."""
+        """Return a line that describes an event."""
         kind = KINDS[int(self.kind[row])]
         return f"{self.time_us[row] / 1e6:.6f} s, row {self.number[row]} ({kind}): {what}"
 
     def lines(self, wrong: NDArray[np.bool_], what: str) -> list[str]:
-        """Return a line on each that is wrong, by the row of the file."""
+        """Return a line for each faulty event, by row number."""
         rows = np.flatnonzero(wrong)
         return [
             self.tell(int(row), what) for row in rows[np.argsort(self.number[rows], kind="stable")]
@@ -75,12 +75,12 @@ class Rows:
 def running(
     groups: tuple[Integers, ...], change: NDArray[np.float64]
 ) -> tuple[Integers, NDArray[np.float64]]:
-    """Sum up changes within groups, in the order in which they come.
+    """Return cumulative sums of changes within groups.
 
     Returns
     -------
     tuple
-        The order in which groups stand together, and in that order the sum after each change.
+        A permutation that sorts by group, and in this order the sum after each change.
     """
     order = np.lexsort(groups[::-1])
     total = np.cumsum(change[order])

@@ -1,4 +1,4 @@
-"""Slots of pick stations: who has one, that there are as many, and that nothing goes past them."""
+"""Audit of slots of pick stations: how many are in use, and that no order bypasses them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ KINDS = (
 
 
 def check(layout: Layout, rows: Rows) -> Chapter:
-    """Follow every slot of every pick station."""
+    """Check every slot of every pick station."""
     rows = rows.of_kind(*KINDS)
     slots = {number: one.order_slots for number, one in enumerate(layout.pick_stations)}
     at: dict[int, set[int]] = {number: set() for number in slots}

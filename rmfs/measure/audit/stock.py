@@ -1,4 +1,4 @@
-"""What is on the pods: no unit is picked that is not there, and no pod holds more than it can."""
+"""Audit of stock: only units on a pod are picked from it, and no pod exceeds its capacity."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
 
 HAIR = 1e-6
-"""Sums of space in floating point differ by less."""
+"""Tolerance for rounding errors in sums of space."""
 
 
 def check(layout: Layout, rows: Rows, skus: pd.DataFrame, pods: pd.DataFrame) -> Chapter:
-    """Follow every unit on every pod.
+    """Check every unit on every pod.
 
     Parameters
     ----------
     skus, pods
-        The tables of the run, which say what is there at its end.
+        The tables of the run, which contain the final stock.
     """
     moved = rows.of_kind(Happening.STOCK, Happening.BUNDLE_STORED, Happening.UNIT_PICKED)
     named = (moved.pod >= 0) & (moved.sku >= 0) & (moved.units > 0)

@@ -1,4 +1,4 @@
-"""The figures of a run, counted again from its events."""
+"""Audit of totals: figures of a run, recounted from its events."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ COUNTED = {
 def check(
     rows: Rows, footprint: pd.Series, orders: pd.DataFrame, stations: pd.DataFrame
 ) -> Chapter:
-    """Compare what the tables say with what happened in the measured time."""
+    """Compare the tables with the events of the measured time."""
     begin_us = round(float(footprint["warmup_s"]) * 1e6)
     measured = rows.taken(rows.time_us >= begin_us)
     faults = []

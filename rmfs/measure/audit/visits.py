@@ -1,4 +1,4 @@
-"""Pods at stations: whether the right pod stands there when units are picked or stored."""
+"""Audit of visits: whether the right pod is at the station when units are picked or stored."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ WHERE = "no visit of this pod and robot at this station"
 
 
 def check(layout: Layout, rows: Rows, motion: pd.DataFrame, end_us: int) -> Chapter:
-    """Follow every visit of every station.
+    """Check every visit to every station.
 
     Parameters
     ----------
     motion
         The trace, sorted by robot and time.
     end_us
-        End of the run, at which visits may go on.
+        End of the run, at which visits may still be in progress.
     """
     kinds = (Happening.VISIT_STARTED, Happening.VISIT_ENDED)
     visits = rows.of_kind(*kinds)

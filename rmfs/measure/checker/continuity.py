@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     Mask = NDArray[np.bool_]
 
 ROUNDING_S = 2e-6
-"""Durations are whole microseconds: up to one for the start and one for the end."""
+"""Tolerance of durations, in s, as start and end are rounded to microseconds."""
 
 SAME_SPEED_M_S = 1e-9
-"""A share of a top speed is a product, which is rounded."""
+"""Tolerance of speeds, in m/s, as a share of a top speed is a rounded product."""
 
 ANGLE_RAD = 1e-5
-"""Headings closer than this are equal: over 100 m a run strays less than 1 mm aside."""
+"""Tolerance of headings, in rad; over 100 m it causes a deviation of less than 1 mm."""
 
 
 def check(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) -> list[Finding]:
@@ -158,7 +158,7 @@ def _durations(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) 
 
 
 def speeds(trace: Trace, limits: Kinematics) -> list[Finding]:
-    """Each run tells the top speed that holds for it."""
+    """Check the top speed stated for each run."""
     if trace.top_speed_m_s is None:
         return []
     off = np.where(trace.kind == Motion.RUN, trace.top_speed_m_s - limits.top_speed_m_s, 0.0)

@@ -23,11 +23,12 @@ if TYPE_CHECKING:
     Index = NDArray[np.int64]
 
 ROUNDS = 40
-"""Halvings after which an interval counts as touching the limit without violating it: it is then
-1e-12 of the motion, over which the squared distance changes by less than rounding."""
+"""Number of halvings after which an interval counts as touching the limit without violating it;
+it is then 1e-12 of the motion, over which the squared distance changes by less than rounding
+errors."""
 
 EXACT = 1e-12
-"""Squared distances that differ by less than this, in m², count as equal."""
+"""Squared distances that differ by less than this count as equal, in m²."""
 
 _TO_BERNSTEIN = np.array(
     [

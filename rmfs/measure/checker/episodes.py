@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     Index = NDArray[np.int64]
 
 TOGETHER_S = 1e-5
-"""Violations of the same bodies that follow each other this closely are one event."""
+"""Maximum gap in s between violations of the same bodies that count as one event."""
 
 
 def worst(who: tuple[Index, Index], begin_s: Floats, end_s: Floats, amount: Floats) -> list[int]:
@@ -22,9 +22,9 @@ def worst(who: tuple[Index, Index], begin_s: Floats, end_s: Floats, amount: Floa
     Parameters
     ----------
     who
-        Identifies the bodies: two numbers per violation.
+        The bodies: two numbers per violation.
     begin_s, end_s
-        The time each violation lies in, shape (K,).
+        Time interval of each violation, shape (K,).
     amount
         Severity of each violation, shape (K,).
     """

@@ -1,7 +1,7 @@
-"""Positions over time: a trace cut into pieces of constant acceleration.
+"""Positions over time: a trace divided into pieces of constant acceleration.
 
-Derived from physics alone: a robot accelerates from rest with a to the speed v, keeps it, and
-brakes with d to rest. Over a distance L the greatest speed reached is
+This follows from physics alone: a robot accelerates from rest at the rate a to the speed v, keeps
+it, and brakes at the rate d to rest. Over a distance L the highest speed is
 
     v = min(top speed, sqrt(2 L a d / (a + d)))
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 NEGLIGIBLE_S = 2e-6
-"""Rounding of run ends to whole microseconds: shorter rests at a run's end get no piece."""
+"""Shorter rests at the end of a run get no piece, as ends are rounded to microseconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,9 +35,9 @@ class Profile:
     Attributes
     ----------
     speed_m_s
-        Greatest speed reached.
+        Highest speed reached.
     speeding_s, cruising_s, braking_s
-        Lengths of the three phases.
+        Durations of the three phases.
     """
 
     speed_m_s: Floats
@@ -47,12 +47,12 @@ class Profile:
 
     @property
     def duration_s(self) -> Floats:
-        """Length of the whole run in time."""
+        """Duration of the whole run."""
         return self.speeding_s + self.cruising_s + self.braking_s
 
 
 def profile(length_m: Floats, limits: Kinematics) -> Profile:
-    """Return the fastest run from rest to rest over each length, by the module's formulas."""
+    """Return the fastest run from rest to rest over each length."""
     a, d = limits.acceleration_m_s2, limits.deceleration_m_s2
     speed = np.minimum(limits.top_speed_m_s, np.sqrt(2 * length_m * a * d / (a + d)))
     cruise_m = np.maximum(length_m - speed**2 / (2 * a) - speed**2 / (2 * d), 0.0)
@@ -75,9 +75,9 @@ class Pieces:
     Attributes
     ----------
     row
-        The row of the trace the piece comes from, shape (K,).
+        Row of the trace to which the piece belongs, shape (K,).
     t0_s, t1_s
-        When the piece is valid.
+        Start and end of the piece.
     x_m, y_m, vx, vy, hx, hy
         Position and velocity at `t0_s`, and half the acceleration.
     """
@@ -97,11 +97,11 @@ class Pieces:
         return len(self.row)
 
     def take(self, index: NDArray[np.int64] | NDArray[np.bool_]) -> Pieces:
-        """Return the chosen pieces."""
+        """Return the selected pieces."""
         return Pieces(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
 
     def at(self, time_s: Floats) -> tuple[Floats, Floats]:
-        """Return the position of every piece at one time each, in m."""
+        """Return the position of each piece at its own time, in m."""
         tau = time_s - self.t0_s
         return (
             self.x_m + tau * (self.vx + tau * self.hx),
@@ -110,14 +110,14 @@ class Pieces:
 
     @classmethod
     def joined(cls, parts: list[Pieces]) -> Pieces:
-        """Put several sets of pieces into one."""
+        """Combine several sets of pieces."""
         return cls(
             **{f.name: np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(cls)}
         )
 
 
 def cut(layout: Layout, trace: Trace, limits: Kinematics) -> Pieces:
-    """Cut every row that is on a tier into pieces, sorted by row; elevator rides leave none."""
+    """Divide rows on tiers into pieces, sorted by row; elevator rides have no pieces."""
     standing = ~trace.is_kind(Motion.RUN, Motion.LIFT_RIDE)
     parts = [_resting(layout, trace, np.flatnonzero(standing))]
     parts += _running(layout, trace, limits, np.flatnonzero(trace.kind == Motion.RUN))

@@ -28,7 +28,7 @@ WAYS_AT_ONCE = 256
 
 @dataclass(frozen=True, slots=True)
 class Stays:
-    """Which pod stood where and when, sorted by place; arrays of shape (S,)."""
+    """Stays of pods at places, sorted by place; arrays of shape (S,)."""
 
     pod: Index
     place: Index
@@ -63,7 +63,7 @@ def _carrying(trace: Trace) -> list[Finding]:
 
 
 def ledger(layout: Layout, trace: Trace) -> tuple[Stays, list[Finding]]:
-    """Follow every pod from place to robot to place.
+    """Track every pod from place to robot to place.
 
     A pod is stored until its lifting starts, and again from the end of its setting down.
     """

@@ -27,7 +27,7 @@ TOLERANCE_M = 1e-6
 
 
 def radii(layout: Layout, trace: Trace, limits: Kinematics) -> Floats:
-    """Return the radius of the disc of each row, m: the robot's, or the pod's if it is larger."""
+    """Return the radius of each row's disc, in m: that of the robot, or of its pod if larger."""
     loaded = np.maximum(limits.radius_m, layout.pod_radius_m)
     return np.where(trace.pod >= 0, loaded, limits.radius_m)
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Index = NDArray[np.int64]
 
 SLAB_S = 2.0
-"""Length of a time slab: about the length of a motion, so that few motions span many."""
+"""Length of a time slab in s, about that of a motion, so that few motions span several slabs."""
 
 BOXES_AT_ONCE = 50_000
 """Approximate number of boxes made and swept at a time; limits memory for runs of any length."""
@@ -55,7 +55,7 @@ class Boxes:
         return len(self.piece)
 
     def take(self, index: Index) -> Boxes:
-        """Return the chosen boxes."""
+        """Return the selected boxes."""
         return Boxes(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
 
 
@@ -96,9 +96,9 @@ def _windows(pieces: Pieces, robots: int) -> Iterator[tuple[int, int]]:
 
 
 def boxes(pieces: Pieces, radius_m: Floats, tier: Index, begin: int, end: int) -> Boxes:
-    """Cut each piece at the slab borders and bound what is left, grown by its radius.
+    """Divide each piece at the slab borders, and return boxes enlarged by its radius.
 
-    A piece follows a line and never turns back, so its end points bound it.
+    A piece follows a straight line in one direction, so its end points bound it.
 
     Parameters
     ----------

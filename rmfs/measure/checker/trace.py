@@ -58,7 +58,8 @@ class Trace:
     robot, t0_us, t1_us, kind, from_wp, to_wp, heading0_rad, heading1_rad, pod
         The columns, each of shape (K,).
     top_speed_m_s
-        Of runs; None if the trace says nothing, so that all drive as fast as they can.
+        Top speed of each run; None if the trace does not contain it, so that all robots drive at
+        their own top speed.
     """
 
     robot: NDArray[np.int64]
@@ -89,9 +90,9 @@ class Trace:
 
     @property
     def end_us(self) -> int:
-        """Until when every robot must be told of: when the last motion of all begins.
+        """Time up to which every robot must be covered: the start of the last motion.
 
-        A turn and what follows it are one motion.
+        A turn and the run after it count as one motion.
         """
         begins = self.t0_us.copy()
         follows = self.follows & (self.kind[:-1] == Motion.TURN)
@@ -180,7 +181,7 @@ class Kinematics:
     Attributes
     ----------
     radius_m
-        Radius of the robot itself.
+        Radius of the robot without a pod.
     """
 
     radius_m: NDArray[np.float64]
@@ -192,7 +193,7 @@ class Kinematics:
 
     @classmethod
     def of(cls, layout: Layout, robots: NDArray[np.int64]) -> Kinematics:
-        """Look up the robot kind of each row."""
+        """Return the limits of the robot of each row."""
         kind = np.asarray(layout.robot_kind)[robots]
         return cls(
             **{
@@ -202,7 +203,7 @@ class Kinematics:
         )
 
     def told(self, trace: Trace) -> Kinematics:
-        """Return the limits with the top speeds that the trace tells, as far as these are less."""
+        """Return the limits, with the top speeds stated in the trace if these are lower."""
         if trace.top_speed_m_s is None:
             return self
         top = np.where(trace.kind == Motion.RUN, trace.top_speed_m_s, self.top_speed_m_s)

@@ -110,7 +110,7 @@ class Optimisers(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Look at the questions."""
+        """Evaluate the questions."""
         decisions = run.tables["decisions"]
         asked = decisions[decisions["source"] == "optimiser"]
         return {

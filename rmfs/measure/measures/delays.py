@@ -16,7 +16,7 @@ _LESS = ("drive_hindered", "queue", "wait_assignment", "wait_pod", "wait_robot",
 
 
 class Delays(Measure):
-    """Time from arrival to completion of orders, broken down completely."""
+    """Complete breakdown of the time from arrival to completion of orders."""
 
     columns = tuple(
         Column(

@@ -44,7 +44,7 @@ class Disturbances(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Take what was written down when the run ended."""
+        """Return the counts stored at the end of the run."""
         counters = run.recorder.counters
         return {
             "disturbances": int(counters["disturbances"]),

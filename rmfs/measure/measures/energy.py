@@ -43,7 +43,7 @@ class Energy(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Add up what traffic counted."""
+        """Add up the energy counted by traffic."""
         counted = run.recorder.energy.final
         if not counted:
             return dict.fromkeys((column.name for column in self.columns), nan)
@@ -100,7 +100,7 @@ class Batteries(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Add up what traffic counted, and tasks."""
+        """Add up the energy counted by traffic, and the charging tasks."""
         energy = run.recorder.energy
         batteries, counted, samples = energy.batteries, energy.final, energy.samples
         if batteries is None:

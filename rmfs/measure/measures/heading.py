@@ -34,7 +34,7 @@ class Heading(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Say what was simulated."""
+        """Return the description of the run."""
         layout = run.layout
         return {
             **dict(zip(("layout", "scenario", "controllers"), run.names, strict=True)),

@@ -56,7 +56,7 @@ class OrderTimes(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Look at the completed orders."""
+        """Evaluate the completed orders."""
         done = completed(run.tables["orders"])
         lateness = done["lateness_s"]
         late = lateness[lateness > 0]
@@ -102,7 +102,7 @@ class Backlog(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Follow the number of orders that wait, and that are open, over time."""
+        """Evaluate the numbers of waiting and of open orders over time."""
         orders, counters = run.logs.orders, run.recorder.counters
         measured = (run.start_s, run.end_s)
         waiting = Steps.between(

@@ -91,7 +91,7 @@ class Packing(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Look at parcels and totes."""
+        """Evaluate parcels and totes."""
         given = run.recorder.packing.given
         if given is None:
             return {

@@ -67,7 +67,7 @@ class Pickers(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Look at the units and at the table of pickers."""
+        """Evaluate the units and the table of pickers."""
         if run.recorder.pickers.staff is None:
             return {
                 column.name: None if column.dtype == COUNT_OR_EMPTY else nan

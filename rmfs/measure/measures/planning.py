@@ -35,7 +35,7 @@ class Planning(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Take what traffic counted."""
+        """Return the counters of traffic."""
         counters = run.recorder.counters
         names = ("plans", "plan_failures", "replans", "expansions")
         return {
@@ -45,7 +45,7 @@ class Planning(Measure):
 
 
 class Safety(Measure):
-    """What the independent checker found."""
+    """Findings of the independent checker."""
 
     columns = (
         Column(

@@ -18,7 +18,7 @@ def ratio(amount: float, by: float) -> float:
 
 
 def spread_columns(name: str, meaning: str) -> tuple[Column, ...]:
-    """Declare mean, median and quartiles of some times, of which less is better."""
+    """Declare columns for mean, median and quartiles of some times, of which less is better."""
     told = {
         "mean": "Mean of",
         "median": "Median of",

@@ -72,7 +72,7 @@ class Service(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Look at orders, and at parcels if there are any."""
+        """Evaluate orders, and parcels if there are any."""
         orders, names = served(run.logs), class_names(run.logs)
         done, cancelled, overdue = orders["done"], orders["cancelled"], orders["overdue"]
         counted, in_time = done | overdue | cancelled, orders["on_time"]

@@ -44,7 +44,7 @@ class Speed(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Look at clock and memory."""
+        """Read clock and memory."""
         return {
             "wall_s": run.wall_s,
             "sim_per_wall": ratio(run.end_s, run.wall_s),

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Throughput(Measure):
-    """Orders, lines, units and bundles handled, in all and per hour."""
+    """Orders, lines, units and bundles handled, in total and per hour."""
 
     columns = (
         Column(
@@ -48,7 +48,7 @@ class Throughput(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Count what was handled, which happens at stations."""
+        """Add up the counts of the stations."""
         handled = ("orders_completed", "lines_picked", "units_picked", "bundles_stored")
         counts = {name: run.handled(name) for name in handled}
         hours = run.logs.duration_s / 3600.0
@@ -59,7 +59,7 @@ class Throughput(Measure):
 
 
 class Potential(Measure):
-    """Upper limits of what the stations could have picked."""
+    """Upper bounds on the units that the stations could have picked."""
 
     columns = (
         Column(
@@ -83,7 +83,7 @@ class Potential(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Compare with the upper bound, and with stations that never wait."""
+        """Compare the picked units with the upper bound, and with stations that never wait."""
         duration_s = run.logs.duration_s
         layout = at_best(run.layout, run.world.staff)
         if layout is None:

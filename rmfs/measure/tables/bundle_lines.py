@@ -28,7 +28,7 @@ BUNDLE_LINES = (
     Column("file_order", TEXT, "", "Order in the file; may be empty"),
     Column("file_sku", TEXT, "", "The SKU's name, or its number where it has none"),
 )
-"""Further columns of the file follow, each as `file_NAME`."""
+"""Columns of the table; further columns of the file follow, each as `file_NAME`."""
 
 KEPT = ("sku", "units", "created_s", "stored_s", "pod", "station")
 """Columns copied from the table of bundles."""

@@ -40,7 +40,7 @@ EDGES = (
 
 
 def connections(logs: Logs) -> pd.DataFrame:
-    """One row per pair of waypoints between which a trip ended in the measured time."""
+    """Make one row per pair of waypoints with a trip that ended in the measured time."""
     told = logs.recorder.trips
     number = logs.layout.waypoints
     pair = told["from_wp"].astype(np.int64) * number + told["to_wp"]
@@ -74,7 +74,7 @@ def connections(logs: Logs) -> pd.DataFrame:
 
 
 def edges(logs: Logs) -> pd.DataFrame:
-    """One row per edge or elevator ride that was used."""
+    """Make one row per edge or elevator ride that was used."""
     told, tier = logs.recorder.edges, logs.layout.tier
     return tidy(
         "edges",

@@ -28,7 +28,7 @@ ORDER_LINES = (
     Column("file_order", TEXT, "", "The order's name in the file"),
     Column("file_sku", TEXT, "", "The SKU's name, or its number where it has none"),
 )
-"""Further columns of the file follow, each as `file_NAME`."""
+"""Columns of the table; further columns of the file follow, each as `file_NAME`."""
 
 
 def order_lines(logs: Logs) -> pd.DataFrame:

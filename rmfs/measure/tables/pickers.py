@@ -1,4 +1,4 @@
-"""The table of pickers; empty where the scenario has none."""
+"""The table of pickers; empty if the scenario has none."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ SERIES = (
 
 
 def series(logs: Logs) -> pd.DataFrame:
-    """Return counts per interval, and levels at the end of each."""
+    """Make the table: counts per interval, and levels at the end of each."""
     ends = np.array([time for time, _ in logs.recorder.samples])
     edges = np.concatenate([[logs.start_s], ends])
     length = np.diff(edges)

@@ -34,7 +34,7 @@ def tidy(
     table
         Name of the table, for errors.
     columns
-        Arrays, lists or series of one length; a single value stands for a column of it.
+        Arrays, lists or series of the same length; a single value is repeated in all rows.
 
     Raises
     ------

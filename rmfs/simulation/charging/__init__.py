@@ -1,1 +1,1 @@
-"""Batteries in a run: what happens at stations for energy, and what keeps robots from stranding."""
+"""Batteries in a run: energy stations, and the protection of robots from stranding."""

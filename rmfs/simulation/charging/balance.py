@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Balance(NamedTuple):
-    """Power in the long run, W.
+    """Long-run power of a fleet and its energy stations, in W.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Balance(NamedTuple):
 
 
 def waypoint_power_w(layout: Layout, energy: Energy) -> dict[int, float]:
-    """Return the charging power of each waypoint that has one, W."""
+    """Return the charging power of each waypoint that has one, in W."""
     power: dict[int, float] = {}
     queues: list[tuple[int, ...]] = []
     given = energy.inductive
@@ -62,7 +62,7 @@ def balance(layout: Layout, energy: Energy) -> Balance:
 
 
 def working_w(layout: Layout, energy: Energy) -> float:
-    """Estimate the power of a fleet that always drives at top speed, half the time with a full pod.
+    """Estimate the power in W of a fleet that drives at top speed, half the time with a full pod.
 
     Starts and turns take more, waiting takes less; at the shipped sites the two roughly cancel. It
     is an estimate, not a bound.
@@ -75,12 +75,12 @@ def working_w(layout: Layout, energy: Energy) -> float:
 
 
 def refuse(layout: Layout, energy: Energy) -> None:
-    """Refuse batteries that cannot be charged, or not enough.
+    """Refuse batteries that cannot be charged, or not sufficiently.
 
     Raises
     ------
     InputError
-        States the deficit.
+        If so; the message states the deficit.
     """
     found = balance(layout, energy)
     if not found.given_w:

@@ -1,4 +1,4 @@
-"""The plug-in places of a run, which robots leave on command, and which may fail."""
+"""The plug-in places of a run, which robots can be told to leave, and which may fail."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class Chargers:
         self.stations = list(self._services)
 
     def unplug(self, decision: Unplug) -> None:
-        """Let a robot leave.
+        """Send a robot away from its plug-in place.
 
         Raises
         ------
         ValueError
-            If it stands at no plug-in place, or does not charge.
+            If it is not at a plug-in place, or is not charging.
         """
         service = self._services.get(decision.robot.station)
         if service is None or not service.is_charging:
@@ -48,7 +48,7 @@ class Chargers:
         service.unplug()
 
     def set_working(self, station: int, working: bool) -> None:
-        """Let a place fail, or work again."""
+        """Set whether a place works or has failed."""
         plan = self._layout.stations[station]
         assert isinstance(plan.kind, RecoveryKind)
         power_w = plan.kind.head_w if working else 0.0

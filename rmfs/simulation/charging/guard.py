@@ -1,7 +1,7 @@
 """Prevents stranding: a robot that could not complete another task is sent to charge in any case.
 
-What can still go wrong (a robot that was held up for long, a place out of service) is counted, and
-the robot is rescued after a given time.
+Strandings can still occur, for example after a long delay or if a place is out of service. They are
+counted, and the robot is rescued after a given time.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class EnergyGuard:
         self._safe_until_s = [0.0] * len(view.robots)
 
     def begin(self) -> None:
-        """Enter the first look."""
+        """Schedule the first check."""
         self._agenda.after(LOOK_US, self._look)
 
     def secure(self, consult: Consult) -> None:

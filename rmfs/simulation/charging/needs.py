@@ -2,9 +2,10 @@
 
 The bound holds for every path in the layout. From rest to rest, the mean power of a robot of *m* kg
 is at most *m p* + standby: a run at top speed *v* draws at most *c g v* against rolling resistance,
-and at most half *(1 + k) v²* of kinetic energy per kg in the time *v / a + v / b* that accelerating
-and braking take; a turn at the angular speed *w* draws *t g w*, and half *(r w)²* in the time of
-the turn. Times are the unhindered ones of traffic. The reserve covers waiting and other robots.
+plus at most half *(1 + k) v²* of kinetic energy per kg within the time *v / a + v / b* of
+accelerating and braking; a turn at the angular speed *w* draws *t g w*, plus half *(r w)²* within
+the time of the turn. Times are the unhindered times of traffic. The reserve covers waiting and the
+influence of other robots.
 """
 
 from __future__ import annotations
@@ -22,11 +23,11 @@ if TYPE_CHECKING:
 
 GRAVITY = 9.80665
 BEND_RAD = np.pi / 2
-"""Smallest turn; in layouts of this field, turns are at right angles or sharper."""
+"""Smallest turn in rad, a right angle; turns in layouts of this field are at least that."""
 
 
 def most_w_per_kg(given: Energy, kind: RobotKind) -> float:
-    """Return the maximum mean power per kg of motion from rest to rest, W/kg."""
+    """Return the maximum mean power per kg of motion from rest to rest, in W/kg."""
     v, a, b = kind.top_speed_m_s, kind.acceleration_m_s2, kind.deceleration_m_s2
     roll = given.rolling_resistance * GRAVITY * v
     kinetic = (1 + given.inertia_share) / 2 * v / (1 / a + 1 / b)
@@ -37,7 +38,7 @@ def most_w_per_kg(given: Energy, kind: RobotKind) -> float:
 
 
 class Needs:
-    """Upper bounds of the energy that a robot needs, J.
+    """Upper bounds of the energy that a robot needs, in J.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What happens at a plug-in place: a robot stays until its battery has a level."""
+"""Service at a plug-in place: a robot stays until its battery has reached its target level."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class ChargeService:
-    """One plug-in place. Traffic charges whoever stands there; this says when it is enough.
+    """The service of one plug-in place; traffic charges the robot, this ends it in time.
 
     Attributes
     ----------
@@ -45,11 +45,11 @@ class ChargeService:
 
     @property
     def is_charging(self) -> bool:
-        """Whether a robot is here."""
+        """Whether a robot is charging here."""
         return self._task is not None
 
     def go_on(self) -> None:
-        """Begin with the robot at the head, if there is one."""
+        """Start charging the robot at the head, if there is one."""
         robot = self.station.robot
         task: Any = self._world.robots[robot].task if robot >= 0 else None
         if self._task is None and isinstance(task, ChargeTask):

@@ -1,4 +1,4 @@
-"""Batteries of a run, as the scenario and the layout say."""
+"""Creation of a run's batteries from scenario and layout."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def count_energy(
     Raises
     ------
     InputError
-        If there are batteries that cannot be charged, or not enough.
+        If there are batteries that cannot be charged, or not sufficiently.
     """
     if given is None:
         return []

@@ -22,7 +22,7 @@ class SwapService:
     Attributes
     ----------
     stock
-        Per battery, its level (share) when it came, and when that was (s).
+        For each battery, its level (share) at its arrival, and the time of arrival (s).
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class SwapService:
         self._task: ChargeTask | None = None
 
     def go_on(self) -> None:
-        """Begin with the robot at the head, as soon as a battery is ready."""
+        """Serve the robot at the head as soon as a battery is ready."""
         robot = self.station.robot
         task: Any = self._world.robots[robot].task if robot >= 0 else None
         if self._task is None and isinstance(task, ChargeTask):
@@ -53,7 +53,7 @@ class SwapService:
             self._agenda.at(end_us, self._end)
 
     def levels(self) -> list[float]:
-        """Levels of the batteries in stock now, as shares; none is charged beyond full."""
+        """Return the present levels of the batteries in stock, as shares, at most 1."""
         batteries, now_s = self._world.batteries, self._world.now_s
         assert batteries is not None
         full, power_w = batteries.given.full_share, self.parameters.power_w

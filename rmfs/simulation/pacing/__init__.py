@@ -42,14 +42,14 @@ class Pacing(Protocol):
     waits: bool
 
     def begin(self, modules: Iterable[str], give: Return) -> None:
-        """Prepare, before wall time is measured.
+        """Prepare the optimisers, before wall time is measured.
 
         Parameters
         ----------
         modules
             Modules with the functions that answer the questions.
         give
-            To be called once for each question, possibly from within `ask`.
+            Function to call once with the answer to each question, possibly from within `ask`.
         """
         ...
 
@@ -67,7 +67,7 @@ class Pacing(Protocol):
 
 
 Paced = InstantPacing | WallPacing | WorkPacing | FixedPacing | Replay
-"""A mode with its parameters; for a replay, the answers read from its run."""
+"""A mode with its parameters or, for a replay, the answers read from the recorded run."""
 
 
 def pacing_of(settings: Paced, seed: int) -> Pacing:

@@ -91,11 +91,11 @@ class Computed(ABC):
         self._give(call, call.requested_us + ceil(self.seconds(answer) * 1e6))
 
     def limit_us(self, now_us: int) -> int:
-        """Return no limit: delayed answers are in the agenda."""
+        """Return no limit, as delayed answers are in the agenda."""
         return NEVER_US
 
     def end(self) -> None:  # noqa: B027 - not for subclasses: there is nothing to end
-        """Nothing is held."""
+        """Do nothing, as there are no resources to release."""
 
     @abstractmethod
     def seconds(self, answer: Answer) -> float:
@@ -106,7 +106,7 @@ class Instant(Computed):
     """Answers take effect at once."""
 
     def seconds(self, answer: Answer) -> float:
-        """No time."""
+        """Return 0."""
         return 0.0
 
 
@@ -151,7 +151,7 @@ class Fixed(Computed):
         self._rng = generator(seed, Stream.PACING)
 
     def seconds(self, answer: Answer) -> float:
-        """Return the constant, or draw."""
+        """Return the constant time, or draw one."""
         if isinstance(self._seconds, float):
             return self._seconds
         return float(self._seconds.quantile(self._rng.random()))

@@ -24,7 +24,7 @@ class Replay:
     settings
         The run to replay.
     answers
-        Rows of its table `answers`.
+        Rows of the table `answers` of that run.
     """
 
     waits = False
@@ -34,7 +34,7 @@ class Replay:
         self._rows = answers
 
     def begin(self, modules: Iterable[str], give: Callable[[Call, int], None]) -> None:
-        """Remember whom to give answers to."""
+        """Store the callback for answers."""
         self._give = give
 
     def ask(self, call: Call) -> None:
@@ -66,11 +66,11 @@ class Replay:
         self._give(call, completed_us)
 
     def limit_us(self, now_us: int) -> int:
-        """No limit: all answers are known."""
+        """Return no limit, as all answers are known."""
         return NEVER_US
 
     def end(self) -> None:
-        """Nothing is held."""
+        """Do nothing, as there are no resources to release."""
 
     def _recorded(self, call: Call) -> dict[str, Any]:
         at_s = call.requested_us / 1e6

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rmfs.simulation.pacing.settings import WallPacing
 
 STEP_S = 0.005
-"""Wall time between steps of a simulation that waits."""
+"""Wall time in s between checks of a simulation that waits."""
 
 
 @dataclass(eq=False)

@@ -20,21 +20,21 @@ from typing import Any
 from rmfs.control.asks import checked
 
 STAMP = struct.Struct("d")
-"""In front of each reply: when it was ready, on the clock that all processes share (s)."""
+"""Prefix of each reply: the time when it was ready, on the clock that all processes share (s)."""
 
 READY = -1
-"""Number of the first reply: the modules are imported."""
+"""Number of the first reply, which means that the modules are imported."""
 
 
 def main(handle: int, modules: list[str]) -> None:
-    """Import the modules, then answer until the other side hangs up.
+    """Import the modules, then answer questions until the connection is closed.
 
     Parameters
     ----------
     handle
         File descriptor of the connection.
     modules
-        To be imported first.
+        Modules to import first.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_leave_with, args=(os.getppid(),), daemon=True).start()

@@ -1,4 +1,4 @@
-"""Worker processes, seen from the simulation: started, asked, listened to, replaced."""
+"""Worker processes from the simulation's side: started, asked, and replaced if they fail."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ class Reply:
     Attributes
     ----------
     at_s
-        When, on the monotonic clock.
+        Time of the reply on the monotonic clock, in s.
     failure
-        Why there is no answer, in one line.
+        Reason for a missing answer, in one line.
     """
 
     at_s: float
@@ -59,14 +59,14 @@ class DeadWorkerError(Exception):
 
 @dataclass(eq=False)
 class Worker:
-    """One process.
+    """One worker process.
 
     Attributes
     ----------
     connection
-        Where it is asked and replies.
+        Connection for questions and replies.
     number
-        The question it works at, or -1.
+        Number of the question it is working on, or -1.
     is_ready
         Whether its modules are imported.
     """
@@ -95,7 +95,7 @@ class Worker:
         Raises
         ------
         OptimiserError
-            If that fails.
+            If importing fails.
         """
         if not self.is_ready:
             try:
@@ -108,7 +108,7 @@ class Worker:
             self.is_ready = True
 
     def ask(self, number: int, load: bytes) -> None:
-        """Send a question; `load` holds the function and what it is to solve."""
+        """Send a question; `load` contains the function and its pickled argument."""
         self.number = number
         # a worker that has just died is found out when its reply is awaited
         try:
@@ -117,7 +117,7 @@ class Worker:
             return
 
     def reply(self) -> Reply | None:
-        """Return the reply to its question, if it has come.
+        """Return the reply to its question, if it has arrived.
 
         Raises
         ------
@@ -149,14 +149,14 @@ class Worker:
 
 
 class Workers:
-    """A number of workers; one that is lost is replaced.
+    """A pool of workers; a lost one is replaced.
 
     Parameters
     ----------
     count
-        Their number.
+        Number of workers.
     modules
-        What each imports before it is ready.
+        Modules that each imports before it is ready.
     """
 
     def __init__(self, count: int, modules: Iterable[str]) -> None:
@@ -172,9 +172,9 @@ class Workers:
         return iter(self._workers)
 
     def idle(self) -> Worker | None:
-        """Return a worker that has nothing to do, ready; None if all are busy.
+        """Return an idle worker that is ready; None if all are busy.
 
-        One that has just been started is waited for.
+        If a worker has just been started, this waits until it is ready.
         """
         idle = [worker for worker in self._workers if worker.number < 0]
         if not idle:
@@ -189,7 +189,7 @@ class Workers:
         self._workers[self._workers.index(worker)] = Worker(self._modules)
 
     def listen(self, seconds: float) -> None:
-        """Sleep until a busy worker replies, or ends, for this time at most."""
+        """Sleep until a busy worker replies or ends, at most for a given time."""
         busy = [worker.connection for worker in self._workers if worker.number >= 0]
         if busy:
             wait(busy, seconds)
@@ -197,6 +197,6 @@ class Workers:
             time.sleep(seconds)
 
     def stop(self) -> None:
-        """End all."""
+        """Stop all workers."""
         for worker in self._workers:
             worker.stop()

@@ -1,1 +1,1 @@
-"""What becomes of orders after the pick stations: the way to the put wall, the wall, packers."""
+"""Orders after the pick stations: transport to the put wall, the wall, and packers."""

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 class Packers:
-    """Packers, all alike.
+    """A number of identical packers.
 
     Parameters
     ----------
     given
-        Their number and packing times.
+        Number of packers, and packing times.
     rng
         Random generator of packing times.
 

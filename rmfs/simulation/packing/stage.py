@@ -88,7 +88,7 @@ class PackingStage(Observer):
         Parameters
         ----------
         last
-            Whether all of the order has now been picked.
+            Whether the whole order has now been picked.
         """
         wall, now_s = self._wall, self._world.now_s
         whole = _whole(order)
@@ -106,7 +106,7 @@ class PackingStage(Observer):
             self._let_go()  # parts that had to wait for a slot need none any more
 
     def order_assigned(self, order: Order) -> None:
-        """Update for lines that join a part at its station, which must then stay."""
+        """Update for lines that join a part at its station, which must therefore stay there."""
         for held in self._wall.held:
             if held.order is order:
                 self._forget(held)

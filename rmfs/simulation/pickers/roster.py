@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class RosterClock:
-    """Lets pickers come and leave according to the roster; without one, all come at time zero.
+    """Places and removes pickers according to the roster; without one, all come at time zero.
 
     Parameters
     ----------
