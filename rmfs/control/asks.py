@@ -32,7 +32,7 @@ class Answer:
     solution
         Arrays and numbers by name; None if there is no solution or none was found in time.
     objective, bound
-        Cost of the solution and proven lower bound; inf or nan where there is none.
+        Cost of the solution, and proven lower bound; inf or nan if there is none.
     status
         Final status, as the solver names it.
     backend
@@ -45,9 +45,9 @@ class Answer:
         Size of the model that was built (nonzeros), which counts besides the work.
     scale
         Reference for the relative gap, in the unit of the objective, such as the cost of the pods
-        called. Default: the objective, which is unsuitable where gains and costs cancel out.
+        called. Default: the objective, which is unsuitable if gains and costs cancel out.
     found
-        The optimiser's own values, for those who save questions and answers; `solution` is the part
+        The optimiser's complete values, for saving questions and answers; `solution` is the part
         that the controller needs. Not recorded.
 
     Raises
@@ -247,7 +247,7 @@ class Call:
 
 
 class By(NamedTuple, Generic[D]):
-    """A decision with the call whose solution it comes from; None: the controller's own rule.
+    """A decision with the call on whose solution it is based; None: the controller's own rule.
 
     A bare decision is attributed to the controller if it comes from `decide`, and to the answer if
     it comes from `answered`.
@@ -258,7 +258,7 @@ class By(NamedTuple, Generic[D]):
 
 
 def told_by(decision: Any, otherwise: Call | None) -> tuple[Any, Call | None]:
-    """Separate a decision from the call it comes from."""
+    """Separate a decision from the call on which it is based."""
     return decision if type(decision) is By else (decision, otherwise)
 
 

@@ -90,7 +90,7 @@ class Controller(Generic[P]):
         controllers that ask optimisers.
     goes_on
         Whether `answered` may be called again with the same call after it was interrupted by a
-        question to somebody outside; it then continues where it stopped (`Call.left`). Set by TA
+        question to be decided outside; it then continues where it stopped (`Call.left`). Set by TA
         rules that ask optimisers; otherwise PPS, PSA and repositioning cannot be decided outside.
     looks_ahead
         Whether it needs `lookahead`, with which it can try out decisions.

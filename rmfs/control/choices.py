@@ -25,7 +25,7 @@ DEFAULTS = {problem: problem.default for problem in Problem}
 """The rule of a problem that a controllers file does not mention."""
 
 _SHARED: dict[type[Parameters], str] = {TurnoverParameters: "classes", ZoneParameters: "zones"}
-"""Parameters that all rules with them must share, and what they describe."""
+"""Parameters that must agree in all rules that have them, and what they describe."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Choice:
     Attributes
     ----------
     name
-        As in the file: a registered name, `module:Class` or `path/to/file.py:Class`.
+        Name as in the file: a registered name, `module:Class` or `path/to/file.py:Class`.
     """
 
     problem: Problem
@@ -80,7 +80,7 @@ def check_together(choices: Mapping[Problem, Choice], source: str) -> None:
     Parameters
     ----------
     choices
-        One for each problem.
+        One choice for each problem.
 
     Raises
     ------

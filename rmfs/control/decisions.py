@@ -170,7 +170,7 @@ class _Ahead(NamedTuple):
 
 
 class Prepare(_Ahead):
-    """TA: what a robot is to do next, in order; replaces what was prepared before.
+    """TA: the next tasks of a robot, in order; they replace earlier prepared tasks.
 
     Prepared tasks reserve nothing. A task that has become impossible by then (the pod is claimed,
     the place occupied, the work done by others) is skipped; after the last one, TA is asked as

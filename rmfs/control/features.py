@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
 
 LIMIT = 10.0
-"""Features are clipped to this absolute value."""
+"""Maximum absolute value of a feature; larger ones are clipped."""
 
 FAR = 1e9
-"""Larger absolute values count as this in rankings."""
+"""Maximum absolute value in rankings; larger ones are clipped."""
 
 KINDS: dict[Problem, tuple[str, ...]] = {
     Problem.POA: ("poa",),

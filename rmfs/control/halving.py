@@ -21,7 +21,7 @@ class Comparison:
     Attributes
     ----------
     trials
-        Tries out a decision.
+        Function that tries out a decision.
     count
         Number of decisions.
     samples

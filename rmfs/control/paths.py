@@ -30,14 +30,14 @@ class PathLengths:
         self._edges: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]] | None = None
 
     def away(self, waypoint: int, loaded: bool) -> NDArray[np.float64]:
-        """Lengths of the paths from a waypoint to all others, shape (N,), m; inf if there is none.
+        """Return path lengths from a waypoint to all others, shape (N,), in m; inf: no path.
 
         The path of a loaded robot may start and end at a storage place.
         """
         return self._lengths(waypoint, loaded, backwards=False)
 
     def to(self, waypoint: int, loaded: bool) -> NDArray[np.float64]:
-        """Lengths of the paths from all waypoints to one, shape (N,), m; inf if there is none."""
+        """Return path lengths from all waypoints to one, shape (N,), in m; inf: no path."""
         return self._lengths(waypoint, loaded, backwards=True)
 
     def _lengths(self, waypoint: int, loaded: bool, *, backwards: bool) -> NDArray[np.float64]:

@@ -148,7 +148,7 @@ class Trigger(IntEnum):
     ROBOT_FREE = 12
     """A robot needs a task [robot]."""
     POD_AT_HAND = 13
-    """A pod has become available [nothing]."""
+    """A pod has become available [no subject]."""
     POD_LIFTED = 14
     """A robot starts to lift a pod [pod]."""
     POD_AT_STATION = 15

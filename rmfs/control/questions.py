@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Question:
-    """What is to be decided.
+    """A decision to be made outside the simulation.
 
     Attributes
     ----------

@@ -146,17 +146,17 @@ _SOLVER_BACKED: dict[Problem, dict[str, str]] = {
 
 
 def names(problem: Problem) -> list[str]:
-    """Names of all rules for a problem, built-in ones first."""
+    """Return the names of all rules for a problem, built-in ones first."""
     return [*_BUILT_IN[problem], *solver_backed(problem), *sorted(_installed(problem))]
 
 
 def built_in(problem: Problem) -> list[str]:
-    """Names of the rules that come with rmfs."""
+    """Return the names of the rules that come with rmfs."""
     return list(_BUILT_IN[problem])
 
 
 def solver_backed(problem: Problem) -> list[str]:
-    """Names of the controllers of `solvers`, which ask optimisers."""
+    """Return the names of the controllers in `solvers`, which use optimisers."""
     return list(_SOLVER_BACKED.get(problem, ()))
 
 

@@ -32,7 +32,7 @@ class ControllerSettings:
     Attributes
     ----------
     choices
-        One for each problem.
+        The choice for each problem.
     """
 
     name: str

@@ -28,7 +28,7 @@ _KIND_OF: dict[type, int] = {WorkFor: WORK, Store: STORE, MovePod: MOVE, Rest: R
 def tasks(
     view: View, refused: Sequence[Any] = (), robots: Sequence[Robot] | None = None
 ) -> Candidates:
-    """List what each robot that needs a task or rests could do.
+    """List the possible tasks of each robot that needs a task or rests.
 
     Decision objects are created only for rows that are accessed, since most are only compared.
 
@@ -80,7 +80,7 @@ def has_tasks(view: View) -> bool:
 
 
 def open_work(view: View, station: int) -> int:
-    """Return the units, or pods with bundles, that no pod or robot is under way for."""
+    """Return the units, or pods with bundles, for which no pod or robot is under way."""
     target = view.stations[station]
     return target.requests.units if isinstance(target, PickStation) else len(target.waiting)
 

@@ -25,13 +25,13 @@ class TravelTimes(Protocol):
     """The part of the traffic model that knows travel times, which depend on the type of robot."""
 
     def travel_times_to(self, waypoint: int, loaded: bool, robot: int = ...) -> NDArray[np.float64]:
-        """Return unhindered times from all waypoints to one, shape (N,), s; inf if unreachable."""
+        """Return unhindered times from all waypoints to one, shape (N,), in s; inf: unreachable."""
         ...
 
     def travel_times_from(
         self, waypoint: int, loaded: bool, robot: int = ...
     ) -> NDArray[np.float64]:
-        """Return unhindered times from one waypoint to all, shape (N,), s; inf if unreachable."""
+        """Return unhindered times from one waypoint to all, shape (N,), in s; inf: unreachable."""
         ...
 
     def robot_waypoint(self, robot: int) -> int:
@@ -93,14 +93,14 @@ class Travel:
         self._other_tier_m = 1 + max(tier.length_m + tier.width_m for tier in layout.tiers)
 
     def to(self, waypoint: int, *, loaded: bool) -> NDArray[np.float64]:
-        """Unhindered times from all waypoints to this one, shape (N,), s."""
+        """Return unhindered times from all waypoints to this one, shape (N,), in s."""
         times = self.tables.to.get((waypoint, loaded))
         if times is None:
             times = self.tables.to[waypoint, loaded] = self._times.travel_times_to(waypoint, loaded)
         return times
 
     def away(self, waypoint: int, *, loaded: bool, keep: bool = True) -> NDArray[np.float64]:
-        """Unhindered times from this waypoint to all, shape (N,), s.
+        """Return unhindered times from this waypoint to all, shape (N,), in s.
 
         With `keep=False` they are not cached, for callers that cache what they need.
         """
@@ -114,7 +114,7 @@ class Travel:
     def distances_to(
         self, waypoint: int, metric: Metric, *, loaded: bool = True
     ) -> NDArray[np.float64]:
-        """Distance from every waypoint to this one, shape (N,), m, or s by time."""
+        """Return distances from every waypoint to this one, shape (N,), in m, or s for `time`."""
         if metric == "time":
             return self.to(waypoint, loaded=loaded)
         if metric == "path":
@@ -124,7 +124,7 @@ class Travel:
     def distances_from(
         self, waypoint: int, metric: Metric, *, loaded: bool = True, keep: bool = True
     ) -> NDArray[np.float64]:
-        """Distance from this waypoint to every other, shape (N,), m, or s by time.
+        """Return distances from this waypoint to all others, shape (N,), in m, or s for `time`.
 
         With `keep=False` times are not cached.
         """
@@ -143,9 +143,9 @@ class Travel:
         *,
         loaded: bool = True,
     ) -> NDArray[np.float64]:
-        """Distance from a waypoint to others, shape (n,), m, or s by time.
+        """Return distances from a waypoint to others, shape (n,), in m, or s for `time`.
 
-        Straight distances are recomputed each time: use this where waypoints rarely repeat.
+        Straight distances are recomputed at each call, which suits waypoints that rarely repeat.
         """
         if metric == "euclidean":
             return self.metres(waypoint, others)
@@ -178,7 +178,7 @@ class Travel:
     def manhattan_metres(
         self, waypoint: int | _Waypoints, others: _Waypoints
     ) -> NDArray[np.float64]:
-        """Return Manhattan distances to other waypoints, more to other tiers, m.
+        """Return Manhattan distances to other waypoints, with a surcharge to other tiers, in m.
 
         Shape (n,), or (m, n) for waypoints of shape (m, 1).
         """
@@ -209,7 +209,7 @@ class Travel:
         return seconds
 
     def metres(self, waypoint: int, others: NDArray[np.signedinteger[Any]]) -> NDArray[np.float64]:
-        """Return Euclidean distances to other waypoints, more to other tiers, shape (n,), m."""
+        """Return Euclidean distances to waypoints, shape (n,), in m, with a surcharge for tiers."""
         x, y = self._x[others] - self._x[waypoint], self._y[others] - self._y[waypoint]
         distance: NDArray[np.float64] = np.sqrt(
             x * x + y * y

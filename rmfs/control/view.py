@@ -40,7 +40,7 @@ class View:
     orders, bundles
         The two backlogs (`rmfs.world.backlog`).
     pick_stations, replenishment_stations, stations
-        `stations` holds both, pick stations first (`rmfs.world.stations`).
+        Stations; `stations` contains both kinds, pick stations first (`rmfs.world.stations`).
     all_stations
         All stations, including those of other kinds, which come last.
     slot_news, work_news
@@ -153,12 +153,12 @@ class View:
         return self._draw_past_orders()
 
     def pod_waypoint(self, pod: int) -> int:
-        """Return where a pod is: its place, or the next waypoint at which its robot stops."""
+        """Return the waypoint of a pod: its place, or the next one at which its robot stops."""
         place = self.storage.place_of[pod]
         return place if place >= 0 else self.travel.robot_waypoint(self.storage.claimed_by[pod])
 
     def work_version(self, station: int) -> tuple[int, ...]:
-        """Version of a station's work: changes with new work and with pods that become available.
+        """Version of a station's work, which changes with new work and with available pods.
 
         If no pod was found for a station, none will be found until this changes.
         """

@@ -24,7 +24,7 @@ def has_room(view: View, station: RecoveryStation) -> bool:
 
 
 def busy_s(view: View, station: RecoveryStation) -> float:
-    """Total time needed by all robots at a station or on their way there, s."""
+    """Total time needed by all robots at a station or on their way there, in s."""
     kind, batteries = view.layout.stations[station.index].kind, view.batteries
     if not isinstance(kind, Charger) or batteries is None:
         return len(station.tasks) * float(getattr(kind.parameters, "swap_s", 0.0))

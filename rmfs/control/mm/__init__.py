@@ -33,7 +33,7 @@ class MethodManagement(Controller[P]):
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Refuse, when a file is read, exchanges after which rules could not be combined.
+        """Check, when a file is read, that rules can be combined after every exchange.
 
         Parameters
         ----------
@@ -43,5 +43,5 @@ class MethodManagement(Controller[P]):
         Raises
         ------
         InputError
-            Naming the rules.
+            If they cannot; the message names the rules.
         """

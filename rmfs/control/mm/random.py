@@ -60,12 +60,12 @@ class RandomExchange(MethodManagement[RandomParameters]):
                 yield Exchange(choice)
 
     def next_event_s(self) -> float:
-        """When the present period ends."""
+        """Time at which the present period ends."""
         return self._start_s + self._periods * self.parameters.period_s
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Refuse alternatives that cannot be combined with the others in every order of draws."""
+        """Check that alternatives can be combined with the others in any sequence of draws."""
         given = choices[Problem.MM].parameters
         assert isinstance(given, RandomParameters)
         for number, entry in enumerate(given.alternatives):

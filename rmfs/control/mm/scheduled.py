@@ -71,18 +71,18 @@ class Scheduled(MethodManagement[ScheduledParameters]):
         self._left = [entry for entry in planned if entry[0] >= view.now_s]
 
     def decide(self) -> Iterator[Exchange]:
-        """Yield what is due."""
+        """Yield the exchanges that are due."""
         while self._left and self._left[0][0] <= self.view.now_s:
             for choice in self._left.pop(0)[1].choices():
                 yield Exchange(choice)
 
     def next_event_s(self) -> float:
-        """When the next exchange is due."""
+        """Time of the next exchange."""
         return self._left[0][0] if self._left else inf
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Refuse entries out of order, and exchanges after which rules could not be combined."""
+        """Check that entries are in order, and that rules can be combined after every exchange."""
         given = choices[Problem.MM].parameters
         assert isinstance(given, ScheduledParameters)
         shares = [entry.at_share for entry in given.exchanges]

@@ -77,7 +77,7 @@ class Contest:
         return claimed
 
     def company(self) -> NDArray[np.bool_]:
-        """Whether an order already in the pool, or on a slot, wants each SKU, shape (K,)."""
+        """Whether an order already in the pool, or on a slot, needs each SKU, shape (K,)."""
         wanted = np.zeros(len(self.view.skus), np.bool_)
         if self.for_pool:
             wanted[[line.sku for o in self.station.queued.values() for line in o.lines]] = True
@@ -86,7 +86,7 @@ class Contest:
         return wanted
 
     def inbound(self) -> tuple[list[int], NDArray[np.float64]]:
-        """Pods on their way to the station, the nearest first, and their distances, m.
+        """Pods on their way to the station, the nearest first, and their distances in m.
 
         The distance is that of the shortest path for a loaded robot from the pod's current
         position.

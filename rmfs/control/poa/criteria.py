@@ -26,7 +26,7 @@ class Criterion(Protocol):
 
 
 class Random(Parameters):
-    """Any order."""
+    """A random order."""
 
     criterion: Literal["random"] = "random"
 
@@ -56,7 +56,7 @@ class DueTime(Parameters):
 
 
 class DueSoon(Parameters):
-    """Orders that are late or due soon."""
+    """Prefers orders that are late or due soon."""
 
     criterion: Literal["due-soon"] = "due-soon"
     within_s: Annotated[float, pydantic.Field(ge=0)] = 600.0
@@ -69,7 +69,7 @@ class DueSoon(Parameters):
 
 
 class Weight(Parameters):
-    """Orders of the class whose lateness counts most."""
+    """Prefers orders of the class whose lateness has the highest weight."""
 
     criterion: Literal["weight"] = "weight"
 
@@ -79,7 +79,7 @@ class Weight(Parameters):
 
 
 class FirstWave(Parameters):
-    """Orders of the first wave: those due together with the earliest one."""
+    """Prefers orders of the first wave: those due together with the earliest one."""
 
     criterion: Literal["wave"] = "wave"
     wave_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
@@ -111,7 +111,7 @@ class Size(Parameters):
 
 
 class Completable(Parameters):
-    """Orders that pods on their way to the station complete."""
+    """Prefers orders that pods on their way to the station complete."""
 
     criterion: Literal["completable"] = "completable"
     by: Literal["nearest-pod", "all-pods"] = "nearest-pod"
@@ -127,12 +127,11 @@ class Completable(Parameters):
 
 
 class InboundMatches(Parameters):
-    """Orders with the most units on pods on their way to the station; near pods count more.
+    """Prefers orders with the most units on pods on their way to the station; near pods count more.
 
     An order takes its units from the nearest pods that can spare them. Each pair of a pod and a SKU
     taken from it scores one point. If units times metres are at most `near_unit_metres`, it scores
-    as many points as there are pods, minus one for each pod that is nearer. many points as there
-    are pods, less one for each pod that is nearer.
+    as many points as there are pods, minus one for each pod that is nearer.
     """
 
     criterion: Literal["inbound-matches"] = "inbound-matches"
@@ -165,7 +164,7 @@ class InboundMatches(Parameters):
 
 
 class Related(Parameters):
-    """Orders with the most SKUs in common with the orders they would join."""
+    """Prefers orders with the most SKUs in common with the orders they would join."""
 
     criterion: Literal["related"] = "related"
 

@@ -51,7 +51,7 @@ class FastLane:
     Parameters
     ----------
     rank
-        Returns the key by which orders compete; the smallest wins.
+        Function that returns the key by which orders compete; the smallest wins.
     """
 
     def __init__(self, view: View, rank: Callable[[Order], tuple[float, int]]) -> None:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rmfs.world.stations import PickStation
 
 _DRAWS = 8
-"""Random draws from the backlog before the orders that can be served are looked up."""
+"""Number of random draws from the backlog before the orders that can be served are listed."""
 
 
 class OrderRuleParameters(FastLaneParameters):
@@ -194,10 +194,10 @@ class TardinessCostParameters(WorkParameters):
 class TardinessCost(_ByWork):
     """Fills free slots with the orders whose lateness would be most costly relative to their work.
 
-    The index is the weight of the order's class / its work x exp(-slack / (`ahead` x mean work of
-    the orders that can be served)), where slack (`line_s`, `unit_s`) is at least 0. Ties go to the
-    order that arrived first. Source: apparent tardiness cost (Vepsalainen, Morton 1987), with their
-    `ahead` of 2.
+    The index of an order is w / p x exp(-s / (`ahead` x m)): w is the weight of its class, p its
+    work (`line_s`, `unit_s`), s its slack, at least 0, and m the mean work of the orders that can
+    be served. Ties go to the order that arrived first. Source: apparent tardiness cost
+    (Vepsalainen, Morton 1987), with their `ahead` of 2.
     """
 
     parameters_model = TardinessCostParameters

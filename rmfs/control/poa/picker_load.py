@@ -20,7 +20,7 @@ class PickerLoadParameters(Parameters):
 
     fatigue_weight: Annotated[float, pydantic.Field(ge=0, le=100)] = 0.0
     """Share by which fatigue 1 increases the weight of a picker's work, in proportion below. 0:
-    only time counts; 100: tired pickers get nothing while others have slots."""
+    only time counts; 100: tired pickers get no orders while others have free slots."""
 
 
 class PickerLoad(Filling[PickerLoadParameters]):

@@ -62,10 +62,10 @@ class Queue(PickOrderAssignment[QueueParameters]):
     3. In turn, each station with a free slot besides the one reserved for the fast lane takes an
     order of its pool that stock can serve, until none can.
 
-    Then pools are filled up again, until nothing changes. Only active stations have a pool; each
-    available unit counts for one order only. Full ties go to the order that arrived first, then to
-    the station with the lowest number. The rule is also asked when a pod reaches the head of a
-    queue, so that a pod fetched for the pool finds its orders on slots.
+    These steps are repeated until nothing changes. Only active stations have a pool; each available
+    unit counts for one order only. Full ties go to the order that arrived first, then to the
+    station with the lowest number. The rule is also asked when a pod reaches the head of a queue,
+    so that a pod fetched for the pool finds its orders on slots.
     """
 
     parameters_model = QueueParameters

@@ -30,7 +30,7 @@ def first_row(
     rows
         At least one row.
     draw
-        Draws an integer below its argument.
+        Function that draws an integer below its argument.
     """
     if len(rows) == 1:
         return int(rows[0])

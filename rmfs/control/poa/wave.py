@@ -33,9 +33,9 @@ class WaveParameters(PairParameters):
 class Wave(BestPair[WaveParameters]):
     """Fills free slots wave by wave, and within a wave by pod match.
 
-    A wave consists of the orders that are due together, as for one truck. Of the first wave that
-    stock can serve, the pair of order and station with the most units on pods inbound to the
-    station is assigned; when no order of the wave is left, the next wave begins. Ties are broken by
+    A wave consists of the orders that are due together, as for one truck. From the first wave that
+    stock can serve, the rule assigns the pair of order and station with the most units on pods
+    inbound to the station; when the wave has no order left, the next one begins. Ties are broken by
     the tie-breaker, then by arrival, then by station number.
     """
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 Requests = Literal["assigned", "assigned-and-completable", "assigned-and-queued"]
-"""Requests that count: of assigned orders; also of queued orders the pod completes; of all."""
+"""Requests that count: of assigned orders; also of queued orders that the pod completes; of all."""
 
 _REACH: dict[Requests, int] = {
     "assigned": 0,
@@ -32,15 +32,15 @@ class LateBinding(Parameters):
     """Parameters of every PPS rule; there are queued orders only under POA queue."""
 
     late_picks: bool = True
-    """Whether a pod on its way to a pick station gets requests that arise meanwhile."""
+    """Whether new requests are bound to a pod on its way to a pick station."""
     late_bundles: bool = True
-    """The same for bundles of a pod on its way to a replenishment station."""
+    """Whether new bundles are added to a pod on its way to a replenishment station."""
     consider: Requests = "assigned-and-completable"
     """Requests for which pods are brought: those of `assigned` orders, also those of queued orders
     that the pod completes (`assigned-and-completable`), or also those of all queued orders
     (`assigned-and-queued`)."""
     reserve: Requests = "assigned-and-completable"
-    """Requests that are bound to a pod that is brought; at least those in `consider`."""
+    """Requests that are bound to a pod when it is brought; at least those in `consider`."""
 
     @pydantic.model_validator(mode="after")
     def _reserve_what_is_considered(self) -> LateBinding:
@@ -55,10 +55,10 @@ P = TypeVar("P", bound=LateBinding)
 
 
 class PodSelection(Controller[P]):
-    """Chooses pods for robots that TA wants to work for a station.
+    """Chooses pods for robots that TA sends to work for a station.
 
-    It is asked by TA, for an empty robot or for a pod that has been served. What the pod can serve
-    at the station is bound to it by the simulation.
+    TA asks it for an empty robot, or for a pod that has been served. The simulation then binds the
+    requests that the pod can serve at the station.
     """
 
     problem = Problem.PPS
@@ -69,18 +69,18 @@ class PodSelection(Controller[P]):
 
     @abstractmethod
     def pick_pod(self, robot: Robot, station: PickStation) -> int | By[int]:
-        """Choose a pod at hand with units that open requests of the station want, or -1."""
+        """Choose an available pod with units for open requests of the station, or -1."""
 
     @abstractmethod
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int | By[int]:
-        """Choose a pod at hand for which bundles wait at the station, or -1."""
+        """Choose an available pod for which bundles wait at the station, or -1."""
 
     @abstractmethod
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int | By[int]:
-        """Choose one of several stations that the pod of a robot can serve (at least one)."""
+        """Choose one of several stations that a robot's pod can serve; there is at least one."""
 
     def serves(self, pod: int, station: int) -> bool:
-        """Whether there is work for a pod at a station, by `consider`; never at other kinds."""
+        """Return whether a pod has work at a station, by `consider`; never at other kinds."""
         view = self.view
         target = view.all_stations[station]
         if isinstance(target, ReplenishmentStation):

@@ -1,4 +1,4 @@
-"""Pods that could be brought to a station, with what they could do there."""
+"""Pods that could be brought to a station, and the work that they could do there."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Candidates:
-    """C pods a robot could bring to a station.
+    """C pods that a robot could bring to a station.
 
     Attributes
     ----------
@@ -43,15 +43,15 @@ class Candidates:
         return len(self.pods)
 
     def narrowed(self, to: NDArray[np.intp]) -> Candidates:
-        """Keep only some of the pods, given by position."""
+        """Return the candidates at some positions."""
         return Candidates(self.view, self.robot, self.station, self.pods[to])
 
     def waypoints(self) -> NDArray[np.int32]:
-        """Where the pods are stored, shape (C,)."""
+        """Waypoints at which the pods are stored, shape (C,)."""
         return self.view.storage.pod_waypoint[self.pods]
 
     def other_tiers(self) -> NDArray[np.int64] | int:
-        """How many of robot and station are on another tier than the pod, shape (C,) or 0."""
+        """Number (0 to 2) of robot and station on another tier than the pod, shape (C,), or 0."""
         travel = self.view.travel
         if travel.tiers == 1:
             return 0
@@ -62,14 +62,14 @@ class Candidates:
 
 
 class Completed(NamedTuple):
-    """Which orders each of C pods completes.
+    """The orders that each of C pods completes.
 
     Attributes
     ----------
     orders
-        The O orders with open requests, those assigned to the station first.
+        The O orders with open requests; those assigned to the station come first.
     assigned
-        How many of them are assigned; the others are queued.
+        Number of assigned orders; the others are queued.
     flags
         Whether a pod covers all open requests of an order, shape (O, C).
     """
@@ -79,7 +79,7 @@ class Completed(NamedTuple):
     flags: NDArray[np.bool_]
 
     def weighed(self, weights: Sequence[float], queued: bool) -> NDArray[np.float64]:
-        """Sum the weights of the assigned, or the queued, orders that each pod completes, (C,)."""
+        """Return the total weight of assigned, or queued, orders that each pod completes, (C,)."""
         part = slice(self.assigned, None) if queued else slice(self.assigned)
         # a sum over rows, in their order: repeats on every machine
         total: NDArray[np.float64] = (
@@ -96,11 +96,11 @@ class PickCandidates(Candidates):
     skus
         The S SKUs with open requests at the station or, if these count, in its pool.
     have
-        Units available of each of them on the candidates, shape (S, C).
+        Available units of each SKU on each candidate, shape (S, C).
     queued
         The queued orders whose requests count.
     requests
-        Which requests count.
+        The requests that count.
     """
 
     def __init__(
@@ -123,7 +123,7 @@ class PickCandidates(Candidates):
         self._completed: Completed | None = None
 
     def narrowed(self, to: NDArray[np.intp]) -> PickCandidates:
-        """Keep only some of the pods, given by position."""
+        """Return the candidates at some positions."""
         kept = PickCandidates(
             self.view,
             self.robot,
@@ -139,13 +139,13 @@ class PickCandidates(Candidates):
         return kept
 
     def servable_units(self) -> NDArray[np.int64]:
-        """Open requests of assigned orders each pod can serve, shape (C,)."""
+        """Number of open requests of assigned orders that each pod can serve, shape (C,)."""
         need = self.view.need[self.station.index][self.skus]
         units: NDArray[np.int64] = np.minimum(self.have, need[:, None]).sum(axis=0)
         return units
 
     def queued_units(self) -> NDArray[np.int64]:
-        """Open requests of queued orders that would be bound after those, shape (C,)."""
+        """Number of open requests of queued orders that would be bound after those, shape (C,)."""
         if self.requests == "assigned-and-completable":
             done = self.completed()
             units = [float(order.open_units) for order in done.orders]
@@ -157,11 +157,11 @@ class PickCandidates(Candidates):
         return served
 
     def completed(self) -> Completed:
-        """Orders whose open requests each pod covers.
+        """The orders whose open requests each pod covers.
 
-        Orders are gone through as they were assigned, then as they were queued, and each takes what
-        it needs of the pod's available units if all is there. Orders without open requests count
-        for nothing.
+        Orders are considered in the sequence in which they were assigned, then queued. Each takes
+        the units it needs from the pod if all of them are available. Orders without open requests
+        do not count.
         """
         if self._completed is None:
             self._completed = self._find_completed()
@@ -187,13 +187,13 @@ class PickCandidates(Candidates):
 def pick_candidates(
     view: View, robot: Robot, station: PickStation, requests: Requests = "assigned"
 ) -> PickCandidates:
-    """Find the pods at hand that can serve an open request of a pick station.
+    """Find the available pods that can serve an open request of a pick station.
 
     Parameters
     ----------
     requests
-        Which requests count. Queued orders never do while the station has no free slot: a pod might
-        be brought in vain.
+        The requests that count. Queued orders never count while the station has no free slot, as a
+        pod might be brought in vain.
     """
     skus = list(station.requests.lines)
     queued: list[Order] = []
@@ -226,7 +226,7 @@ def _covered(view: View, order: Order) -> NDArray[np.bool_]:
 
 
 def replenishment_candidates(view: View, robot: Robot, station: ReplenishmentStation) -> Candidates:
-    """Find the pods at hand for which bundles wait at a replenishment station."""
+    """Find the available pods for which bundles wait at a replenishment station."""
     if not station.waiting:
         return Candidates(view, robot, station, np.empty(0, np.intp))
     waiting = view.bundles_waiting[station.number]

@@ -1,4 +1,4 @@
-"""Criteria of pods: the higher, the better. Each is a model, so a file can choose and set it."""
+"""Criteria for pods; the highest score wins. A controllers file can select and configure them."""
 
 from __future__ import annotations
 
@@ -22,40 +22,41 @@ if TYPE_CHECKING:
     Scores = NDArray[np.float64] | NDArray[np.int64]
 
 _OTHER_TIER = 1000.0
-"""Units that a pod on another tier is worth less: more than any pod can serve."""
+"""Penalty in units for a pod on another tier, more than any pod can serve."""
 
 NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 Share = Annotated[float, pydantic.Field(ge=0, le=1)]
 
 
 class PodCriterion(Parameters):
-    """Base of the criteria of pods."""
+    """Base class of criteria for pods."""
 
     def prepare(self, view: View) -> None:
-        """Ask for the trackers it needs; called when the controller is made."""
+        """Request the trackers it needs; called when the controller is created."""
 
 
 class RandomCriterion(PodCriterion):
-    """Any pod; those on the tiers of robot and station first if so wished."""
+    """A random pod; optionally, those on the tiers of robot and station first."""
 
     criterion: Literal["random"] = "random"
     prefer_same_tier: bool = True
     """Whether pods on the tiers of robot and station come first."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Uniform in [0, 1), less one for robot and for station on another tier."""
+        """Uniform in [0, 1), minus 1 each for robot and station on another tier."""
         scores: Scores = rng.random(len(candidates))
         return scores - candidates.other_tiers() if self.prefer_same_tier else scores
 
 
 class Nearest(PodCriterion):
-    """Shortest way from the robot to the pod and on to the station."""
+    """Prefers the shortest path from the robot to the pod and on to the station."""
 
     criterion: Literal["nearest"] = "nearest"
     metric: Metric = "time"
-    """What is short: `euclidean`, `manhattan` (m), `path` (m along the waypoints) or `time` (s)."""
+    """Measure of length: `euclidean`, `manhattan` (m), `path` (m along the waypoints) or `time`
+    (s)."""
     estimate: bool = True
-    """For `time`: whether the way from robot to pod is estimated by its Manhattan distance."""
+    """For `time`: whether the time from robot to pod is estimated by the Manhattan distance."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
         """Minus seconds, or minus metres."""
@@ -69,13 +70,13 @@ class Nearest(PodCriterion):
 
 
 class Fill(PodCriterion):
-    """The fullest, or the emptiest, pod."""
+    """Prefers the fullest, or the emptiest, pod."""
 
     criterion: Literal["fill"] = "fill"
     prefer_fullest: bool = True
-    """Whether full pods come first; otherwise empty ones."""
+    """Whether full pods come first; otherwise empty ones do."""
     binary: bool = True
-    """Whether pods are only compared with the threshold, and not among themselves."""
+    """Whether pods are compared only with the threshold, and not with each other."""
     threshold: Share = 0.7
     """Share of used capacity that separates full pods from empty ones."""
 
@@ -90,30 +91,30 @@ class Fill(PodCriterion):
 
 
 class PickDemand(PodCriterion):
-    """The pod with most units that any order, at a station or waiting, still wants."""
+    """Prefers the pod with the most units needed by any order, waiting or at a station."""
 
     criterion: Literal["demand"] = "demand"
 
     def prepare(self, view: View) -> None:
-        """Have wanted units counted."""
+        """Request the tracker that counts needed units."""
         view.trackers.get(DemandOnPods, "unbound")
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Sum over SKUs of units contained, at most the open requests for the SKU."""
+        """Sum over SKUs of the units on the pod, limited by the open requests for the SKU."""
         units = candidates.view.trackers.get(DemandOnPods, "unbound").units()
         scores: Scores = units[candidates.pods]
         return scores
 
 
 class Completeable(PodCriterion):
-    """Most orders of the station completed."""
+    """Prefers the pod that completes the most orders of the station."""
 
     criterion: Literal["completeable"] = "completeable"
     queued: bool = True
     """Whether queued orders count as well."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
-        """Orders of which the pod covers all open requests."""
+        """Number of orders whose open requests the pod covers completely."""
         done = candidates.completed()
         flags = done.flags if self.queued else done.flags[: done.assigned]
         scores: Scores = flags.sum(axis=0)
@@ -121,7 +122,7 @@ class Completeable(PodCriterion):
 
 
 class PickWorkAmount(PodCriterion):
-    """Most work at the station, minus a cost of travel ("pile-on" in later literature).
+    """Prefers the pod with most work at the station, minus a cost of travel ("pile-on").
 
     The work is the value of the requests that the pod can serve. By `metric`, a request is worth
     one, or the time that its order has been at the station, or its lateness, the latter two divided
@@ -144,12 +145,12 @@ class PickWorkAmount(PodCriterion):
     estimate_to_pod: bool = True
     """Whether the time from robot to pod is estimated by the Manhattan distance."""
     estimate_to_station: bool = False
-    """Whether the time from pod to station is."""
+    """Whether the time from pod to station is estimated by the Manhattan distance."""
     prefer_same_tier: bool = True
     """Whether pods on the tiers of robot and station come first."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
-        """Worth of the servable requests plus boost, less travel time times its cost."""
+        """Value of the servable requests, with boost, minus the cost of travel time."""
         scores = self._work(candidates)
         if self.time_cost:
             scores = scores - self.time_cost * _seconds(
@@ -191,10 +192,10 @@ class PickWorkAmount(PodCriterion):
 
 
 class WaveWork(PodCriterion):
-    """Most units for the first wave of the station: orders that are due together.
+    """Prefers the pod with the most units for the first wave of the station.
 
-    A wave are the orders that go with one truck. Late orders are of the first wave, and so are the
-    orders of the station that are due next.
+    A wave consists of orders that are due together, as for one truck. The first wave contains late
+    orders and the orders of the station that are due next.
     """
 
     criterion: Literal["wave"] = "wave"
@@ -202,7 +203,7 @@ class WaveWork(PodCriterion):
     """Orders due within this many seconds of the next one belong to its wave."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
-        """Units that the pod can serve of the first wave, assigned orders only."""
+        """Number of units for assigned orders of the first wave that the pod can serve."""
         orders = candidates.pick_station.orders.values()
         coming = [order.due_s for order in orders if order.due_s >= candidates.view.now_s]
         last_s = min(coming, default=candidates.view.now_s) + self.wave_s
@@ -210,16 +211,16 @@ class WaveWork(PodCriterion):
 
 
 class BundleWorkAmount(PodCriterion):
-    """Most bundles."""
+    """Prefers the pod with the most bundles at the station."""
 
     criterion: Literal["work-amount"] = "work-amount"
     age: bool = False
-    """Whether bundles count by the time since they were assigned, and not one each."""
+    """Whether bundles are weighted by the time since they were assigned, instead of equally."""
     prefer_same_tier: bool = True
     """Whether pods on the tiers of robot and station come first."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Bundles that wait at the station for the pod, or the seconds for which they have."""
+        """Number of bundles waiting at the station for the pod, or their waiting time in s."""
         view = candidates.view
         station = candidates.station.number
         if self.age:
@@ -238,12 +239,12 @@ class BundleWorkAmount(PodCriterion):
 
 
 class BundleDemand(PodCriterion):
-    """The pod whose bundles at the station are wanted most."""
+    """Prefers the pod whose bundles at the station are most in demand."""
 
     criterion: Literal["demand"] = "demand"
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Sum over the bundles of their units, at most the open requests for the SKU."""
+        """Sum over the bundles of their units, limited by the open requests for the SKU."""
         view = candidates.view
         station = candidates.station.number
         waiting = view.replenishment_stations[station].waiting
@@ -304,7 +305,7 @@ _SHORT: dict[str, dict[str, Any]] = {
 
 
 def by_name(value: Any) -> Any:
-    """Let a name stand for a criterion with its defaults, and three names for work amounts."""
+    """Return the criterion for a name, with defaults; three names select metrics of work amount."""
     given = {"criterion": value} if isinstance(value, str) else value
     if isinstance(given, dict) and given.get("criterion") in _SHORT:
         return {**given, **_SHORT[given["criterion"]]}

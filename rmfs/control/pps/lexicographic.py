@@ -1,4 +1,4 @@
-"""PPS lexicographic: one criterion after the other, each among what the former left equal."""
+"""PPS lexicographic: criteria in order of priority, each breaking the ties of those before."""
 
 from __future__ import annotations
 
@@ -51,25 +51,26 @@ class LexicographicParameters(LateBinding):
         PickWorkAmount(),
         Nearest(),
     )
-    """Criteria of pods for a pick station, the first counting most: `random`, `nearest`, `pile-on`
-    (or `work-amount`), `age`, `lateness`, `completeable`, `demand`, `fill`."""
+    """Criteria for choosing a pod for a pick station, in order of priority: `random`, `nearest`,
+    `pile-on` (or `work-amount`), `age`, `lateness`, `completeable`, `demand`, `fill`."""
     replenishment_pod: Annotated[tuple[BundleCriterion, ...], AtLeastOne] = (
         BundleWorkAmount(),
         Nearest(metric="euclidean"),
         RandomCriterion(),
     )
-    """The same for a replenishment station: `random`, `nearest`, `work-amount`, `demand`."""
+    """Criteria for choosing a pod for a replenishment station: `random`, `nearest`, `work-amount`,
+    `demand`."""
     next_station: Annotated[tuple[NextStationCriterion, ...], AtLeastOne] = (
         MostWork(),
         NearestNextStation(),
         RandomNextStation(),
     )
-    """Criteria of stations for a pod that has been served, if TA lets it go on to others: `random`,
-    `nearest`, `work-amount` (or `pile-on`, `age`, `lateness`)."""
+    """Criteria for choosing the next station of a pod that has been served, if TA lets it continue
+    to others: `random`, `nearest`, `work-amount` (or `pile-on`, `age`, `lateness`)."""
 
 
 class Lexicographic(PodSelection[LexicographicParameters]):
-    """Takes the pod that is best by the first criterion, then by the second, and so on.
+    """Chooses the pod that is best by the first criterion; ties go to the second, and so on.
 
     Full ties: the pod, or the station, with the lowest number.
     """
@@ -84,17 +85,17 @@ class Lexicographic(PodSelection[LexicographicParameters]):
             criterion.prepare(view)
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
-        """Choose by the criteria for pick stations."""
+        """Choose a pod by the criteria for pick stations."""
         candidates = pick_candidates(self.view, robot, station, self.parameters.consider)
         return self._best(candidates, self.parameters.pick_pod)
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Choose by the criteria for replenishment stations."""
+        """Choose a pod by the criteria for replenishment stations."""
         candidates = replenishment_candidates(self.view, robot, station)
         return self._best(candidates, self.parameters.replenishment_pod)
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Choose by the criteria of stations."""
+        """Choose a station by the criteria for stations."""
         left = list(stations)
         for criterion in self.parameters.next_station:
             if len(left) == 1:

@@ -1,4 +1,4 @@
-"""PPS linear: the pod, or the station, whose features have the greatest weighted sum."""
+"""PPS linear: the pod, or the station, with the greatest weighted sum of features."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ class LinearParameters(LateBinding):
     """Parameters of PPS linear."""
 
     pick_pod: Weights = pydantic.Field(default_factory=lambda: default_weights("pick pod"))
-    """Weights of the features of pods for a pick station, scaled (docs: learning)."""
+    """Weights of the scaled features of pods for a pick station (see the page on learning)."""
     replenishment_pod: Weights = pydantic.Field(
         default_factory=lambda: default_weights("replenishment pod")
     )
-    """The same for a replenishment station."""
+    """Weights of the scaled features of pods for a replenishment station."""
     next_station: Weights = pydantic.Field(default_factory=lambda: default_weights("next station"))
-    """The same of stations for a pod that has been served."""
+    """Weights of the scaled features of stations for a pod that has been served."""
 
     @pydantic.field_validator(*_KINDS)
     @classmethod
@@ -44,7 +44,7 @@ class LinearParameters(LateBinding):
 
 
 class Linear(PodSelection[LinearParameters]):
-    """Takes the pod, or the station, with the greatest weighted sum; ties: the lowest number."""
+    """Chooses the pod, or the station, with the greatest weighted sum; ties: the lowest number."""
 
     parameters_model = LinearParameters
 

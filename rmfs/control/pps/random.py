@@ -1,4 +1,4 @@
-"""PPS random: any pod that has work to do at the station."""
+"""PPS random: a random pod with work at the station."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ class RandomPod(PodSelection[RandomPodParameters]):
     parameters_model = RandomPodParameters
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
-        """Draw one of the pods at hand that can serve a request."""
+        """Draw one of the available pods that can serve a request."""
         return self._any(pick_candidates(self.view, robot, station, self.parameters.consider))
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Draw one of the pods at hand for which bundles wait."""
+        """Draw one of the available pods for which bundles wait."""
         return self._any(replenishment_candidates(self.view, robot, station))
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:

@@ -1,4 +1,4 @@
-"""What a request of an order is worth to PPS."""
+"""The value of an order's requests for PPS."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ RequestValue = Literal["picks", "age", "lateness"]
 
 
 def value_of(order: Order, now_s: float, metric: RequestValue, *, positive: bool) -> float:
-    """Worth of one open request of an order with open requests.
+    """Return the value of one open request of an order.
 
     Parameters
     ----------
     metric
-        `picks`: 1. `age`: seconds since the order was assigned or, as long as it is queued, since
-        it was queued, divided by its open requests. `lateness`: seconds since its due time, less
-        than 0 before it, divided likewise; after it, times the weight of the order's class.
+        `picks`: 1. `age`: seconds since the order was assigned or, while it is queued, since it was
+        queued, divided by its open requests. `lateness`: seconds since its due time (negative
+        before it), divided by its open requests and, after the due time, multiplied by the weight
+        of the order's class.
     positive
         Whether lateness is 0 before the due time.
     """

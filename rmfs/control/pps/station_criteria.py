@@ -1,4 +1,4 @@
-"""Criteria of stations to which a carried pod could go on: the higher, the better."""
+"""Criteria for the next station of a carried pod; the highest score wins."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class RandomNextStation(Parameters):
-    """Any station."""
+    """A random station."""
 
     criterion: Literal["random"] = "random"
 
@@ -35,11 +35,12 @@ class RandomNextStation(Parameters):
 
 
 class NearestNextStation(Parameters):
-    """The station nearest to the robot."""
+    """Prefers the station nearest to the robot."""
 
     criterion: Literal["nearest"] = "nearest"
     metric: Metric = "euclidean"
-    """What is near: `euclidean`, `manhattan` (m), `path` (m along the waypoints) or `time` (s)."""
+    """Measure of distance: `euclidean`, `manhattan` (m), `path` (m along the waypoints) or `time`
+    (s)."""
 
     def score(
         self, view: View, robot: Robot, stations: Sequence[int], rng: np.random.Generator
@@ -51,20 +52,20 @@ class NearestNextStation(Parameters):
 
 
 class MostWork(Parameters):
-    """The station with most work for the pod."""
+    """Prefers the station with the most work for the pod."""
 
     criterion: Literal["work-amount"] = "work-amount"
     metric: RequestValue = "picks"
-    """What a request is worth: `picks` (one), `age` or `lateness` (s per open request)."""
+    """Value of a request: `picks` (one), `age` or `lateness` (s per open request)."""
     only_positive_lateness: bool = False
-    """For `lateness`: whether orders that are not late yet count nothing, and not negatively."""
+    """For `lateness`: whether orders that are not late yet count as 0 instead of negatively."""
     bundle_age: bool = False
-    """Whether bundles count by the time since they were assigned, and not one each."""
+    """Whether bundles are weighted by the time since they were assigned, instead of equally."""
 
     def score(
         self, view: View, robot: Robot, stations: Sequence[int], rng: np.random.Generator
     ) -> NDArray[np.float64]:
-        """Worth of the open requests of assigned orders, or of the bundles, for the pod."""
+        """Value of the open requests of assigned orders, or of the bundles, for the pod."""
         return np.array([self._work(view, robot.pod, station) for station in stations], float)
 
     def _work(self, view: View, pod: int, station: int) -> float:

@@ -24,7 +24,7 @@ P = TypeVar("P", bound=Parameters)
 class PodStorageAssignment(Controller[P]):
     """Chooses among the places of `view.storage.places` that are `view.storage.is_empty`.
 
-    It is asked when a robot has to store its pod; the place is kept for it at once.
+    It is asked when a robot has to store its pod; the place is reserved for it at once.
     """
 
     problem = Problem.PSA
@@ -35,20 +35,20 @@ class PodStorageAssignment(Controller[P]):
 
     @abstractmethod
     def place(self, robot: Robot) -> int | By[int]:
-        """Choose an empty place (waypoint) for the pod a robot carries; -1 if there is none."""
+        """Choose an empty place (waypoint) for the pod of a robot; -1 if there is none."""
 
     def least(self, costs: NDArray[np.float64], among: NDArray[np.bool_]) -> int:
-        """Find the place of least finite cost, of equals the one with the lowest waypoint.
+        """Find the place with the least finite cost; ties: the lowest waypoint.
 
         Parameters
         ----------
         costs, among
-            For each of the L storage places, its cost and whether it may be taken, shape (L,).
+            Cost of each of the L storage places, and whether it may be chosen, shape (L,).
 
         Returns
         -------
         int
-            The waypoint of the place; -1 if none may be taken or can be reached.
+            The waypoint of the place; -1 if none may be chosen or can be reached.
         """
         masked = np.where(among, costs, np.inf)
         best = int(masked.argmin())

@@ -20,19 +20,19 @@ class CachePlaceParameters(CacheParameters):
     """Parameters of PSA cache."""
 
     metric: Metric = "time"
-    """How the distance from station to place is measured: `euclidean`, `manhattan` (m), `path` (m
-    along the waypoints, as a loaded robot drives) or `time` (s, unhindered)."""
+    """Measure of the distance from station to place: `euclidean`, `manhattan` (m), `path` (m along
+    the waypoints, as a loaded robot drives) or `time` (s, unhindered)."""
 
 
 class Cache(PodStorageAssignment[CachePlaceParameters]):
-    """Takes a place in the cache of the nearest pick station for a pod that is worth it.
+    """Stores useful pods in the cache of the nearest pick station, and others outside.
 
-    The station is the one nearest to the pod by Euclidean distance, also for a pod that comes from
-    a replenishment station. A pod is worth a place there if the mean of the free share of the cache
-    and the share of its pods with a lower score is above a threshold. It gets a place in that
-    cache; else outside all caches; else in another cache. A pod that is not worth it gets a place
-    outside all caches; else in any. Of these, the place nearest to the station; ties: the lowest
-    waypoint.
+    The station is the one nearest to the pod by Euclidean distance, even if the pod comes from a
+    replenishment station. A pod deserves a place in its cache if the weighted mean of two shares,
+    the free share of the cache and the share of its pods with a lower score, is above a threshold.
+    Such a pod is stored in this cache or, if it has no empty place, outside all caches or else in
+    another cache. Other pods are stored outside all caches or, if there is no empty place, in any
+    cache. The place nearest to the station is chosen; ties: the lowest waypoint.
     """
 
     parameters_model = CachePlaceParameters
@@ -46,7 +46,7 @@ class Cache(PodStorageAssignment[CachePlaceParameters]):
         self._stations = np.array([station.waypoint for station in view.pick_stations])
 
     def place(self, robot: Robot) -> int:
-        """Go through the zones, the right one first."""
+        """Choose a place in the zone of the pod, or else in other zones."""
         empty, cache_of = self.view.storage.is_empty, self._caching.zones.cache_of
         station = int(self.view.travel.metres(robot.waypoint, self._stations).argmin())
         outside = cache_of < 0

@@ -1,4 +1,4 @@
-"""Which pods are worth a place in the cache near a pick station."""
+"""Decision on which pods deserve a place in the cache near a pick station."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class CacheParameters(ScoreWeights, ZoneParameters):
-    """Parameters of rules that decide which pods belong into a cache."""
+    """Parameters of rules that decide which pods belong in a cache."""
 
     speed_weight: Weight = 0.0
     """Weight of a pod's speed: the popularity of its units, relative to the best pod."""
@@ -27,7 +27,7 @@ class CacheParameters(ScoreWeights, ZoneParameters):
     value_weight: Weight = 1.0
     """Weight of the share of pods in the cache with a lower score than the pod."""
     threshold: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.5
-    """A pod gets a place if the weighted mean of the two exceeds this."""
+    """Threshold of the weighted mean of these two shares above which a pod deserves a place."""
 
     @pydantic.model_validator(mode="after")
     def _something_counts_for_caches(self) -> CacheParameters:
@@ -37,12 +37,12 @@ class CacheParameters(ScoreWeights, ZoneParameters):
 
 
 class Caching:
-    """Weighs pods against the caches.
+    """Rates pods for places in caches.
 
     Attributes
     ----------
     zones
-        The zones by place.
+        Zone of each place.
     cache_at
         Station to whose cache each waypoint belongs, or -1, shape (N,).
     """
@@ -61,12 +61,12 @@ class Caching:
         return self._scores.scores(given.utility_weight, given.speed_weight)
 
     def is_worth(self, pod: int, station: int, scores: NDArray[np.float64]) -> bool:
-        """Whether a pod is worth a place in a station's cache.
+        """Return whether a pod deserves a place in a station's cache.
 
         Parameters
         ----------
         scores
-            Of all pods, shape (P,).
+            Scores of all pods, shape (P,).
         """
         given = self._parameters
         size = int(self.zones.cache_size[station])

@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 
 class PlaceDistances:
-    """Distances of a loaded robot, kept for each waypoint asked for; pods are parked from stations.
+    """Distances of a loaded robot to places, cached for each waypoint from which they were needed.
 
     Parameters
     ----------
     metric
-        How distances are measured.
+        Measure of distance.
     """
 
     def __init__(self, view: View, metric: Metric) -> None:

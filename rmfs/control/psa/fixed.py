@@ -1,4 +1,4 @@
-"""PSA fixed: every pod has a place of its own."""
+"""PSA fixed: every pod has a fixed place."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 
 class Fixed(PodStorageAssignment[NoParameters]):
-    """Takes every pod back to the place where it stood at the start of the run.
+    """Stores every pod at the place where it stood at the start of the run.
 
-    Where that place is not empty, the nearest empty place by travel time is taken for the time
-    being: another rule (repositioning, or a predecessor) may have stored a pod there, and a robot
-    may rest there in the rare case that no pod is left to rest beneath.
+    If that place is occupied, the pod is stored at the nearest empty place by travel time. This can
+    happen if another rule (repositioning, or an exchanged rule) has stored a pod there, or if a
+    robot rests there because there is no pod to rest beneath.
     """
 
     def __init__(self, parameters: NoParameters, view: View, rng: np.random.Generator) -> None:
@@ -29,7 +29,7 @@ class Fixed(PodStorageAssignment[NoParameters]):
         self._distances = PlaceDistances(view, "time")
 
     def place(self, robot: Robot) -> int:
-        """Look up the pod's own place."""
+        """Return the pod's own place, or the nearest empty one."""
         storage = self.view.storage
         own = self._own[robot.pod]
         if storage.is_empty[storage.place_index[own]]:

@@ -1,4 +1,4 @@
-"""PSA linear: the storage place whose features have the greatest weighted sum."""
+"""PSA linear: the storage place with the greatest weighted sum of features."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class LinearParameters(Parameters):
 
 
 class Linear(PodStorageAssignment[LinearParameters]):
-    """Takes the empty place with the greatest weighted sum; ties: the lowest waypoint."""
+    """Chooses the empty place with the greatest weighted sum; ties: the lowest waypoint."""
 
     parameters_model = LinearParameters
 

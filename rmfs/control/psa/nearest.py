@@ -1,4 +1,4 @@
-"""PSA nearest: the empty place nearest to where the pod is."""
+"""PSA nearest: the empty place nearest to the pod."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ class NearestParameters(Parameters):
     """Parameters of PSA nearest."""
 
     metric: Metric = "time"
-    """What is near: `euclidean`, `manhattan` (m), `path` (m along the waypoints, as a loaded robot
-    drives) or `time` (s, unhindered)."""
+    """Measure of distance: `euclidean`, `manhattan` (m), `path` (m along the waypoints, as a loaded
+    robot drives) or `time` (s, unhindered)."""
 
 
 class Nearest(PodStorageAssignment[NearestParameters]):
-    """Takes the nearest empty place; by default the one with the least travel time.
+    """Chooses the nearest empty place, by default the one with the least travel time.
 
     Ties: the place with the lowest waypoint.
     """
@@ -37,5 +37,5 @@ class Nearest(PodStorageAssignment[NearestParameters]):
         self._distances = PlaceDistances(view, parameters.metric)
 
     def place(self, robot: Robot) -> int:
-        """Find the shortest way from where the robot stands."""
+        """Find the empty place nearest to the robot."""
         return self.least(self._distances.away(robot.waypoint), self.view.storage.is_empty)

@@ -1,4 +1,4 @@
-"""PSA random: any empty place."""
+"""PSA random: a random empty place."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class RandomPlaceParameters(Parameters):
     """Parameters of PSA random."""
 
     prefer_same_tier: bool = True
-    """Whether other tiers are taken only if the robot's has no empty place."""
+    """Whether places on other tiers are used only if the robot's tier has no empty place."""
 
 
 class RandomPlace(PodStorageAssignment[RandomPlaceParameters]):
@@ -24,7 +24,7 @@ class RandomPlace(PodStorageAssignment[RandomPlaceParameters]):
     parameters_model = RandomPlaceParameters
 
     def place(self, robot: Robot) -> int:
-        """Draw an empty place, on the robot's tier if so wished and possible."""
+        """Draw an empty place, on the robot's tier if preferred and possible."""
         storage = self.view.storage
         places = storage.places[storage.is_empty]
         if self.parameters.prefer_same_tier and self.view.travel.tiers > 1:

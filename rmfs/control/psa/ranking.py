@@ -1,4 +1,4 @@
-"""Which rank of place suits a pod: the higher its score, the more prominent its place."""
+"""Ranking of pods and places: the higher a pod's score, the more prominent its place."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ Weight = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 
 
 class ScoreWeights(Parameters):
-    """How utility and speed make up the score of a pod (`rmfs.control.trackers.pod_scores`)."""
+    """Weights of utility and speed in the score of a pod (`rmfs.control.trackers.pod_scores`)."""
 
     utility_weight: Weight = 1.0
-    """Weight of a pod's utility: units on it that orders want, as a share of the best pod's."""
+    """Weight of a pod's utility: its units needed by orders, relative to the best pod."""
     speed_weight: Weight = 1.0
-    """Weight of its speed: popularity of its units, as a share of the best pod's."""
+    """Weight of a pod's speed: the popularity of its units, relative to the best pod."""
 
     @pydantic.model_validator(mode="after")
     def _something_counts(self) -> ScoreWeights:
@@ -38,17 +38,17 @@ class RankParameters(ScoreWeights):
     """Parameters of rules that rank pods and places."""
 
     place_buffer: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.05
-    """Share of the places by which the pods are spread over more places than there are pods."""
+    """Additional places over which pods are spread, as a share of all places."""
     corridor: Annotated[int, pydantic.Field(ge=1)] = 3
-    """How many ranks of places are looked at, at least: the target, one better, one worse, ..."""
+    """Minimum number of ranks that are searched: the target, one better, one worse, ..."""
 
 
 class Ranking:
-    """Ranks pods by score and finds places of the rank that suits them.
+    """Ranks pods by score, and finds places of the corresponding rank.
 
     The r-th of P pods (from 0, ties by number) belongs on the place number floor(r x (P + b) / P)
-    in order of prominence, b being the share `place_buffer` of the places, rounded down. The rank
-    of that place is the pod's target; places of equal prominence share a rank.
+    in order of prominence, where b is the share `place_buffer` of the places, rounded down. The
+    rank of that place is the pod's target; places of equal prominence share a rank.
     """
 
     def __init__(self, view: View, parameters: RankParameters) -> None:
@@ -68,23 +68,24 @@ class Ranking:
         return self._scores.scores(given.utility_weight, given.speed_weight)
 
     def target(self, pod: int) -> int:
-        """Rank of place that suits a pod."""
+        """Return the target rank of a pod."""
         scores = self.scores()
         own = scores[pod]
         better = np.count_nonzero(scores > own) + np.count_nonzero(scores[:pod] == own)
         return int(self._target_of_rank[better])
 
     def targets(self) -> NDArray[np.intp]:
-        """Ranks of place that suit the pods, shape (P,)."""
+        """Return the target ranks of pods, shape (P,)."""
         targets = np.empty_like(self._target_of_rank)
         targets[np.argsort(-self.scores(), kind="stable")] = self._target_of_rank
         return targets
 
     def seen(self, target: int) -> NDArray[np.bool_]:
-        """Empty places that are seen when looking for a target, shape (L,).
+        """Return which places are empty and found in the search from a target, shape (L,).
 
-        Ranks are looked at outward, the better one first; ranks beyond the ends count as looked at.
-        The search ends when the corridor has been searched and a place has been found.
+        Ranks are searched outward from the target, the better one first; ranks beyond the ends
+        count as searched. The search ends when the corridor has been searched and a place has been
+        found.
         """
         away = self.prominence.rank - target
         look = 2 * np.abs(away) - (away < 0)

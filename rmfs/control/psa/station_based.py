@@ -20,14 +20,14 @@ class StationBasedParameters(Parameters):
     """Parameters of PSA station-based."""
 
     stations: Literal["pick", "replenishment"] = "pick"
-    """To which kind of station places should be near."""
+    """Kind of station to which places should be near."""
     metric: Metric = "time"
-    """What is near: `euclidean`, `manhattan` (m), `path` (m along the waypoints, as a loaded robot
-    drives from the place to the station) or `time` (s, unhindered)."""
+    """Measure of distance: `euclidean`, `manhattan` (m), `path` (m along the waypoints, as a loaded
+    robot drives from the place to the station) or `time` (s, unhindered)."""
 
 
 class StationBased(PodStorageAssignment[StationBasedParameters]):
-    """Takes the empty place that is nearest to its nearest station, wherever the pod is.
+    """Chooses the empty place with the shortest distance to a station, wherever the pod is.
 
     Ties: the place with the lowest waypoint.
     """
@@ -44,5 +44,5 @@ class StationBased(PodStorageAssignment[StationBasedParameters]):
         self._to_station = distances.to_nearest([station.waypoint for station in stations])
 
     def place(self, robot: Robot) -> int:
-        """Find the shortest way to a station."""
+        """Find the empty place nearest to a station."""
         return self.least(self._to_station, self.view.storage.is_empty)

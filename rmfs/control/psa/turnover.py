@@ -25,12 +25,12 @@ class TurnoverPlaceParameters(TurnoverParameters):
     """Choice of the empty place within a class: nearest to the pod, nearest to a pick station, or
     random."""
     metric: Metric = "time"
-    """What is near there: `euclidean`, `manhattan` (m), `path` (m along the waypoints, as a loaded
-    robot drives) or `time` (s, unhindered)."""
+    """Measure of distance within a class: `euclidean`, `manhattan` (m), `path` (m along the
+    waypoints, as a loaded robot drives) or `time` (s, unhindered)."""
 
 
 class Turnover(PodStorageAssignment[TurnoverPlaceParameters]):
-    """Takes an empty place of the pod's turnover class, or else of the nearest other class.
+    """Chooses an empty place of the pod's turnover class, or else of the nearest other class.
 
     If the class has no empty place, the next slower class is tried, then the next faster one, and
     so on outward. Ties: the place with the lowest waypoint.
@@ -49,7 +49,7 @@ class Turnover(PodStorageAssignment[TurnoverPlaceParameters]):
         self._to_station = self._distances.to_nearest(stations)
 
     def place(self, robot: Robot) -> int:
-        """Go through the classes, the pod's own first."""
+        """Choose a place in the pod's own class, or else in other classes."""
         empty = self.view.storage.is_empty
         place_class = self._classes.place_class
         for number in _outward(int(self._classes.pod_class[robot.pod]), self._classes.classes):

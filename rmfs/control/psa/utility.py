@@ -1,4 +1,4 @@
-"""PSA utility: the better the pod, the nearer to a pick station."""
+"""PSA utility: the better a pod, the nearer to a pick station it is stored."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 class Utility(PodStorageAssignment[RankParameters]):
-    """Ranks pods by score and places by prominence, and takes a place of the rank that suits.
+    """Ranks pods by score and places by prominence, and chooses a place of the matching rank.
 
-    Of the empty places seen in the search outward from the target rank, the one with the least
-    travel time is taken; ties: the lowest waypoint.
+    The rule searches outward from the target rank. Of the empty places found, it chooses the one
+    with the least travel time; ties: the lowest waypoint.
     """
 
     parameters_model = RankParameters
@@ -30,6 +30,6 @@ class Utility(PodStorageAssignment[RankParameters]):
         self._distances = PlaceDistances(view, "time")
 
     def place(self, robot: Robot) -> int:
-        """Look outward from the pod's target rank."""
+        """Search outward from the pod's target rank."""
         seen = self._ranking.seen(self._ranking.target(robot.pod))
         return self.least(self._distances.away(robot.waypoint), seen)

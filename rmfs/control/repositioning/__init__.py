@@ -1,4 +1,4 @@
-"""Repositioning: which idle pod is moved where, so that it stands better for later work."""
+"""Repositioning: which idle pod is moved where, so that it is better placed for later work."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ Seconds = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 
 
 class Move(NamedTuple):
-    """A stored pod at hand, and the empty place (waypoint) it is to be moved to."""
+    """An available stored pod, and the empty place (waypoint) to which it is to be moved."""
 
     pod: int
     place: int
 
 
 def nearest_place(view: View, pod: int, among: NDArray[np.bool_], metric: Metric) -> int:
-    """Find the place with the shortest way from where a pod is stored; ties: the lowest waypoint.
+    """Find the place nearest to the place where a pod is stored; ties: the lowest waypoint.
 
     Parameters
     ----------
     among
-        Whether each of the L places may be taken, shape (L,).
+        Whether each of the L places may be chosen, shape (L,).
 
     Returns
     -------
@@ -52,31 +52,31 @@ class Pauses(Parameters):
     """Parameters of every rule that moves pods."""
 
     robot_pause_s: Seconds = 15.0
-    """Seconds after which a robot that was given a move may be given another."""
+    """Seconds after a move before the robot may get another one."""
     search_pause_s: Seconds = 15.0
-    """Seconds after which a move is looked for again when there was none."""
+    """Seconds after an unsuccessful search before moves are searched again."""
 
 
 P = TypeVar("P", bound=Parameters)
 
 
 class Repositioning(Controller[P]):
-    """Chooses among the pods that are at hand and the places that are empty.
+    """Chooses among the available pods and the empty places.
 
-    It is asked by TA, for a robot without a pod: one that would rest otherwise, or one that does
-    nothing else. Pod and place are kept for the robot at once.
+    TA asks it for a robot without a pod that would otherwise rest or that only moves idle pods. Pod
+    and place are reserved for the robot at once.
     """
 
     problem = Problem.REPOSITIONING
     never: ClassVar[bool] = False
-    """Whether it moves no pods at all, so that nobody needs to ask."""
+    """Whether it never moves pods, so that it need not be asked."""
 
     @abstractmethod
     def move(self, robot: Robot) -> Move | None:
-        """Choose a pod and its new place; None if all pods stand well."""
+        """Choose a pod and its new place; None if no move is worthwhile."""
 
     def is_ready(self, robot: Robot) -> bool:
-        """Whether `move` is to be asked now; must cost next to nothing."""
+        """Return whether `move` should be called now; must be very fast."""
         return True
 
 
@@ -84,9 +84,9 @@ Q = TypeVar("Q", bound=Pauses)
 
 
 class Pausing(Repositioning[Q]):
-    """A rule that pauses after a move (per robot) and after a search that found none (for all).
+    """A rule that pauses after a move (per robot) and after an unsuccessful search (all robots).
 
-    When a pause ends for which a robot was turned away, TA is asked again.
+    When a pause ends in which a robot asked in vain, TA is asked again.
     """
 
     def __init__(self, parameters: Q, view: View, rng: np.random.Generator) -> None:
@@ -97,10 +97,10 @@ class Pausing(Repositioning[Q]):
 
     @abstractmethod
     def find(self, robot: Robot) -> Move | None:
-        """Look for the best move."""
+        """Search for the best move."""
 
     def move(self, robot: Robot) -> Move | None:
-        """Look for the best move and begin a pause."""
+        """Search for the best move, and start a pause."""
         now_s = self.view.now_s
         found = self.find(robot)
         if found is not None:
@@ -111,7 +111,7 @@ class Pausing(Repositioning[Q]):
         return found
 
     def is_ready(self, robot: Robot) -> bool:
-        """Whether neither pause is on."""
+        """Return whether no pause is in progress for the robot."""
         ready_s = max(self._search_from_s, self._robot_from_s[robot.index])
         if self.view.now_s >= ready_s:
             return True
@@ -119,7 +119,7 @@ class Pausing(Repositioning[Q]):
         return False
 
     def next_event_s(self) -> float:
-        """When the first pause ends for which a robot was turned away."""
+        """Time at which the first pause ends in which a robot asked in vain."""
         if self._again_s <= self.view.now_s:
             self._again_s = inf
         return self._again_s

@@ -1,4 +1,4 @@
-"""Repositioning cache: some places near each pick station are kept free, for useful pods."""
+"""Repositioning cache: keeps some places near each pick station free for useful pods."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class Cache(Pausing[CacheMoveParameters]):
             np.minimum(self._to_replenishment, to, out=self._to_replenishment)
 
     def find(self, robot: Robot) -> Move | None:
-        """Look for a pod to move in, then for one to move out."""
+        """Search for a pod to move in, then for one to move out."""
         free = self._zones.cache_size - self._zones.occupied()
         wanted = np.minimum(self.parameters.free_places, self._zones.cache_size)
         pods = self.view.storage.is_at_hand.nonzero()[0]

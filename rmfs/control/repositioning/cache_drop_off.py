@@ -1,4 +1,4 @@
-"""Repositioning cache-drop-off: empty the drop-off zones, and keep the caches filled to a level."""
+"""Repositioning cache-drop-off: clears the drop-off zones, and keeps caches filled to a level."""
 
 from __future__ import annotations
 
@@ -22,24 +22,25 @@ class CacheDropOffParameters(CacheParameters, Pauses):
     """Parameters of repositioning cache-drop-off."""
 
     target_fill: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
-    """Share of each cache that is to hold pods."""
+    """Share of each cache's places that should hold pods."""
     same_tier: bool = False
-    """Whether pods are moved by robots on their tier only."""
+    """Whether pods are moved only by robots on their tier."""
     metric: Metric = "manhattan"
-    """How the length of a move is measured: `euclidean`, `manhattan` (m), `path` (m along the
-    waypoints, as a loaded robot drives) or `time` (s, unhindered)."""
+    """Measure of the length of a move: `euclidean`, `manhattan` (m), `path` (m along the waypoints,
+    as a loaded robot drives) or `time` (s, unhindered)."""
 
 
 class CacheDropOff(Pausing[CacheDropOffParameters]):
     """Clears drop-off zones into caches and storage, then fills or thins out the caches.
 
-    A pod in a drop-off zone is moved into the cache of its station if it is worth it (as by PSA
-    cache) and otherwise outside all zones. If there is none, the cache is looked at that is
-    farthest from its target fill, in places: if it holds too few, the pod outside all zones with
-    the highest score is moved in, provided that it is worth it; if too many, the pod with the
-    lowest score is moved out; if nothing can be done there, the next cache. Within a step, stations
-    come in this order as well; then pods by score, in a drop-off zone the highest first. Nothing is
-    moved into a drop-off zone. A pod goes to the nearest place; ties: the lowest number.
+    A pod in a drop-off zone is moved into the cache of its station if it deserves a place there (as
+    in PSA cache), and otherwise outside all zones. If no such pod is left, caches are considered in
+    order of their deviation, in places, from the target fill, the largest first: into a cache with
+    too few pods the rule moves the pod with the highest score from outside all zones, if it
+    deserves a place; from a cache with too many pods it moves the pod with the lowest score out.
+    Drop-off zones are considered in the same order of stations; within a zone, the pod with the
+    highest score comes first. Nothing is moved into a drop-off zone. A pod goes to the nearest
+    place; ties: the lowest number.
     """
 
     parameters_model = CacheDropOffParameters
@@ -57,7 +58,7 @@ class CacheDropOff(Pausing[CacheDropOffParameters]):
         self._drop_off_at[places] = self._zones.drop_off_of
 
     def find(self, robot: Robot) -> Move | None:
-        """Look for a pod in a drop-off zone, then for a cache that is not as it should be."""
+        """Search for a pod in a drop-off zone, then for a cache off its target fill."""
         storage = self.view.storage
         pods = storage.is_at_hand.nonzero()[0]
         if self.parameters.same_tier:

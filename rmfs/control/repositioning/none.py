@@ -1,4 +1,4 @@
-"""Repositioning none: pods stay where they were stored."""
+"""Repositioning none: stored pods are never moved."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 
 
 class NoMoves(Repositioning[NoParameters]):
-    """Moves no pod."""
+    """Never moves a pod."""
 
     never = True
 
     def move(self, robot: Robot) -> Move | None:
-        """Find nothing."""
+        """Return None: no move."""
         return None
 
     def is_ready(self, robot: Robot) -> bool:
-        """Never."""
+        """Return False: it is never asked."""
         return False

@@ -1,4 +1,4 @@
-"""Repositioning utility: the pod that stands farthest from where its score says."""
+"""Repositioning utility: moves the pod whose place differs most from its target rank."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 _TRIES = 8
-"""Pods for which a better place is looked for."""
+"""Number of pods for which a better place is searched."""
 
 
 class UtilityParameters(RankParameters, Pauses):
     """Parameters of repositioning utility."""
 
     search_pause_s: Seconds = 120.0
-    """Seconds after which a move is looked for again when there was none."""
+    """Seconds after an unsuccessful search before moves are searched again."""
 
 
 class Utility(Pausing[UtilityParameters]):
     """Moves the pod with the largest distance between the rank of its place and its target rank.
 
-    Pods and places are ranked as by PSA utility, and the new place is found likewise: of the empty
-    places seen from the target rank outward the one nearest to the pod (Manhattan distance; ties:
-    the lowest waypoint). A pod is moved only if its rank comes nearer to the target; if not, the
-    pod with the next largest distance is looked at, up to eight. Ties: the pod with the lowest
-    number.
+    Pods and places are ranked as in PSA utility, and the new place is found in the same way: of the
+    empty places found in the search outward from the target rank, it is the one nearest to the pod
+    (Manhattan distance; ties: the lowest waypoint). A pod is moved only if its rank gets closer to
+    the target; otherwise the pod with the next largest distance is tried, up to eight. Ties: the
+    pod with the lowest number.
     """
 
     parameters_model = UtilityParameters
@@ -41,7 +41,7 @@ class Utility(Pausing[UtilityParameters]):
         self._ranking = Ranking(view, parameters)
 
     def find(self, robot: Robot) -> Move | None:
-        """Look for the pod that stands worst."""
+        """Search for the pod farthest from its target rank."""
         storage = self.view.storage
         rank_at = np.zeros(self.view.layout.waypoints, np.intp)
         rank_at[storage.places] = self._ranking.prominence.rank

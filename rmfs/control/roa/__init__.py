@@ -20,8 +20,9 @@ P = TypeVar("P", bound=Parameters)
 class ReplenishmentOrderAssignment(Controller[P]):
     """Chooses stations for the bundles of `view.bundles.without_station`.
 
-    The station reserves the bundle's space at once. `view.bundles.released` has those whose pod is
-    decided. A bundle can be handled when both pod and station are.
+    The station reserves the bundle's space at once. `view.bundles.released` contains the bundles
+    whose pod has been decided. A bundle can be handled when both its pod and its station have been
+    decided.
     """
 
     problem = Problem.ROA
@@ -31,4 +32,4 @@ class ReplenishmentOrderAssignment(Controller[P]):
 
     @abstractmethod
     def decide(self) -> Iterator[SendBundle | Ask[Any] | By[Any]]:
-        """Yield a bundle and a station, again and again, until nothing is to be sent now."""
+        """Yield pairs of bundle and station until no more bundles should be sent now."""

@@ -1,4 +1,4 @@
-"""ROA random: each bundle to any station with room."""
+"""ROA random: each bundle to a random station with room."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ class RandomStationParameters(Parameters):
     """Parameters of ROA random."""
 
     stick_to_station: bool = True
-    """Whether the last station is taken again while it has room."""
+    """Whether the last station is chosen again while it has room."""
 
 
 class RandomStation(ReplenishmentOrderAssignment[RandomStationParameters]):
-    """Sends bundles in order of arrival to stations drawn among those active and with room.
+    """Sends bundles in order of arrival to random active stations with room.
 
-    It does not wait for the choice of the pod. A bundle without room anywhere waits.
+    It does not wait for the choice of the pod. A bundle waits if no station has room.
     """
 
     parameters_model = RandomStationParameters

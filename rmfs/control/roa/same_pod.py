@@ -39,22 +39,24 @@ class SamePodParameters(Parameters):
     """Whether a batch that fits nowhere blocks the batches after it; without effect if batches are
     broken."""
     same_tier: bool = True
-    """Whether only stations on the present tier of the pod are considered."""
+    """Whether only stations on the current tier of the pod are considered."""
 
 
 class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
-    """Sends the batch of a pod to one station that has room for all of it.
+    """Sends the batch of a pod to one station with room for the whole batch.
 
-    A batch is what RPS has released for one pod and what has no station yet. Batches are taken in
-    the order of their first release, so that one trip of a pod brings many bundles. The station is
-    chosen by the station rule, by default the nearest in a straight line from where the pod is now,
-    also while it is carried; ties: the station with the lowest number.
+    A batch consists of the bundles that RPS has released for one pod and that have no station yet;
+    sent together, they need only one trip of the pod. Batches are considered in the order of their
+    first release. The station is chosen by the station rule, by default the nearest in a straight
+    line from the current position of the pod, even if it is being carried; ties: the station with
+    the lowest number.
 
     A batch larger than every station is split: as much of it as fits goes to an empty station.
 
-    If batches are broken, a bundle goes to the station to which the last bundle of its pod was
-    sent; if that has no room or is switched off, to the one nearest to it; if there was none, by
-    the station rule. Bundles that fit nowhere wait, those after them do not.
+    If batches are broken, a bundle goes to the station of the last bundle of its pod. If that
+    station has no room or is switched off, it goes to the nearest other station; if there was no
+    such bundle, the station rule decides. Bundles that fit nowhere wait without blocking later
+    ones.
     """
 
     parameters_model = SamePodParameters
@@ -66,7 +68,7 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
         self._last: dict[int, ReplenishmentStation] = {}
 
     def decide(self) -> Iterator[SendBundle]:
-        """Yield batch by batch until one fits nowhere, or bundle by bundle."""
+        """Yield assignments batch by batch until one fits nowhere, or bundle by bundle."""
         return self._bundles() if self.parameters.break_batches else self._batches()
 
     def _batches(self) -> Iterator[SendBundle]:

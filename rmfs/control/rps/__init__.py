@@ -1,4 +1,4 @@
-"""Replenishment pod selection (RPS): which pod a bundle goes into, and when that is made known."""
+"""Replenishment pod selection (RPS): which pod a bundle goes into, and when this is released."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ P = TypeVar("P", bound=Parameters)
 class ReplenishmentPodSelection(Controller[P]):
     """Chooses pods for the bundles of `view.bundles.without_pod`.
 
-    The pod keeps the bundle's space free at once. ROA and TA may act on the choice only when it is
-    released; until then further bundles can be promised to the same pod, so that it makes one trip
-    for all of them (`view.bundles.unreleased`).
+    Space for the bundle is reserved on the pod at once. ROA and TA may act on the choice only after
+    it is released; until then further bundles can be promised to the same pod, so that one trip
+    serves all of them (`view.bundles.unreleased`).
     """
 
     problem = Problem.RPS
@@ -30,7 +30,7 @@ class ReplenishmentPodSelection(Controller[P]):
 
     @abstractmethod
     def decide(self) -> Iterator[PromiseBundle | ReleasePod | SendBundle | Ask[Any] | By[Any]]:
-        """Yield promises and releases until nothing is to be decided now.
+        """Yield promises and releases until there is nothing more to decide now.
 
         A rule that also decides ROA sends the bundles of a pod after it has released them.
         """

@@ -1,4 +1,4 @@
-"""Buffering of RPS decisions until a pod's trip is worth while, for all rules that do so."""
+"""Buffering of RPS decisions until a pod's trip is worthwhile, for all rules that do so."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ P = TypeVar("P", bound=Parameters)
 class Buffered(ReplenishmentPodSelection[P]):
     """Promises bundles one by one and releases a pod's bundles together.
 
-    What a rule that was exchanged has held back is released in the same way. The time-out is an
-    event of its own.
+    Bundles held back by an exchanged rule are released in the same way. The rule is also asked when
+    a time-out expires.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -47,7 +47,7 @@ class Buffered(ReplenishmentPodSelection[P]):
 
     @abstractmethod
     def timeout_s(self, pod: int) -> float:
-        """Time from the last promise to the pod to the release of its bundles at the latest."""
+        """Return the maximum time from the last promise to a pod to the release of its bundles."""
 
     @property
     @abstractmethod
@@ -94,7 +94,7 @@ class Buffered(ReplenishmentPodSelection[P]):
         yield from self._due()
 
     def next_event_s(self) -> float:
-        """When the buffer of some pod times out."""
+        """Time at which the next buffer times out."""
         since = self.view.bundles.unreleased_since_s
         earliest_s = inf
         for pod, time_s in since.items():
@@ -131,7 +131,7 @@ class BufferParameters(Parameters):
 
 
 class StickyParameters(BufferParameters):
-    """Parameters of RPS rules that fill one pod after the other."""
+    """Parameters of RPS rules that fill one pod after another."""
 
     stick_to_pod: bool = True
     """Whether the last pod is chosen again while it has room and until a station serves it."""
@@ -142,24 +142,24 @@ S = TypeVar("S", bound=StickyParameters)
 
 
 class EvenlyBuffered(Buffered[B]):
-    """Buffers all pods with the same threshold and the same time-out."""
+    """Buffers bundles with the same threshold and the same time-out for all pods."""
 
     def threshold(self, pod: int) -> float:
-        """Return the one threshold."""
+        """Return the common threshold."""
         return self.parameters.buffer_threshold
 
     def timeout_s(self, pod: int) -> float:
-        """Return the one time-out."""
+        """Return the common time-out."""
         return self.parameters.buffer_timeout_s
 
     @property
     def shortest_timeout_s(self) -> float:
-        """The one time-out."""
+        """The common time-out."""
         return self.parameters.buffer_timeout_s
 
 
 class Sticky(EvenlyBuffered[S]):
-    """Fills the last pod again while it has room and until a station serves it."""
+    """Chooses the last pod again while it has room and until a station serves it."""
 
     hears = frozenset({Trigger.BUNDLE_STORED})
 
@@ -168,7 +168,7 @@ class Sticky(EvenlyBuffered[S]):
         self._last = -1
 
     def choose(self, bundle: Bundle) -> int:
-        """Choose the last pod or, if that is not possible, as the rule says."""
+        """Choose the last pod or, if that is not possible, a pod by the rule."""
         inventory = self.view.inventory
         last = self._last
         if last >= 0 and inventory.load[last] + bundle.space <= inventory.capacity[last]:

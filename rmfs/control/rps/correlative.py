@@ -1,4 +1,4 @@
-"""RPS correlative: the pod with the SKUs that are ordered together with the bundle's."""
+"""RPS correlative: the pod whose SKUs are most often ordered together with the bundle's."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 
 class Correlative(EvenlyBuffered[BufferParameters]):
-    """Takes the pod with the highest sum of pair frequencies with the bundle's SKU.
+    """Chooses the pod with the highest sum of pair frequencies with the bundle's SKU.
 
-    A pod's sum is over the SKUs it contains; the frequency of a pair is the number of orders in
-    which both SKUs came together, past orders included. All pods are candidates, wherever they
-    are. Ties: the pod with the lowest number.
+    The sum is over the SKUs on the pod; the frequency of a pair is the number of orders, including
+    past ones, that contain both SKUs. All pods are candidates, wherever they are. Ties: the pod
+    with the lowest number.
     """
 
     parameters_model = BufferParameters

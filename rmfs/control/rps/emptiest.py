@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Emptiest(Sticky[StickyParameters]):
-    """Takes the pod with the lowest share of its capacity stored or promised.
+    """Chooses the pod with the lowest share of its capacity stored or promised.
 
     All pods are candidates, wherever they are. Ties: the pod with the lowest number.
     """

@@ -1,4 +1,4 @@
-"""RPS least-demand: the pod whose SKUs are wanted least."""
+"""RPS least-demand: the pod whose SKUs are least in demand."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 
 class LeastDemand(Sticky[StickyParameters]):
-    """Takes the pod with the least demand for the SKUs on it, which pickers will miss least.
+    """Chooses the pod with the least demand for its SKUs, which pickers will miss least.
 
-    The demand for a SKU is what is ordered and not yet picked, in the backlog and at stations. A
-    pod's demand is the sum over the SKUs it contains, each with its whole demand. All pods are
-    candidates, wherever they are. Ties: the pod with the lowest number.
+    The demand for a SKU is the number of units ordered and not yet picked, in the backlog and at
+    stations. The demand for a pod is the sum of the total demands for the SKUs it contains. All
+    pods are candidates, wherever they are. Ties: the pod with the lowest number.
     """
 
     parameters_model = StickyParameters

@@ -1,4 +1,4 @@
-"""RPS rules that look at where the station of a bundle is, and so wait for ROA."""
+"""RPS rules that consider the position of a bundle's station, and therefore wait for ROA."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ class Located(EvenlyBuffered[B]):
 
 
 class Nearest(Located[BufferParameters]):
-    """Takes the pod nearest to the station that ROA chose for the bundle, in a straight line.
+    """Chooses the pod nearest, in a straight line, to the station that ROA chose for the bundle.
 
-    Pods on another tier come after all on the station's, and pods carried by robots, measured from
-    where the robot is, after all that are stored. Ties: the pod with the lowest number. It works
-    with an ROA rule that does not wait for the pod (`random`).
+    Pods on the station's tier come before those on other tiers, and stored pods before carried
+    ones, whose distance is that of the robot. Ties: the pod with the lowest number. It requires an
+    ROA rule that does not wait for the pod (`random`).
     """
 
     parameters_model = BufferParameters
@@ -61,11 +61,11 @@ class ReactiveParameters(BufferParameters):
 
 
 class Reactive(Located[ReactiveParameters]):
-    """Takes a pod that is easy to bring to the station that ROA chose for the bundle.
+    """Chooses a pod that is easy to bring to the station that ROA chose for the bundle.
 
-    Stored pods on the station's tier come first; next those that are carried or on another tier,
-    then those that are both. Among equals any, or the emptiest, ties by number. It works with an
-    ROA rule that does not wait for the pod (`random`).
+    Stored pods on the station's tier come first; then those that are carried or on another tier,
+    then those that are both. Among these, a random one is chosen, or the emptiest, ties by number.
+    It requires an ROA rule that does not wait for the pod (`random`).
     """
 
     parameters_model = ReactiveParameters

@@ -1,4 +1,4 @@
-"""RPS random: any pod with room."""
+"""RPS random: a random pod with room."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ if TYPE_CHECKING:
     from rmfs.world.orders import Bundle
 
 _DRAWS = 16
-"""Pods drawn before those with room are looked up."""
+"""Number of pods drawn before the pods with room are listed."""
 
 
 class RandomPod(Sticky[StickyParameters]):
-    """Takes a pod drawn among all that have room for the bundle, wherever they are."""
+    """Draws one of all pods with room for the bundle, wherever they are."""
 
     parameters_model = StickyParameters
 

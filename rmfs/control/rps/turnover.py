@@ -1,4 +1,4 @@
-"""RPS turnover: fast SKUs into fast pods, by classes."""
+"""RPS turnover: fast-moving SKUs go into fast-moving pods, by classes."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class TurnoverPodParameters(TurnoverParameters):
     """Parameters of RPS turnover."""
 
     emptiest: bool = True
-    """Whether the pod of a class with the lowest share of its capacity stored or promised is taken;
-    otherwise any."""
+    """Whether the pod of a class with the lowest share of its capacity stored or promised is
+    chosen; otherwise a random one."""
     buffer_thresholds: tuple[Share, ...] = (0.8, 0.8, 0.8)
     """For each class, the share of a pod's capacity, stored and promised, at which its bundles are
     released."""
@@ -42,13 +42,13 @@ class TurnoverPodParameters(TurnoverParameters):
 
 
 class Turnover(Buffered[TurnoverPodParameters]):
-    """Takes a pod of the class of the bundle's SKU, and so brings fast SKUs close to pickers.
+    """Chooses a pod of the class of the bundle's SKU, which brings fast SKUs close to pickers.
 
-    Classes are made by units ordered (`rmfs.control.trackers.turnover`); the fastest pods are of
-    the class with the nearest places. If no pod of the class has room, the next slower class is
-    tried, the next faster, the second slower, and so on. Within a class the last pod is taken again
-    while it has room and until a station serves it; then the emptiest, ties by number, or any. All
-    pods are candidates, wherever they are.
+    Classes are formed by units ordered (`rmfs.control.trackers.turnover`); the fastest pods belong
+    to the class with the nearest places. If no pod of the class has room, the next slower class is
+    tried, then the next faster, the second slower, and so on. Within a class the last pod is chosen
+    again while it has room and until a station serves it; then the emptiest one, ties by number, or
+    a random one. All pods are candidates, wherever they are.
     """
 
     parameters_model = TurnoverPodParameters
@@ -62,7 +62,7 @@ class Turnover(Buffered[TurnoverPodParameters]):
         self._last = [-1] * self._classes.classes
 
     def choose(self, bundle: Bundle) -> int:
-        """Choose from the class of the SKU, or from one close to it."""
+        """Choose a pod of the SKU's class, or of a class close to it."""
         fits = self.fits(bundle)
         if not fits.any():
             return -1
@@ -78,11 +78,11 @@ class Turnover(Buffered[TurnoverPodParameters]):
         return -1
 
     def threshold(self, pod: int) -> float:
-        """Look up the threshold of the pod's class."""
+        """Return the threshold of the pod's class."""
         return self.parameters.buffer_thresholds[self._classes.pod_class.item(pod)]
 
     def timeout_s(self, pod: int) -> float:
-        """Look up the time-out of the pod's class."""
+        """Return the time-out of the pod's class."""
         return self.parameters.buffer_timeouts_s[self._classes.pod_class.item(pod)]
 
     @property
@@ -102,7 +102,7 @@ class Turnover(Buffered[TurnoverPodParameters]):
 
 
 def outward(middle: int, count: int) -> list[int]:
-    """List the numbers below `count`: the middle one, the next higher, the next lower, and on."""
+    """List the numbers below `count` outward: a middle one, the next higher, the next lower, ..."""
     steps = [middle]
     for away in range(1, count):
         steps += [number for number in (middle + away, middle - away) if 0 <= number < count]

@@ -19,7 +19,7 @@ P = TypeVar("P", bound=Parameters)
 class StationActivation(Controller[P]):
     """Switches stations on and off; all are off before the first decision.
 
-    A station that is off finishes what is assigned to it and gets nothing new.
+    A station that is off finishes its assigned work and gets no new work.
     """
 
     problem = Problem.SA
@@ -27,4 +27,4 @@ class StationActivation(Controller[P]):
 
     @abstractmethod
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield the stations to be switched now."""
+        """Yield the stations to be switched on or off now."""

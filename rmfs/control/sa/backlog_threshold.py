@@ -1,4 +1,4 @@
-"""SA backlog-threshold: switches stations depending on the waiting work."""
+"""SA backlog-threshold: switches stations depending on the amount of waiting work."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class BacklogThresholdParameters(Parameters):
     """Parameters of SA backlog-threshold."""
 
     pause_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 600.0
-    """Seconds between two switches of stations of one kind, and before the first switch."""
+    """Minimum seconds between switches of stations of the same kind, and before the first one."""
     orders_on: Count = 50
     """Number of orders in the backlog above which a pick station is switched on."""
     bundles_on: Count = 50
@@ -40,13 +40,14 @@ class BacklogThresholdParameters(Parameters):
 
 
 class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
-    """Switches stations on when much work waits, and off when the active ones are little used.
+    """Switches stations on when much work waits, and off when the active ones have little work.
 
-    All are on at the start. For each kind by itself, and after each pause: if more work waits than
-    the threshold, and the active stations are used enough, the first one that is off is switched
-    on; if it is the other way round, the last one that is on is switched off; if both or neither,
-    none. The last active station of a kind stays on. First and last are by activation number, ties
-    by number. What waits in RPS's buffers counts.
+    All stations are on at the start. After each pause, each kind is considered separately. If more
+    work waits than the threshold, and the used share of the active stations is not below the limit,
+    the first station that is off is switched on. If both are the other way round, the last one that
+    is on is switched off. Otherwise nothing changes. The last active station of a kind stays on.
+    First and last refer to the activation number, ties by number. Bundles held back by RPS count as
+    waiting.
     """
 
     parameters_model = BacklogThresholdParameters
@@ -71,7 +72,7 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
         self._order = {pick: activation_order(view, pick) for pick in (True, False)}
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield all stations at first, later one of each kind at most."""
+        """Yield all stations at the start, and later at most one of each kind."""
         if not self._started:
             self._started = True
             self._from_s = dict.fromkeys(self._from_s, self.view.now_s + self.parameters.pause_s)
@@ -87,7 +88,7 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
                 yield switch
 
     def next_event_s(self) -> float:
-        """When the next pause ends."""
+        """Time at which the next pause ends."""
         return min((at_s for at_s in self._from_s.values() if at_s > self.view.now_s), default=inf)
 
     def _switch(self, pick: bool) -> SwitchStation | None:

@@ -29,15 +29,15 @@ class ConstantRatioParameters(Parameters):
 class ConstantRatio(StationActivation[ConstantRatioParameters]):
     """Switches a fixed share of the stations on and the others off, permanently.
 
-    On are floor(active share x stations), of which floor(pick share x these) are pick stations:
-    those with the lowest activation numbers; ties: the lowest number. At least one of each kind is
-    on, if there is one.
+    Of n stations, m = floor(active share x n) are on, of which floor(pick share x m) are pick
+    stations. Stations with the lowest activation numbers are on; ties: the lowest number. At least
+    one of each kind is on, if there is one.
     """
 
     parameters_model = ConstantRatioParameters
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield the stations that are not as they should be."""
+        """Yield the stations that are not in the desired state."""
         on = self._on()
         for station in self.view.stations:
             if station.active != (station.index in on):

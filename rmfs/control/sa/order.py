@@ -9,12 +9,12 @@ if TYPE_CHECKING:
 
 
 def activation_order(view: View, pick: bool) -> list[int]:
-    """Stations of one kind by their activation number in the layout, ties by number.
+    """Return the stations of one kind by activation number in the layout, ties by number.
 
     Parameters
     ----------
     pick
-        Pick stations; otherwise replenishment stations.
+        Whether pick stations are returned; otherwise replenishment stations.
     """
     layout = view.layout
     if pick:

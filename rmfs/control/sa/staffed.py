@@ -39,15 +39,15 @@ class StaffedParameters(Parameters):
 class Staffed(StationActivation[StaffedParameters]):
     """Follows the roster of the scenario, and gives pickers who are too tired a rest.
 
-    A pick station is on while a picker is there. From fatigue `tired` on it takes no new orders,
-    until the picker has rested; what is open there is finished first. Replenishment stations are
-    always on, and so are all stations where the scenario has no pickers.
+    A pick station is on while a picker is there. When the picker's fatigue reaches `tired`, the
+    station takes no new orders until the picker has rested; open orders are finished first.
+    Replenishment stations are always on, as are all stations if the scenario has no pickers.
     """
 
     parameters_model = StaffedParameters
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield the stations that are not as they should be."""
+        """Yield the stations that are not in the desired state."""
         staff = self.view.staff
         for station in self.view.stations:
             on = staff is None or station.index >= len(staff.at_station)
@@ -57,7 +57,7 @@ class Staffed(StationActivation[StaffedParameters]):
                 yield SwitchStation(station.index, active=on)
 
     def next_event_s(self) -> float:
-        """When pickers come or leave, or fatigue is looked at."""
+        """Time at which pickers come or leave, or fatigue is checked next."""
         staff = self.view.staff
         if staff is None:
             return inf

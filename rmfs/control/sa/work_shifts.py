@@ -51,20 +51,20 @@ class WorkShiftsParameters(Parameters):
 class WorkShifts(StationActivation[WorkShiftsParameters]):
     """Switches all stations together, at the same times of every loop (by default a day).
 
-    The clock is that of the scenario, which shows `time_of_day_s` at time zero.
+    The clock is that of the scenario, where time zero is `time_of_day_s`.
     """
 
     parameters_model = WorkShiftsParameters
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield the stations that are not as the present shift says."""
+        """Yield the stations that are not in the state of the current shift."""
         on = self._present()[0]
         for station in self.view.stations:
             if station.active != on:
                 yield SwitchStation(station.index, active=on)
 
     def next_event_s(self) -> float:
-        """When the next shift begins that differs."""
+        """Time of the next change between on and off."""
         return self._present()[1]
 
     def _present(self) -> tuple[bool, float]:

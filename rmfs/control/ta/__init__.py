@@ -1,4 +1,4 @@
-"""Task allocation (TA): which robot does what."""
+"""Task allocation (TA): which robot does which task."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ P = TypeVar("P", bound=Parameters)
 
 
 class Consult(Protocol):
-    """What TA may ask the controllers of the other problems, whichever are installed now."""
+    """The questions that TA may ask the currently installed controllers of the other problems."""
 
     def serves(self, pod: int, station: int) -> bool:
         """Ask PPS whether there is work for a pod at a station of either kind."""
@@ -39,11 +39,11 @@ class Consult(Protocol):
         ...
 
     def may_move(self) -> bool:
-        """Whether there is repositioning to be asked at all."""
+        """Return whether there is a repositioning rule that moves pods."""
         ...
 
     def move_for(self, robot: Robot) -> Move | None:
-        """Ask repositioning for a pod that a robot without one should move, and where to."""
+        """Ask repositioning which pod a robot without a pod should move, and to which place."""
         ...
 
 
@@ -54,10 +54,10 @@ WORK = frozenset(
 
 
 class TaskAllocation(Controller[P]):
-    """Gives tasks to the robots of `view.asking`, and to those of `view.resting` if it likes.
+    """Gives tasks to the robots of `view.asking` and, optionally, to those of `view.resting`.
 
-    Each decision is applied before the next. A robot left without task is asked about again when
-    the next trigger happens. Robots at rest are to be given work as soon as there is some: rules
+    Each decision is applied before the next one. For a robot left without a task, the rule is asked
+    again at the next trigger. Robots at rest should get work as soon as there is any: rules
     subscribe to the events of `WORK`.
     """
 
@@ -69,14 +69,15 @@ class TaskAllocation(Controller[P]):
     def decide(
         self, consult: Consult
     ) -> Iterator[TaskDecision | Prepare | AssignOrder | AssignLines | Ask[Any] | By[Any]]:
-        """Yield tasks for robots until nothing is to be given out now.
+        """Yield tasks for robots until there is nothing more to assign now.
 
-        A controller that decides POA as well yields orders too, and is also asked when no robot is.
+        A controller that also decides POA yields order assignments as well, and is asked even if no
+        robot needs a task.
         """
 
     @abstractmethod
     def rest_place(self, robot: Robot) -> int:
-        """Choose where an empty robot may rest; -1 for where it is.
+        """Choose a place where an empty robot may rest; -1: where it is.
 
-        Also asked when a robot at rest has to make room for one that comes for the pod above.
+        It is also called when a robot at rest must make room for one that fetches the pod above it.
         """

@@ -1,4 +1,4 @@
-"""How many robots each station gets, and which: the arithmetic of TA balanced."""
+"""The number of robots for each station, and their assignment, as used by TA balanced."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 def split(robots: int, first: float, second: float) -> tuple[int, int]:
-    """Divide robots over two groups by weight: rounded down, the rest to the smaller group.
+    """Divide robots among two groups by weight, rounded down; the rest goes to the smaller group.
 
-    Ties go to the first group. If both weights are 0 no robot is given out.
+    Ties go to the first group. If both weights are 0, no robot is assigned.
     """
     total = first + second
     if total <= 0:
@@ -28,14 +28,14 @@ def split(robots: int, first: float, second: float) -> tuple[int, int]:
 
 
 def deal(robots: int, stations: Sequence[int], limit: int, goals: dict[int, int]) -> int:
-    """Deal robots out to stations in turn, at most `limit` each; returns how many are left.
+    """Assign robots to stations in turn, at most `limit` each; return the number left.
 
     Parameters
     ----------
     stations
-        In the order in which they are served.
+        Stations in the order in which robots are assigned.
     goals
-        Number of robots per station, changed.
+        Number of robots per station, changed in place.
     """
     while robots > 0:
         before = robots
@@ -53,7 +53,7 @@ def reassign(
 ) -> list[int]:
     """Move robots to stations below their goal, the nearest pair of robot and station first.
 
-    A robot may be moved if it has no station or one with more robots than its goal. Ties: the
+    A robot may be moved if it has no station, or one with more robots than its goal. Ties: the
     robot, then the station, with the lowest number.
 
     Parameters
@@ -61,9 +61,9 @@ def reassign(
     station_of
         Station of each of the R robots, or -1.
     goals
-        Number of robots per station; stations not named here have the goal 0.
+        Number of robots per station; 0 for stations not listed.
     distance
-        Between robots and all stations, shape (R, S).
+        Distance between robots and all stations, shape (R, S).
 
     Returns
     -------

@@ -52,20 +52,21 @@ class Balanced(StationTeams[BalancedParameters]):
 
     Every `period_s`, if the set of stations with work has changed, the robots are redistributed:
     among the kinds of station by weight times the share of stations with work, and within a kind in
-    turn, stations far from the middle of the tier first; robots above the limit go to any station
-    below it. Then robots are moved, nearest first. If no station had work, new work does not wait
-    for the end of the period. The share of the robots given by the weight of repositioning, rounded
-    down, gets no station. The robot that is asked about does not count towards its station's limit.
+    turn, stations far from the middle of the tier first; robots in excess of the limit go to any
+    station below it. Then robots are moved, nearest first. If no station had work, robots are
+    redistributed as soon as there is new work. The share of robots given by the weight of
+    repositioning, rounded down, gets no station. The robot that is asked about does not count
+    towards its station's limit.
     """
 
     parameters_model = BalancedParameters
 
     def stations_now(self) -> frozenset[int]:
-        """Find the stations that have work."""
+        """Return the stations that have work."""
         return frozenset(station.index for station in self.view.stations if station.has_work)
 
     def goals(self, active: frozenset[int]) -> dict[int, int]:
-        """Divide by weight."""
+        """Return the number of robots for each station, by weight."""
         given = self.parameters
         order = [station for station in self._far_first if station in active]
         picks, others = by_kind(self.view, order)
@@ -81,11 +82,11 @@ class Balanced(StationTeams[BalancedParameters]):
         return goals
 
     def may_work(self, robot: Robot, station: int) -> bool:
-        """Whether the station has fewer workers than its limit, this robot left out."""
+        """Whether the station has fewer robots than its limit, without this robot."""
         return station >= 0 and self.workers(station, robot) < self.parameters.robots_per_station
 
     def stations_for(self, robot: Robot) -> Sequence[int]:
-        """Its own station; or all, the nearest first, ties by number."""
+        """Return its own station; or all stations, nearest first, ties by number."""
         own = super().stations_for(robot)
         if not own or not self.parameters.search_all:
             return own
@@ -94,7 +95,7 @@ class Balanced(StationTeams[BalancedParameters]):
         return nearest_first
 
     def go_elsewhere(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Continue to another station nearby, if allowed; PPS chooses which."""
+        """Send the robot on to another station nearby, if allowed; PPS chooses which."""
         if not self.parameters.other_stations:
             return None
         among = [s.index for s in self.view.stations if self.may_work(robot, s.index)]
@@ -104,11 +105,11 @@ class Balanced(StationTeams[BalancedParameters]):
         return self.bring(robot, robot.pod, consult.next_station(robot, stations))
 
     def looks_elsewhere(self) -> bool:
-        """Whether it searches for work at all stations."""
+        """Whether the robot searches for work at all stations."""
         return self.parameters.search_all
 
     def may_be_moved(self, consult: Consult) -> bool:
-        """Whether it moves idle pods, and there is a rule that does."""
+        """Whether idle pods are moved before resting, and a repositioning rule exists."""
         given = self.parameters
         moves = given.reposition_before_rest or given.reposition_weight > 0
         return moves and consult.may_move()

@@ -1,4 +1,4 @@
-"""TA brute-force: of all pairs of a pod and a station, the one that can be served soonest."""
+"""TA brute-force: the pair of pod and station that can be served soonest."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ class BruteForce(Solo[BruteForceParameters]):
 
     The estimated time is the straight path from robot to pod at top speed, the time to lift the pod
     (and first to set down another one), and the longer of the unhindered time to the station and
-    the expected wait there. Robots look for picks until there are none, then for bundles until
-    there are none, with a common switch for all. If the best pod is not the carried one, the latter
-    is parked on the way, where the time there plus the straight path to the other pod is least.
+    the expected wait there. All robots together look for picks until there are none, then for
+    bundles until there are none. If the best pod is not the carried one, the carried pod is parked
+    on the way, at the place with the least time there plus the straight path to the other pod.
     Without work, pods are parked at the nearest place. Ties: the carried pod, then the station,
     then the pod with the lowest number.
 
@@ -65,7 +65,7 @@ class BruteForce(Solo[BruteForceParameters]):
         self._picks = True
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield the best job, or what has to be done before it."""
+        """Yield the best task, or the task that must precede it."""
         view = self.view
         job = self._best(robot, consult)
         if job is None:
@@ -84,7 +84,7 @@ class BruteForce(Solo[BruteForceParameters]):
                 yield Prepare(robot, (bring(view, robot, job.pod, job.station),))
 
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find the best job for an empty robot."""
+        """Find the best task for an empty robot."""
         job = self._best(robot, consult)
         return None if job is None else self._bring(robot, job)
 

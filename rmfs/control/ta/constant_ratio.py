@@ -1,4 +1,4 @@
-"""TA constant-ratio: a fixed share of the robots works for pick stations, the others replenish."""
+"""TA constant-ratio: a fixed share of the robots works for pick stations, the rest replenish."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ class ConstantRatioParameters(TeamParameters):
 class ConstantRatio(StationTeams[ConstantRatioParameters]):
     """Assigns a fixed share of the robots to pick stations, the others to replenishment stations.
 
-    Within a kind, robots are dealt out in turn, stations far from the middle of the tier first.
-    Only stations that are active, or have work left, get robots. Every `period_s`, if this set of
-    stations has changed, robots are moved, nearest first. Every robot works only for its station
+    Within a kind, robots are assigned to stations in turn, stations far from the middle of the tier
+    first. Only stations that are active or have work left get robots. Every `period_s`, if this set
+    of stations has changed, robots are moved, nearest first. Every robot works only for its station
     and continues with its pod as long as the pod can serve an open request there.
     """
 
     parameters_model = ConstantRatioParameters
 
     def first_stations(self) -> frozenset[int]:
-        """Find the stations that count; all, if none does yet."""
+        """Return the stations that count; all of them if none counts yet."""
         return self.stations_now() or super().first_stations()
 
     def stations_now(self) -> frozenset[int]:
-        """Find the stations that are active or have work left; as before if there are none."""
+        """Return the stations that are active or have work left; if none, the previous ones."""
         found = frozenset(s.index for s in self.view.stations if s.active or s.has_work)
         return found or self._active
 
     def goals(self, active: frozenset[int]) -> dict[int, int]:
-        """Deal the robots of each kind out in turn."""
+        """Return the number of robots for each station, assigned in turn."""
         order = [station for station in self._far_first if station in active]
         robots = len(self.view.robots)
         picks, others = by_kind(self.view, order)

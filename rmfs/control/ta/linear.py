@@ -34,18 +34,18 @@ class LinearParameters(SoloParameters):
 
 
 class Linear(Solo[LinearParameters]):
-    """Lets each robot work for the station, store its pod, move one or rest, by a weighted sum.
+    """Lets each robot work for a station, store its pod, move an idle pod or rest.
 
-    PPS, PSA and repositioning say which pod and which place; where they find none, the next best is
-    taken. If another robot without work stands beneath the pod, that one gets the job. Robots at
-    rest are given work that is worth more than rest. Ties: the station with the lowest number, then
-    store, move, rest.
+    The task with the greatest weighted sum is chosen. PPS, PSA and repositioning choose pod and
+    place; if they find none, the next best task is chosen. If another robot without work stands
+    beneath the pod, that robot gets the task. Robots at rest get work with a greater sum than rest.
+    Ties: the station with the lowest number, then store, move, rest.
     """
 
     parameters_model = LinearParameters
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield the best task that is possible."""
+        """Yield the best possible task."""
         for kind, station in self._best_first(robot):
             if kind == WORK:
                 task = self._work(robot, station, consult)

@@ -31,7 +31,7 @@ class RandomTasksParameters(SoloParameters):
     """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
     `random`."""
     switch_probability: Probability = 0.1
-    """Probability that a robot that asks changes from picking to replenishment, or back."""
+    """Probability that a robot that needs a task changes from picking to replenishment, or back."""
     keep_pod_probability: Probability = 0.95
     """Probability that a robot looks for more work for the pod it carries before parking it."""
     reposition_probability: Probability = 0.05
@@ -61,7 +61,7 @@ class RandomTasks(Solo[RandomTasksParameters]):
         self._picks: list[bool] = (rng.random(len(view.robots)) < share).tolist()
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield a task after drawing what to do."""
+        """Draw what to do, and yield the task."""
         given = self.parameters
         if self._happens(given.switch_probability):
             self._picks[robot.index] = not self._picks[robot.index]
@@ -80,7 +80,7 @@ class RandomTasks(Solo[RandomTasksParameters]):
         yield self.work_for(robot, consult) or self.to_rest(robot)
 
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Draw a pod among all at hand that have work of the robot's kind, then a station."""
+        """Draw one of the available pods with work of the robot's kind, then a station."""
         for picks in self._kinds(robot):
             stations = [s.index for s in self._stations(picks) if self.view.has_open_work(s.index)]
             useful = np.zeros((len(stations), len(self.view.storage.is_at_hand)), np.bool_)

@@ -1,4 +1,4 @@
-"""Where idle robots wait: beneath stored pods, so that free places remain for returning pods."""
+"""Resting places of idle robots: beneath stored pods, so that empty places remain for pods."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ RestRule = Literal["middle", "nearest", "random"]
 class RestPlaces:
     """Places to rest beneath stored, unclaimed pods; only if there are none, empty places.
 
-    An idle robot beneath a pod is in nobody's way: other empty robots pass below it, and it is
-    sent away, or gets the job, when its pod is wanted.
+    An idle robot beneath a pod is not in the way: other empty robots pass beneath stored pods, and
+    if its pod is needed, it gets the task or is sent away.
 
     Parameters
     ----------
     rule
         `middle`: as near to the middle of the robot's tier as possible (paper, section 3.1.1);
-        `nearest`: the shortest way off (Euclidean distance; ties: the lowest waypoint), also on
-        another tier; `random`: any, on the robot's tier.
+        `nearest`: the shortest distance (Euclidean; ties: the lowest waypoint), also on another
+        tier; `random`: any, on the robot's tier.
     draw
-        Draws a number below another; for `random`.
+        Function that draws an integer below its argument, for `random`.
     """
 
     def __init__(self, view: View, rule: RestRule, draw: Callable[[int], int]) -> None:

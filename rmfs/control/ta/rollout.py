@@ -41,7 +41,7 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
 
     The base rule, with PPS and PSA, makes a default decision. It is compared in trials with other
     pods for the station, work for other stations, or other places for the pod; the best one is
-    chosen. PPS and PSA are thus decided by look-ahead as well, as far as `over` says. The pacing
+    chosen. Depending on `over`, PPS and PSA are thus decided by look-ahead as well. The pacing
     determines the simulated time that trials cost; meanwhile no robot gets a task.
     """
 
@@ -61,7 +61,7 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
         return int(self.base.rest_place(robot))
 
     def decide(self, consult: Consult) -> Iterator[Any]:
-        """Yield what the base rule says, or ask which task is best."""
+        """Yield the base rule's decision, or ask which task is best."""
         self._consult = consult
         while not self.in_flight:
             for first in self.base.decide(consult):
@@ -74,7 +74,7 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
                 return
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the best task, if it still can be done."""
+        """Yield the best task, if it is still possible."""
         yield from self.best(call)
         if call.completed_us > call.requested_us:
             yield from self.decide(self._consult)

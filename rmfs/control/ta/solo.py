@@ -1,4 +1,4 @@
-"""Robots that look for work by themselves: what TA random, brute-force and swarm share."""
+"""Base of rules in which robots look for work by themselves: TA random, brute-force and swarm."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ P = TypeVar("P", bound=SoloParameters)
 
 
 class Solo(TaskAllocation[P]):
-    """Asks robot by robot; robots at rest are asked when something has changed at the stations."""
+    """Finds tasks robot by robot; for robots at rest, after changes at the stations."""
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)
@@ -43,14 +43,14 @@ class Solo(TaskAllocation[P]):
 
     @abstractmethod
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield a task for a robot that asks, and possibly what it should do next."""
+        """Yield a task for a robot that needs one, and possibly its next tasks."""
 
     @abstractmethod
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
         """Find work for a robot at rest."""
 
     def decide(self, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield a task for every robot that asks, and work for robots at rest."""
+        """Yield a task for every robot that needs one, and work for robots at rest."""
         for robot in list(self.view.asking.values()):
             while robot.task is None:
                 given = 0
@@ -75,18 +75,18 @@ class Solo(TaskAllocation[P]):
         return self._rest.choose(robot)
 
     def to_rest(self, robot: Robot) -> Rest:
-        """Let a robot rest where the rule says, or where it is."""
+        """Send a robot to a resting place, or let it rest where it is."""
         place = self._rest.choose(robot)
         return Rest(robot, place if place >= 0 else robot.waypoint)
 
     def park(self, robot: Robot, consult: Consult) -> Iterator[Park]:
-        """Store the pod of a robot where PSA says, if there is room."""
+        """Store the pod of a robot at the place chosen by PSA, if there is one."""
         place = consult.place_for(robot)
         if place >= 0:
             yield Park(robot, place)
 
     def pods_for(self, robot: Robot, station: int) -> NDArray[np.intp]:
-        """Return the pods at hand that have work at a station, ascending, shape (C,)."""
+        """Return the available pods with work at a station, ascending, shape (C,)."""
         target = self.view.stations[station]
         if isinstance(target, PickStation):
             return pick_candidates(self.view, robot, target).pods

@@ -1,4 +1,4 @@
-"""Station teams: TA rules by which every robot works for one station, moved to another in time."""
+"""Station teams: TA rules in which every robot works for one station at a time."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 
 
 class TeamParameters(Parameters):
-    """Parameters of rules by which robots belong to stations."""
+    """Parameters of rules in which robots belong to stations."""
 
     period_s: NotNegative = 30.0
     """Seconds between redistributions of the robots; 0: never."""
@@ -40,12 +40,12 @@ P = TypeVar("P", bound=TeamParameters)
 
 
 class StationTeams(TaskAllocation[P]):
-    """Gives each robot work of its station.
+    """Assigns each robot work of its own station.
 
     A robot that carries a pod continues as long as the pod can serve the robot's station, and then
     parks it. An empty robot gets the pod that PPS chooses; if another robot without work stands
-    beneath that pod, that robot gets the job and the two exchange stations. A robot without
-    anything to do rests, and gets work as soon as there is some.
+    beneath that pod, that robot gets the task and the two exchange stations. A robot without work
+    rests, and gets work as soon as there is any.
 
     Every `period_s`, if the set of relevant stations has changed, the robots are redistributed:
     robots are moved to stations below their target, the nearest pair of robot and station first. If
@@ -72,49 +72,49 @@ class StationTeams(TaskAllocation[P]):
 
     @abstractmethod
     def stations_now(self) -> frozenset[int]:
-        """Find the stations that are to have robots."""
+        """Return the stations that should have robots."""
 
     @abstractmethod
     def goals(self, active: frozenset[int]) -> dict[int, int]:
-        """Work out how many robots each of these stations is to have."""
+        """Return the number of robots that each of these stations should have."""
 
     def first_stations(self) -> frozenset[int]:
-        """Find the stations that are to have robots when the rule is installed."""
+        """Return the stations that should have robots when the rule is installed."""
         return frozenset(range(len(self.view.stations)))
 
     def may_work(self, robot: Robot, station: int) -> bool:
-        """Whether a robot may be given work of a station now."""
+        """Whether a robot may get work of a station now."""
         return station >= 0
 
     def stations_for(self, robot: Robot) -> Sequence[int]:
-        """Stations whose work a robot may be given, the first with work counts."""
+        """Return the stations whose work a robot may get; the first one with work is used."""
         station = self._station_of[robot.index]
         return (station,) if station >= 0 else ()
 
     def go_elsewhere(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Use a pod at a station of which its robot is no crew, before it is parked."""
+        """Send a pod to a station to which its robot does not belong, before it is parked."""
         return None
 
     def instead_of_rest(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find something for a robot to do for which no station has work."""
+        """Find a task for a robot for which no station has work."""
         return None
 
     def may_be_moved(self, consult: Consult) -> bool:
-        """Whether `instead_of_rest` may find something for any robot now."""
+        """Whether `instead_of_rest` may find a task for some robot now."""
         return True
 
     def looks_elsewhere(self) -> bool:
-        """Whether `stations_for` names other stations than a robot's own."""
+        """Whether `stations_for` returns other stations than a robot's own."""
         return True
 
     # --- tasks ----------------------------------------------------------------------------------
 
     def next_event_s(self) -> float:
-        """When robots are to be divided anew."""
+        """Time of the next redistribution of the robots."""
         return self._balance_due_s
 
     def decide(self, consult: Consult) -> Iterator[TaskDecision]:
-        """Yield a task for every robot that asks, and work for robots at rest."""
+        """Yield a task for every robot that needs one, and work for robots at rest."""
         if self.view.now_s >= self._balance_due_s:
             self._balance_due_s = self.view.now_s + self.parameters.period_s
             self._balance(self.stations_now())
@@ -177,12 +177,12 @@ class StationTeams(TaskAllocation[P]):
         return self.bring(chosen, pod, station)
 
     def bring(self, robot: Robot, pod: int, station: int) -> TaskDecision:
-        """Let a robot bring a pod, and count it as worker of the station."""
+        """Let a robot bring a pod, and count it as a robot of the station."""
         self.count(robot, station)
         return bring(self.view, robot, pod, station)
 
     def count(self, robot: Robot, station: int) -> None:
-        """Count a robot as worker of a station (-1: of none) from now on."""
+        """Count a robot as one of a station (-1: of none) from now on."""
         former = self._works_for[robot.index]
         if former >= 0:
             self._workers[former] -= 1
@@ -191,7 +191,7 @@ class StationTeams(TaskAllocation[P]):
         self._works_for[robot.index] = station
 
     def workers(self, station: int, besides: Robot) -> int:
-        """How many robots work for a station, not counting the one given."""
+        """Return the number of robots that work for a station, without the given one."""
         return self._workers[station] - (self._works_for[besides.index] == station)
 
     def _to_rest(self, robot: Robot) -> Rest:

@@ -1,4 +1,4 @@
-"""What several TA rules share: how far stations are, and what is done for one."""
+"""Functions shared by several TA rules: distances of stations, and their robots."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 
 def waypoints(view: View) -> NDArray[np.int64]:
-    """Where the stations are, in the common numbering, shape (S,)."""
+    """Return the waypoints of the stations, in the common numbering, shape (S,)."""
     return np.array([station.waypoint for station in view.stations])
 
 
 def by_kind(view: View, stations: Iterable[int]) -> tuple[list[int], list[int]]:
-    """Part stations into pick stations and replenishment stations."""
+    """Divide stations into pick stations and replenishment stations."""
     picks: list[int] = []
     others: list[int] = []
     for station in stations:
@@ -43,13 +43,13 @@ def bring(view: View, robot: Robot, pod: int, station: int) -> TaskDecision:
 
 
 def station_of_task(robot: Robot) -> int:
-    """Station for which a robot works, or -1; no station of other kinds."""
+    """Return the pick or replenishment station for which a robot works, or -1."""
     task = robot.task
     return -1 if task is None or isinstance(task, VisitTask) else task.station
 
 
 def keeper_of(view: View, robot: Robot, pod: int) -> Robot:
-    """The idle robot that stands beneath a stored pod; if there is none, the given robot."""
+    """Return the idle robot that stands beneath a stored pod, or else the given robot."""
     storage = view.storage
     keeper = storage.kept_by[storage.place_of[pod]]
     return robot if keeper < 0 else view.robots[keeper]
@@ -58,7 +58,7 @@ def keeper_of(view: View, robot: Robot, pod: int) -> Robot:
 def near_by(
     view: View, robot: Robot, radius_m: float, among: Iterable[int], consult: Consult
 ) -> list[int]:
-    """Stations on the robot's tier, at most so far away, that can be served with its pod."""
+    """Return stations on the robot's tier, within a distance, that its pod can serve."""
     stations = [view.stations[index] for index in among]
     if not stations:
         return []
@@ -74,7 +74,7 @@ def near_by(
 
 
 def far_first(view: View) -> list[int]:
-    """Stations, those far from the middle of their tier first, ties by number."""
+    """Return stations, those far from the middle of their tier first, ties by number."""
     layout, at = view.layout, waypoints(view)
     tiers = [layout.tiers[tier] for tier in layout.tier[at].tolist()]
     x = layout.x_m[at] - np.array([tier.length_m / 2 for tier in tiers])

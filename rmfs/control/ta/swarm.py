@@ -37,13 +37,13 @@ class SwarmParameters(SoloParameters):
     threshold_weight: NotNegative = 1.0
     """Weight (alpha) of half that limit, squared: how hard it is to attract any robot."""
     distance_weight: NotNegative = 1.0
-    """Weight (beta) of the distance in m, squared (Manhattan)."""
+    """Weight (beta) of the squared Manhattan distance in m."""
     growth: Annotated[float, pydantic.Field(ge=1, allow_inf_nan=False)] = 1.2
     """Factor by which a station's attraction grows each time another station is chosen."""
     growth_limit: Annotated[float, pydantic.Field(ge=1, allow_inf_nan=False)] = 30.0
-    """Maximum of this growth."""
+    """Maximum of the factor to which attraction can grow."""
     rest_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
-    """Share of stations without attraction beyond which a robot may also draw rest."""
+    """Share of stations without stimulus above which a robot may also draw rest."""
     other_stations: bool = False
     """Whether a pod that has been served may continue to another station nearby."""
     search_radius_m: NotNegative = 5.0
@@ -53,13 +53,13 @@ class SwarmParameters(SoloParameters):
 class Swarm(Solo[SwarmParameters]):
     """Lets each empty robot draw a station, and PPS choose a pod for it.
 
-    A station's stimulus is s = max(min(orders or bundles there, limit) - robots matched with it, 0)
-    times a multiplier. It is drawn with a probability proportional to s^2 / (s^2 + alpha T^2 + beta
-    d^2), where T is half the limit, rounded down, and d the distance. The multiplier of the station
-    drawn becomes 1, those of the others grow; those of stations without stimulus become 1. If more
-    than the rest share of the stations attract nobody, by e stations, rest is drawn with the weight
-    e^3 / (stations - rest share of the stations)^3. A robot stays matched with its station as long
-    as it carries a pod.
+    A station's stimulus is s = max(min(n, limit) - m, 0) times a multiplier, where n is the number
+    of orders or bundles there, and m the number of robots matched with it. The station is drawn
+    with a probability proportional to s^2 / (s^2 + alpha T^2 + beta d^2), where T is half the
+    limit, rounded down, and d the distance. The multiplier of the drawn station becomes 1, and so
+    do those of stations without stimulus; the others grow. Of S stations, let R be the rest share.
+    If the number of stations without stimulus exceeds R by e, rest can be drawn as well, with the
+    weight e^3 / (S - R)^3. A robot stays matched with its station as long as it carries a pod.
     """
 
     parameters_model = SwarmParameters
@@ -71,7 +71,7 @@ class Swarm(Solo[SwarmParameters]):
         self._matched = [station_of_task(robot) for robot in view.robots]
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Go on with a pod, or draw a station."""
+        """Continue with the carried pod, or draw a station."""
         if robot.pod < 0:
             yield self.work_for(robot, consult) or self.to_rest(robot)
             return

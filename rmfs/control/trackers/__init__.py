@@ -1,4 +1,4 @@
-"""Trackers: what several controllers count together, kept up to date as things happen."""
+"""Trackers: statistics shared by several controllers, updated as events happen."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 class Tracker:
     """Counts something over a run; it reads the view and changes nothing.
 
-    A tracker starts from the world as it is when a controller first asks for it, and lives to the
-    end of the run, so that a controller installed later finds it up to date.
+    A tracker starts from the state of the world when a controller first requests it, and exists
+    until the end of the run, so that it is up to date for a controller installed later.
 
     Attributes
     ----------
@@ -29,14 +29,14 @@ class Tracker:
         self.view = view
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Take note of an event of `hears`; the subject is as described at the trigger."""
+        """Process an event listed in `hears`; the subject is described at the trigger."""
 
 
 T = TypeVar("T", bound=Tracker)
 
 
 class Trackers:
-    """The trackers of a run: one for each kind and settings, made when first asked for."""
+    """The trackers of a run: one for each kind and settings, created on first request."""
 
     def __init__(self, view: View) -> None:
         self._view = view
@@ -46,15 +46,15 @@ class Trackers:
         return iter(self._made.values())
 
     def get(self, kind: type[T], *settings: Hashable) -> T:
-        """Look up, or make, a tracker.
+        """Return a tracker, which is created if necessary.
 
-        To be called by controllers and trackers at construction; later it would not be notified of
-        events before the next exchange of a controller.
+        Controllers and trackers must call this at construction; a tracker created later would not
+        be notified of events before the next exchange of a controller.
 
         Parameters
         ----------
         settings
-            What is passed to its constructor, after the view.
+            Arguments of its constructor, after the view.
         """
         key = (kind, settings)
         if key not in self._made:

@@ -1,4 +1,4 @@
-"""How often SKUs are ordered, alone and together."""
+"""Order frequencies of SKUs and of pairs of SKUs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Frequency(Tracker):
-    """Units ordered of each SKU, in the past orders and since time zero."""
+    """Units ordered of each SKU, in past orders and since time zero."""
 
     def __init__(self, view: View) -> None:
         super().__init__(view)
@@ -35,13 +35,13 @@ class Frequency(Tracker):
 
     @property
     def share(self) -> NDArray[np.float64]:
-        """Units ordered as a share of those of the SKU ordered most, shape (K,)."""
+        """Units ordered of each SKU, relative to the most ordered SKU, shape (K,)."""
         units = self.units
         return units / max(int(units.max()), 1)
 
 
 class PairFrequency(Tracker):
-    """In how many orders two SKUs came together; starts from past orders and the backlog."""
+    """Number of orders that contain two SKUs; starts with past orders and the backlog."""
 
     hears = frozenset({Trigger.NEW_ORDER})
 
@@ -58,9 +58,9 @@ class PairFrequency(Tracker):
         self._count(line.sku for line in subject.lines)
 
     def orders_with(self, sku: int) -> NDArray[np.int64]:
-        """In how many orders each SKU came together with this one, and a 0, shape (K + 1,).
+        """Return the number of orders with each SKU and this one, and a final 0, shape (K + 1,).
 
-        The 0 at the end is for `Inventory.skus_on`.
+        The final 0 is for the padding of `Inventory.skus_on`.
         """
         counts = np.zeros(len(self.view.skus) + 1, np.int64)
         partners = self._orders.get(sku)

@@ -1,4 +1,4 @@
-"""How much of what customers want, and how popular, are the contents of each pod."""
+"""Scores of pods, by the demand for their contents and their popularity."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
 
 Demand = Literal["assigned", "unbound", "wanted"]
-"""Units of orders: open ones at the stations; open ones of all orders; all not yet picked."""
+"""Units that count as demand: open ones at stations; all open ones; all not yet picked."""
 
 _STEPS = 1 << 20  # popularity is counted in integers, so that sums never drift
 
 
 def demand(view: View, kind: Demand) -> NDArray[np.int64]:
-    """Units of each SKU that orders want, shape (K,)."""
+    """Return the units of each SKU in demand, shape (K,)."""
     if kind == "wanted":
         return view.inventory.wanted
     units: NDArray[np.int64] = view.need.sum(axis=0, dtype=np.int64)
@@ -32,10 +32,10 @@ def demand(view: View, kind: Demand) -> NDArray[np.int64]:
 
 
 class DemandOnPods(Tracker):
-    """For each pod, the sum over SKUs of what it holds of them, but at most what orders want.
+    """For each pod, the sum over SKUs of its units, limited by the demand for the SKU.
 
-    Changes of stock are counted as they happen, changes of demand when the sums are asked for: only
-    SKUs whose demand is another than before are gone through.
+    Changes of stock are counted as they happen, changes of demand when the sums are requested; then
+    only SKUs whose demand has changed are processed.
     """
 
     hears = frozenset({Trigger.UNIT_PICKED, Trigger.BUNDLE_STORED})
@@ -50,7 +50,7 @@ class DemandOnPods(Tracker):
             self._units += np.minimum(contained[sku], self._demand[sku])
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Count a unit that left its pod, or a bundle that went into it."""
+        """Count a unit that has left its pod, or a bundle that was stored."""
         if trigger is Trigger.UNIT_PICKED:
             (pod, sku), change = subject, -1
         else:
@@ -61,7 +61,7 @@ class DemandOnPods(Tracker):
             self._units[pod] += min(now, wanted) - min(now - change, wanted)
 
     def units(self) -> NDArray[np.int64]:
-        """Wanted units on each pod, shape (P,)."""
+        """Return the units in demand on each pod, shape (P,)."""
         new = demand(self.view, self._kind)
         contained, old = self.view.inventory.contained, self._demand
         for sku in (new != old).nonzero()[0].tolist():
@@ -74,9 +74,9 @@ class DemandOnPods(Tracker):
 class PodScores(Tracker):
     """Scores of pods: how useful they are now, and how fast they will be needed again.
 
-    *Utility* is the number of units on a pod that orders want (`DemandOnPods` of all orders not yet
-    picked); *speed* is the sum over its units of the popularity of their SKU. Both are given as
-    shares of the best pod's. They are kept as soon as a rule asks.
+    *Utility* is the number of units on a pod that are in demand (`DemandOnPods` of all units not
+    yet picked); *speed* is the sum over its units of the popularity of their SKU. Both are relative
+    to the best pod. They are kept up to date from the first request on.
     """
 
     hears = DemandOnPods.hears
@@ -92,7 +92,7 @@ class PodScores(Tracker):
             self._speed += row * weights[sku]
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Count a unit that left its pod, or a bundle that went into it."""
+        """Count a unit that has left its pod, or a bundle that was stored."""
         if trigger is Trigger.UNIT_PICKED:
             pod, sku = subject
             self._speed[pod] -= self._weight[sku]
@@ -100,12 +100,12 @@ class PodScores(Tracker):
             self._speed[subject.pod] += self._weight[subject.sku] * subject.units
 
     def scores(self, utility_weight: float, speed_weight: float) -> NDArray[np.float64]:
-        """Weighted means of utility and speed, each from 0 to 1, shape (P,).
+        """Return weighted means of utility and speed, each from 0 to 1, shape (P,).
 
         Parameters
         ----------
         utility_weight, speed_weight
-            Not both 0.
+            The weights, not both 0.
         """
         score = np.zeros(len(self._speed))
         if utility_weight:

@@ -1,4 +1,4 @@
-"""Prominence of storage places: how soon a pod from there is at a pick station."""
+"""Prominence of storage places, by the time from there to a pick station."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Prominence(Tracker):
-    """Places ranked by the time a loaded robot needs to the nearest pick station.
+    """Places ranked by the time that a loaded robot needs to the nearest pick station.
 
     Equal times share a rank; ranks are counted from 0, the most prominent, without gaps.
 

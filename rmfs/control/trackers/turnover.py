@@ -1,4 +1,4 @@
-"""Turnover classes: places near pick stations, fast pods and fast SKUs belong together."""
+"""Turnover classes, which group places near pick stations with fast-moving pods and SKUs."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 
 class TurnoverParameters(Parameters):
-    """How classes are made; rules that work together (RPS, PSA) must agree on it."""
+    """Parameters of turnover classes, which rules that work together (RPS, PSA) must share."""
 
     class_borders: Annotated[tuple[float, ...], pydantic.Field(min_length=1)] = (0.1, 0.3, 1.0)
     """Cumulative shares of the storage places at which classes end, nearest places first; the last
     is 1."""
     place_metric: Metric = "time"
-    """How the distance from a place to its nearest pick station is measured."""
+    """Measure of the distance from a place to its nearest pick station."""
     reallocation_period_s: Annotated[float, pydantic.Field(ge=0)] = 0.0
     """Seconds after which pods and SKUs are reclassified; 0: never."""
     reallocation_orders: Annotated[int, pydantic.Field(ge=0)] = 0
@@ -41,7 +41,7 @@ class TurnoverParameters(Parameters):
 
     @classmethod
     def of(cls, parameters: TurnoverParameters) -> TurnoverParameters:
-        """Take this part out of the parameters of a rule."""
+        """Extract these parameters from those of a rule."""
         names = TurnoverParameters.model_fields
         return TurnoverParameters(**{name: getattr(parameters, name) for name in names})
 
@@ -49,18 +49,19 @@ class TurnoverParameters(Parameters):
 class TurnoverClasses(Tracker):
     """Classes of storage places, pods and SKUs, from 0, the fastest, to `classes` - 1.
 
-    - Places are sorted by distance to the nearest pick station and cut at the class borders, the
-      number of places up to a border rounded down.
-    - Pods are sorted by the mean, over the SKUs they contain, of units ordered, the fastest first,
-      ties by distance to the nearest pick station and then by number, and fill the classes in
-      proportion to the places.
-    - SKUs are sorted by units ordered, the most first, ties by number. A class takes SKUs until
-      their sum of (share of units ordered + share of the space of one unit of each SKU) / 2 reaches
-      the class's share of the pods' capacity.
+    - Places are sorted by distance to the nearest pick station and divided at the class borders;
+      the number of places up to a border is rounded down.
+    - Pods are sorted by the mean number of units ordered of the SKUs they contain, the fastest
+      first, ties by distance to the nearest pick station and then by number; they are divided in
+      proportion to the places of the classes.
+    - SKUs are sorted by units ordered, the most first, ties by number. A SKU weighs the mean of two
+      shares: its share of the units ordered, and the share of its unit space in the sum of the unit
+      spaces of all SKUs. A class takes SKUs until their total weight reaches its share of the pods'
+      capacity.
 
-    Units are counted since the last classing, at first since the past orders. Pods and SKUs are
-    classed when a rule first asks for the tracker, and anew when period or orders are reached and
-    somebody looks; places keep their class.
+    Units are counted since the last classification, at first including past orders. Pods and SKUs
+    are classified when a rule first requests the tracker, and again on the first access after the
+    period, or the number of orders, has been reached; places keep their class.
     """
 
     def __init__(self, view: View, parameters: TurnoverParameters) -> None:

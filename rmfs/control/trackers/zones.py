@@ -21,38 +21,38 @@ ZonePriority = Literal["drop-off", "cache", "equal"]
 
 
 class ZoneParameters(Parameters):
-    """How zones are laid out; rules that work together (PSA, repositioning) must agree on it."""
+    """Parameters of zones, which rules that work together (PSA, repositioning) must share."""
 
     cache_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.25
-    """Share of all storage places that belong to caches, divided equally over the pick stations."""
+    """Share of all storage places used for caches, divided equally among the pick stations."""
     drop_off_places: Annotated[int, pydantic.Field(ge=0)] = 0
-    """Places of each pick station's drop-off zone."""
+    """Number of places in the drop-off zone of each pick station."""
     zone_priority: ZonePriority = "drop-off"
-    """Which zones choose their places first: `drop-off`, `cache`, or both alike (`equal`)."""
+    """Which zones choose their places first: `drop-off`, `cache`, or neither (`equal`)."""
 
     @classmethod
     def of(cls, parameters: ZoneParameters) -> ZoneParameters:
-        """Take this part out of the parameters of a rule."""
+        """Extract these parameters from those of a rule."""
         names = ZoneParameters.model_fields
         return ZoneParameters(**{name: getattr(parameters, name) for name in names})
 
 
 class Zones(Tracker):
-    """For every storage place the zone it belongs to.
+    """The zone to which every storage place belongs.
 
     A cache has ceil(cache share x places / pick stations) places, a drop-off zone the given number.
-    Zones take places one after another: of all pairs of a free place and a zone that is not full,
-    by priority of the kind of zone; then the least time of a loaded robot, to the station from a
-    place of its cache, from the station to a place of its drop-off zone; then the longest time in
-    the other direction; ties: the place, then the station, with the lowest number, and the drop-off
-    zone before the cache.
+    Places are assigned one after another. Of all pairs of an unassigned place and a zone that is
+    not full, the next is chosen by priority of the kind of zone; then by the least time of a loaded
+    robot (from a place in the cache to the station, or from the station to a place in the drop-off
+    zone); then by the longest time in the other direction. Ties: the place, then the station, with
+    the lowest number, and the drop-off zone before the cache.
 
     Attributes
     ----------
     cache_of, drop_off_of
         Pick station to whose cache, or drop-off zone, each place belongs, or -1, shape (L,).
     cache_size
-        Places of each cache, as far as there were enough, shape (S,).
+        Number of places of each cache, shape (S,); less than specified if there are not enough.
     """
 
     def __init__(self, view: View, parameters: ZoneParameters) -> None:
@@ -71,7 +71,7 @@ class Zones(Tracker):
         self._cache_mask: NDArray[np.bool_] = self.cache_of >= 0
 
     def occupied(self) -> NDArray[np.int64]:
-        """Places of each cache that hold a pod, or are kept by a robot, shape (S,)."""
+        """Return the number of places of each cache with a pod or kept by a robot, shape (S,)."""
         taken = self._cache_mask & ~self.view.storage.is_empty
         return np.bincount(self.cache_of[taken], minlength=len(self.cache_size))
 
