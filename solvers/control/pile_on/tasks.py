@@ -15,7 +15,7 @@ from rmfs.control.decisions import (
 from rmfs.control.problems import Problem, Trigger
 from rmfs.control.ta import WORK
 from rmfs.control.ta.rest import RestRule
-from rmfs.control.ta.stations import bring, keeper_of
+from rmfs.control.ta.stations import bring, keeper_of, near_by
 from rmfs.solvers.control.buffer import Buffer
 from rmfs.solvers.control.joint import JointAllocation
 from rmfs.solvers.control.pile_on import snapshot
@@ -61,6 +61,10 @@ class PileOnTasksParameters(JointParameters):
     replenishment_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.33
     """Maximum share of the robots working for replenishment stations at a time; at least one
     robot."""
+    other_stations: bool = False
+    """Whether a pod that has been served may continue to another station nearby."""
+    search_radius_m: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 8.0
+    """Maximum distance to that station in m (Euclidean)."""
     rest: RestRule = "nearest"
     """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
     `random`."""
@@ -196,6 +200,19 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
         if station >= 0 and consult.serves(robot.pod, station):
             yield bring(self.view, robot, robot.pod, station)
             return
+        elsewhere = self._elsewhere(robot, consult)
+        if elsewhere >= 0:
+            yield bring(self.view, robot, robot.pod, elsewhere)
+            return
         place = consult.place_for(robot)
         if place >= 0:
             yield Park(robot, place)
+
+    def _elsewhere(self, robot: Robot, consult: Consult) -> int:
+        """Return the pick station nearby that PPS chooses for the pod it carries, or -1."""
+        given = self.parameters
+        if not given.other_stations:
+            return -1
+        among = [s.index for s in self.view.pick_stations]
+        stations = near_by(self.view, robot, given.search_radius_m, among, consult)
+        return consult.next_station(robot, stations) if stations else -1

@@ -190,6 +190,33 @@ def test_pods_are_called_by_work_on_its_way() -> None:
         assert called == ([] if by_work else [1])
 
 
+@pytest.mark.parametrize(
+    ("allowed", "radius_m", "goes_to"), [(True, 10.0, 1), (False, 10.0, None), (True, 9.9, None)]
+)
+def test_a_served_pod_may_go_on_to_another_station(
+    allowed: bool, radius_m: float, goes_to: int | None
+) -> None:
+    """The pod at station 0 has what an order at station 1 waits for; nothing else is left."""
+    situation = Situation(small_layout(pick_stations=2))
+    situation.stock(0, s1=5)
+    situation.assigned(1, s1=1)
+    situation.carry(0, 0, 0)
+    situation.world.end_task(situation.world.robots[0])
+    control = situation.make(PileOnTasks, other_stations=allowed, search_radius_m=radius_m)
+
+    class Serves(NoConsult):
+        def serves(self, pod: int, station: int) -> bool:
+            return control.serves(pod, station)
+
+        def next_station(self, robot: Any, stations: Any) -> int:
+            return control.next_station(robot, stations)
+
+    found: list[Any] = []
+    apply(control.decide(Serves()), situation, control, True, found)  # type: ignore[arg-type]
+    gone = [d.station for d in found if isinstance(d, BringForPicks) and d.robot.index == 0]
+    assert gone == ([] if goes_to is None else [goes_to])
+
+
 def test_split_orders_are_not_also_covered_later() -> None:
     with pytest.raises(InputError, match="later: invalid with split"):
         choose(Problem.POA, {"name": "pile-on", "later": True, "split": True}, "test")
