@@ -96,6 +96,13 @@ def demonstrate(
     force: Annotated[
         bool, typer.Option("--force", help="Replace the run folder if there is one.")
     ] = False,
+    past_failure: Annotated[
+        bool,
+        typer.Option(
+            "--past-failure",
+            help="Resume a journal whose last tick failed, without what robots said then.",
+        ),
+    ] = False,
     set_: Settings = None,
     trace: Annotated[bool, typer.Option("--trace", help="Write the trace of all motion.")] = False,
     allow_not_well_formed: Annotated[
@@ -131,7 +138,7 @@ def demonstrate(
     journal = target.parent / f".{target.name}.{JOURNAL}"
     hub = _hub(host, port, known, expected(chosen, is_emulated=is_emulated), robots)
     demonstration = Demonstration(
-        hub, chosen, settings.tags(plan, tags), journal, is_emulated=is_emulated
+        hub, chosen, settings.tags(plan, tags), journal, is_emulated, past_failure
     )
     with reserved(target, force=force) as folder:
         asked = ["--layout", layout, "--seed", str(seed), *(["--real", real] if real else [])]

@@ -28,11 +28,10 @@ class Laboratory:
         self.plan = layouts.load("demonstrator")
         self.robots = settings.robots(self.plan, real)
         self.tags = settings.tags(self.plan, None)
-        self.hub = Hub("127.0.0.1", 0, SECRET, expected(self.robots, is_emulated=in_step))
+        self._mischief, self._in_step = mischief, in_step
+        self.journal = folder / "journal"
+        self.start_server(0)
         self.address = Address(*self.hub.address, SECRET)
-        self.demonstration = Demonstration(
-            self.hub, self.robots, self.tags, folder / "journal", is_emulated=in_step
-        )
         self.room = Room(
             self.plan,
             self.robots,
@@ -42,21 +41,30 @@ class Laboratory:
             7,
             pace=None if in_step else RealTime(),
         )
-        self._mischief, self._in_step = mischief, in_step
+
+    def start_server(self, port, **options):
+        names = expected(self.robots, is_emulated=self._in_step)
+        self.hub = Hub("127.0.0.1", port, SECRET, names)
+        self.demonstration = Demonstration(
+            self.hub, self.robots, self.tags, self.journal, is_emulated=self._in_step, **options
+        )
 
     @property
     def counts(self):
         return self.demonstration.traffic.guide.counts
 
     def run(self, duration_s, controllers="random", **options):
+        with self.room_goes_on():
+            return self.serve(duration_s, controllers, **options)
+
+    def serve(self, duration_s, controllers="random", **options):
         overrides = [(["scenario", "duration_s"], duration_s), (["scenario", "warmup_s"], 0.0)]
-        with self._room_goes_on():
-            return self.demonstration.run(
-                "demonstrator", "demonstrator", controllers, overrides=overrides, **options
-            )
+        return self.demonstration.run(
+            "demonstrator", "demonstrator", controllers, overrides=overrides, **options
+        )
 
     @contextmanager
-    def _room_goes_on(self):
+    def room_goes_on(self):
         failed = []
 
         def go_on():

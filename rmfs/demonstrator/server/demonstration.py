@@ -39,6 +39,8 @@ class Demonstration:
         File of received messages; a run resumes where it ends.
     is_emulated
         Whether the robots are in an emulated room, which keeps the clock.
+    past_failure
+        Whether to leave out what was heard at the tick at which the journal failed.
     """
 
     hub: Hub
@@ -46,6 +48,7 @@ class Demonstration:
     tags: Sequence[str]
     journal: Path
     is_emulated: bool
+    past_failure: bool = False
     traffic: GuidedTraffic | None = None
 
     def run(self, *inputs: Any, seed: int = 0, **options: Any) -> Run:
@@ -79,7 +82,7 @@ class Demonstration:
                 f"simulation need {TIME_WINDOWS.name}, whose plans can be shifted"
             )
         check_floor(layout, self.tags)
-        journal = Journal(self.journal, settings)
+        journal = Journal(self.journal, settings, past_failure=self.past_failure)
         begin_us = max(0, journal.begins_us)
         clock = RoomClock() if self.is_emulated else WallClock(begin_us)
         self.traffic = GuidedTraffic(

@@ -71,7 +71,11 @@ class Guide:
         self.counts = dict.fromkeys(COUNTED, 0)
 
     def tick(
-        self, messages: Sequence[tuple[int, Message]], silent: frozenset[int]
+        self,
+        messages: Sequence[tuple[int, Message]],
+        silent: frozenset[int],
+        *,
+        regroups: bool = True,
     ) -> list[tuple[int, Message]]:
         """Process one tick at the present time of the traffic layer.
 
@@ -81,6 +85,8 @@ class Guide:
             Messages of the robots, in order.
         silent
             Robots with a session that are silent.
+        regroups
+            Whether plans may be made anew now, rather than at the next tick. Default True.
 
         Returns
         -------
@@ -93,13 +99,18 @@ class Guide:
                 self.counts["nonsense"] += 1
                 _log.warning("robot %d: %s makes no sense: %r", index, message.get("type"), error)
         self._look_after_silent(silent)
-        if self._regroup_due:
+        if self._regroup_due and regroups:
             self._regroup()
         self._delay_late()
         for robot in self.robots.values():
             self._send_off(robot)
         outbox, self._outbox = self._outbox, []
         return outbox
+
+    def forget_strayed(self) -> None:
+        """Forget where robots have strayed to; they report it again when told their orders."""
+        for robot in self.robots.values():
+            robot.astray = None
 
     # --- what robots say ------------------------------------------------------------------------
 

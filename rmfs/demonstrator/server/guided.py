@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from rmfs.demonstrator.server.clock import ROOM
 from rmfs.demonstrator.server.guide import TICK_US, Guide
+from rmfs.errors import InternalError
 from rmfs.traffic import Traffic
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rmfs.demonstrator.robot.protocol import Message
     from rmfs.demonstrator.server.clock import Clock
     from rmfs.demonstrator.server.hub import Hub
     from rmfs.demonstrator.server.journal import Journal
@@ -53,7 +55,7 @@ class GuidedTraffic(Traffic):
         self._index, self._name = robots, {index: name for name, index in robots.items()}
         self._hub, self._clock, self._journal = hub, clock, journal
         self._tick_us = 0
-        self._is_live = False
+        self._is_live = self._failed = False
         self._advance_core = self.advance
         self.advance = self._advance_guided
 
@@ -82,8 +84,7 @@ class GuidedTraffic(Traffic):
     def _tick(self) -> None:
         now_us = self._tick_us
         if now_us <= self._journal.begins_us:
-            messages, silent = self._journal.heard_at(now_us)
-            self.guide.tick(messages, silent)
+            self._guide(now_us, *self._journal.heard_at(now_us))
             return
         heard = self._clock.wait(self._hub, now_us)
         messages = [(self._index[name], message) for name, message in heard if name in self._index]
@@ -95,7 +96,7 @@ class GuidedTraffic(Traffic):
         silent = frozenset(self._index[name] for name in quiet if name in self._index)
         if messages or silent:
             self._journal.note(now_us, messages, silent)
-        told = self.guide.tick(messages, silent)
+        told = self._guide(now_us, messages, silent)
         if told and not (messages or silent):
             # orders sent to robots must survive a restart
             self._journal.note(now_us, [], frozenset())
@@ -104,9 +105,30 @@ class GuidedTraffic(Traffic):
         self._hub.flush(now_us)
         self._clock.passed(self._hub, now_us)
 
+    def _guide(
+        self, now_us: int, messages: list[tuple[int, Message]], silent: frozenset[int]
+    ) -> list[tuple[int, Message]]:
+        """Return the orders of a tick; a failure is marked in the journal, so that it can end."""
+        is_left_out = now_us in self._journal.left_out
+        if is_left_out:
+            self.guide.forget_strayed()
+        try:
+            return self.guide.tick(messages, silent, regroups=not is_left_out)
+        except Exception as error:
+            self._failed = True
+            self._journal.note_failure(now_us, repr(error))
+            raise InternalError(
+                f"{error!r}, at {now_us / 1e6:.2f} s of the demonstration (the same command with "
+                "--past-failure resumes without what robots said then)"
+            ) from error
+
     def end(self) -> None:
-        """End the demonstration: close sessions, and notify an emulated room."""
-        self._hub.send(ROOM, {"type": "end"})
-        self._hub.flush(self._tick_us)
+        """End the demonstration: close sessions, and notify an emulated room.
+
+        After a failure the room waits for the server to be started again, as robots do.
+        """
+        if not self._failed:
+            self._hub.send(ROOM, {"type": "end"})
+            self._hub.flush(self._tick_us)
         self._hub.close()
         self._journal.close()

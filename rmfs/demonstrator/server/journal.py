@@ -1,7 +1,8 @@
 """A journal of received messages, tick by tick, so that a killed server can resume.
 
 A server that is restarted with its journal repeats everything as fast as it can. It reaches the
-same state, as it receives the same messages and all its random draws are seeded.
+same state, as it receives the same messages and all its random draws are seeded. It fails again
+where it failed: that tick is marked, and can be left out. None of its orders has been sent.
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 from rmfs.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from rmfs.demonstrator.robot.protocol import Message
@@ -31,34 +31,50 @@ class Journal:
         The file; created if it does not exist.
     settings
         Settings of the demonstration; a journal of another one is refused.
+    past_failure
+        Whether to leave out the messages of the tick at which the server failed. Default False.
 
     Raises
     ------
     InputError
-        If the file is not a journal, or belongs to another demonstration.
+        If the file is not a journal, or belongs to another demonstration, or contains no failure
+        that could be left out.
     """
 
-    def __init__(self, path: Path, settings: dict[str, Any]) -> None:
+    def __init__(self, path: Path, settings: dict[str, Any], *, past_failure: bool = False) -> None:
         head = json.dumps({"format": FORMAT, "settings": settings}, sort_keys=True)
-        self._past = list(_read(path, head)) if path.exists() else []
-        self.begins_us = self._past[-1][0] if self._past else -1
+        past = _Past(path, head)
+        left_out = _to_leave_out(path, past) if past_failure else None
+        self.left_out = past.left_out | ({left_out} if left_out is not None else set())
+        """Times (us) of ticks that failed, at which nothing is to be heard."""
+        self.begins_us = max([*past.heard, *self.left_out], default=-1)
         """Up to this time everything has been heard already."""
-        self._by_time = dict(self._past)
+        self._by_time = past.heard
         if not path.exists():
             path.write_text(head + "\n", encoding="utf-8")
         # a line that was cut off when the server was killed was not acted upon
         self._drop_half_line(path)
         self._file = path.open("a", encoding="utf-8")
+        if left_out is not None:
+            self._write({"time_us": left_out, "left_out": True})
 
     def heard_at(self, time_us: int) -> Heard:
-        """Return the messages received at a past time."""
+        """Return the messages received at a past time; none if they are left out."""
+        if time_us in self.left_out:
+            return [], frozenset()
         return self._by_time.get(time_us, ([], frozenset()))
 
     def note(
         self, time_us: int, messages: list[tuple[int, Message]], silent: frozenset[int]
     ) -> None:
         """Record received messages before they are processed."""
-        entry = {"time_us": time_us, "heard": messages, "silent": sorted(silent)}
+        self._write({"time_us": time_us, "heard": messages, "silent": sorted(silent)})
+
+    def note_failure(self, time_us: int, error: str) -> None:
+        """Mark the tick at this time as failed, before any of its orders was sent."""
+        self._write({"time_us": time_us, "failed": error})
+
+    def _write(self, entry: dict[str, Any]) -> None:
         self._file.write(json.dumps(entry, separators=(",", ":")) + "\n")
         self._file.flush()
 
@@ -75,17 +91,58 @@ class Journal:
                 file.truncate(whole)
 
 
-def _read(path: Path, head: str) -> Iterator[tuple[int, Heard]]:
-    lines = path.read_text(encoding="utf-8").split("\n")
-    if lines[0] != head:
-        raise InputError(
-            f"{path}: the journal of another demonstration (or none); go on with the same layout, "
-            "scenario, controllers and seed, or choose another --out"
-        )
-    for number, line in enumerate(lines[1:-1], start=2):
-        try:
-            entry = json.loads(line)
+class _Past:
+    """What a journal holds.
+
+    Attributes
+    ----------
+    heard
+        By time (us).
+    left_out
+        Times of ticks to replay without what was heard.
+    failed
+        Time of the tick that failed last; None if none did after the last one left out.
+    """
+
+    def __init__(self, path: Path, head: str) -> None:
+        self.heard: dict[int, Heard] = {}
+        self.left_out: set[int] = set()
+        self.failed: int | None = None
+        if not path.exists():
+            return
+        lines = path.read_text(encoding="utf-8").split("\n")
+        if lines[0] != head:
+            raise InputError(
+                f"{path}: the journal of another demonstration (or none); go on with the same "
+                "layout, scenario, controllers and seed, or choose another --out"
+            )
+        for number, line in enumerate(lines[1:-1], start=2):
+            try:
+                self._add(json.loads(line))
+            except (ValueError, KeyError, TypeError) as error:
+                raise InputError(f"{path}: line {number} is damaged: {error!r}") from None
+
+    def _add(self, entry: dict[str, Any]) -> None:
+        time_us = int(entry["time_us"])
+        if "failed" in entry:
+            self.failed = time_us
+        elif "left_out" in entry:
+            self.left_out.add(time_us)
+            self.failed = None
+        else:
             messages = [(int(robot), dict(message)) for robot, message in entry["heard"]]
-            yield int(entry["time_us"]), (messages, frozenset(entry["silent"]))
-        except (ValueError, KeyError, TypeError) as error:
-            raise InputError(f"{path}: line {number} is damaged: {error!r}") from None
+            self.heard[time_us] = messages, frozenset(entry["silent"])
+
+
+def _to_leave_out(path: Path, past: _Past) -> int:
+    """Return the time (us) of the tick that failed."""
+    if past.failed is None:
+        raise InputError(
+            f"{path}: has no failure; --past-failure resumes a journal whose last tick failed"
+        )
+    if past.failed in past.left_out:
+        raise InputError(
+            f"{path}: the tick at {past.failed / 1e6:.2f} s fails also without what was heard then; "
+            "begin anew with another --out"
+        )
+    return past.failed
