@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rmfs.layout.model import Layout
 
-KINDS_OF_MOTION = 6
+KINDS_OF_MOTION = 7
 AFTER_US = 86_400_000_000
 """Robots complete trips that are under way at the end of the run; none takes a day."""
 LARGEST_SPEED_M_S = 1000.0

@@ -47,6 +47,7 @@ class Piece(IntEnum):
     RIDE = 3
     LIFT = 4
     SET_DOWN = 5
+    GUIDED = 6
 
 
 class TripKind(IntEnum):

@@ -59,7 +59,7 @@ MOTION: dict[str, tuple[Callable[[Frame], Frame | None], str]] = {
     "a robot that is not": (cell("robot", 10), "row 5: robot 10 cannot be; valid: 0 to 9"),
     "a place that is not": (cell("to_wp", 10**6), "to_wp 1000000 cannot be"),
     "a negative place": (cell("from_wp", -1), "from_wp -1 cannot be"),
-    "a kind that is not": (cell("kind", 6), "kind 6 cannot be; valid: 0 to 5"),
+    "a kind that is not": (cell("kind", 7), "kind 7 cannot be; valid: 0 to 6"),
     "a pod that is not": (cell("pod", 100), "pod 100 cannot be; valid: -1 to 99"),
     "a time before the start": (cell("t0_us", -1), "t0_us -1 cannot be"),
     "an end before its begin": (cell("t1_us", 0), "ends (t1_us) before it starts"),

@@ -8,7 +8,7 @@ import numpy as np
 
 from rmfs.layout.model import Elevator, Layout, RobotKind, Tier
 
-HOLD, TURN, RUN, LIFT_RIDE, LIFT, SET_DOWN = range(6)
+HOLD, TURN, RUN, LIFT_RIDE, LIFT, SET_DOWN, GUIDED = range(7)
 COLUMNS = (
     "robot",
     "t0_us",
@@ -149,6 +149,15 @@ class RobotScript:
         if abs(heading - self.heading) > 1e-9:
             self.turn(heading)
         return self._add(RUN, run_duration_s(math.hypot(dx, dy), self.kind), to, heading)
+
+    def guided(self, to: int, seconds: float) -> RobotScript:
+        """Turn towards a waypoint if needed and be on the way there for so long."""
+        layout = self.script.layout
+        dx, dy = layout.x_m[to] - layout.x_m[self.at], layout.y_m[to] - layout.y_m[self.at]
+        heading = math.atan2(dy, dx)
+        if abs(heading - self.heading) > 1e-9:
+            self.turn(heading)
+        return self._add(GUIDED, seconds, to, heading)
 
     def ride(self, to: int, seconds: float = 10.0) -> RobotScript:
         return self._add(LIFT_RIDE, seconds, to, self.heading)

@@ -20,7 +20,8 @@ def motions(draw):
     begin = draw(st.floats(0, 1000))
     values = [begin, begin + draw(st.floats(0.1, 10))]
     values += [draw(one) for one in (position, position, speed, speed, bend, bend)]
-    return Pieces(np.zeros(1, np.int64), *(np.array([value]) for value in values))
+    numbers = (np.array([value]) for value in values)
+    return Pieces(np.zeros(1, np.int64), *numbers, np.zeros(1, np.bool_))
 
 
 def sampled(one: Pieces, other: Pieces, count: int = 4001) -> np.ndarray:
@@ -46,7 +47,7 @@ def test_verdict_agrees_with_dense_sampling(one, other, limit):
         assert not verdict
 
 
-_REST = ("x_m", "y_m", "vx", "vy", "hx", "hy")
+_REST = ("x_m", "y_m", "vx", "vy", "hx", "hy", "guided")
 
 
 @given(motions(), motions())

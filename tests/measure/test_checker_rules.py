@@ -195,6 +195,39 @@ def test_robots_on_different_tiers_do_not_meet():
     assert check(layout, drive(layout, lambda r: r.run(4), lambda r: r.run(5))).ok
 
 
+def test_a_guided_robot_may_be_anywhere_on_its_way():
+    """The other one crosses behind it or before it: either way they could meet."""
+    layout = grid(5, 3, [5, 2])
+    for wait_s, safe in ((0.0, False), (30.0, False), (61.0, True)):
+        trace = drive(
+            layout,
+            lambda r: r.guided(6, 1).guided(8, 60).guided(9, 1),
+            lambda r, wait_s=wait_s: r.hold(wait_s + 2).run(12),
+        )
+        assert check(layout, trace).ok is safe, wait_s
+
+
+def test_two_guided_robots_keep_ways_apart():
+    layout = grid(5, 3, [5, 2])
+    apart = drive(layout, lambda r: r.guided(6, 9), lambda r: r.guided(12, 9))
+    assert check(layout, apart).ok
+    cross = drive(layout, lambda r: r.guided(8, 9), lambda r: r.guided(12, 9))
+    assert kinds(check(layout, cross)) == {FindingKind.ROBOTS_OVERLAP}
+
+
+def test_a_guided_pod_keeps_off_stored_ones():
+    layout = grid(9, 2, [0], pods=(0, 4))
+    report = check(layout, drive(layout, lambda r: r.lift(0).guided(8, 99)))
+    assert kinds(report) == {FindingKind.POD_CROSSED}
+    assert check(layout, drive(layout, lambda r: r.lift(0).guided(3, 99))).ok
+
+
+def test_a_guided_robot_stays_on_edges():
+    layout = grid(3, 3, [0])
+    assert check(layout, drive(layout, lambda r: r.guided(2, 5).guided(8, 5))).ok
+    assert FindingKind.EDGE in kinds(check(layout, drive(layout, lambda r: r.guided(4, 5))))
+
+
 def test_a_ride_takes_the_elevators_time_and_leaves_the_tier():
     layout = grid(5, 1, [0, 2], tiers=2, elevator=2)
     trace = drive(
@@ -305,7 +338,7 @@ def test_pods_are_stored_at_storage_places_only():
         ("robot", 1, "robot 1"),
         ("from_wp", 24, "from_wp 24"),
         ("pod", -2, "pod -2"),
-        ("kind", 6, "kind 6"),
+        ("kind", 7, "kind 7"),
     ],
 )
 def test_rows_that_mean_nothing_are_refused(column, value, text):

@@ -142,7 +142,7 @@ def _to_leave_out(path: Path, past: _Past) -> int:
         )
     if past.failed in past.left_out:
         raise InputError(
-            f"{path}: the tick at {past.failed / 1e6:.2f} s fails also without what was heard then; "
-            "begin anew with another --out"
+            f"{path}: the tick at {past.failed / 1e6:.2f} s fails also without what was heard "
+            "then; begin anew with another --out"
         )
     return past.failed

@@ -101,7 +101,7 @@ def _jumps(layout: Layout, trace: Trace) -> list[Finding]:
         layout.x_m[trace.from_wp] - layout.x_m[before],
         layout.y_m[trace.from_wp] - layout.y_m[before],
     )
-    standing = ~trace.is_kind(Motion.RUN, Motion.LIFT_RIDE)
+    standing = ~trace.is_kind(Motion.RUN, Motion.LIFT_RIDE, Motion.GUIDED)
     drifted = standing & (trace.from_wp != trace.to_wp)
     return [
         *_findings(FindingKind.JUMP, trace, before != trace.from_wp, moved),
@@ -110,18 +110,21 @@ def _jumps(layout: Layout, trace: Trace) -> list[Finding]:
 
 
 def _headings(layout: Layout, trace: Trace) -> list[Finding]:
-    """Check that headings change only in turns, and that robots drive in their heading."""
+    """Check that headings change only in turns, and that robots drive in their heading.
+
+    A guided robot drives from one waypoint to another or turns at one.
+    """
     before = np.asarray(layout.robot_heading_rad, np.float64)[trace.robot]
     before[1:][trace.follows] = trace.heading1_rad[:-1][trace.follows]
     broken = _angle(before, trace.heading0_rad)
-    turned = np.where(
-        trace.kind == Motion.TURN, 0.0, _angle(trace.heading0_rad, trace.heading1_rad)
-    )
+    may_turn = (trace.kind == Motion.TURN) | (trace.is_guided & (trace.from_wp == trace.to_wp))
+    turned = np.where(may_turn, 0.0, _angle(trace.heading0_rad, trace.heading1_rad))
     way = np.arctan2(
         layout.y_m[trace.to_wp] - layout.y_m[trace.from_wp],
         layout.x_m[trace.to_wp] - layout.x_m[trace.from_wp],
     )
-    astray = np.where(trace.kind == Motion.RUN, _angle(way, trace.heading0_rad), 0.0)
+    drives = (trace.kind == Motion.RUN) | (trace.is_guided & (trace.from_wp != trace.to_wp))
+    astray = np.where(drives, _angle(way, trace.heading0_rad), 0.0)
     return [
         finding
         for off in (broken, turned, astray)
@@ -138,7 +141,8 @@ def _durations(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) 
     """Check that motions take the time that the robot or elevator needs.
 
     A run shorter than the fastest speed profile must have exceeded a speed or an acceleration,
-    whatever its shape; a longer one is not the motion that was recorded.
+    whatever its shape; a longer one is not the motion that was recorded. How long guided motion
+    takes is up to robots outside the simulation.
     """
     needed = np.full(len(trace), np.nan)
     is_run, is_turn = trace.kind == Motion.RUN, trace.kind == Motion.TURN
@@ -180,7 +184,7 @@ def _rides(layout: Layout, trace: Trace) -> list[Finding]:
 
 def _edges(layout: Layout, trace: Trace) -> list[Finding]:
     """Check that every run follows edges of the layout straight and in their direction."""
-    is_run = trace.kind == Motion.RUN
+    is_run = (trace.kind == Motion.RUN) | (trace.is_guided & (trace.from_wp != trace.to_wp))
     ways, way_of = np.unique(
         np.stack([trace.from_wp[is_run], trace.to_wp[is_run]]), axis=1, return_inverse=True
     )

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Index = NDArray[np.int64]
+    Mask = NDArray[np.bool_]
 
 ROUNDS = 40
 """Number of halvings after which an interval counts as touching the limit without violating it;
@@ -140,3 +141,66 @@ def minimum(power: Floats) -> tuple[Floats, Floats]:
         which = np.concatenate([which[open_], which[open_]])
         begin = np.concatenate([begin[open_], begin[open_] + width])
     return where, value
+
+
+def meets(one: Pieces, other: Pieces, limit: Floats) -> tuple[Mask, Floats, Floats]:
+    """Find pairs of pieces that come closer than a limit; of a guided robot, that could.
+
+    Parameters
+    ----------
+    limit
+        Of the squared distance, m², shape (K,).
+
+    Returns
+    -------
+    tuple
+        Which do, and of each pair the time and the squared distance when it is closest.
+    """
+    begin, end, power = squared_distance(one, other)
+    hit = below(power, limit)
+    unknown = one.guided | other.guided
+    ways = squared_between_ways(one.take(unknown), other.take(unknown))
+    hit[unknown] = ways < limit[unknown]
+    where, squared = np.zeros(len(power)), np.full(len(power), np.inf)
+    where[hit], squared[hit] = minimum(power[hit])
+    squared[unknown] = ways
+    return hit, begin + where * (end - begin), squared
+
+
+def squared_between_ways(one: Pieces, other: Pieces) -> Floats:
+    """Return the least squared distance of what pairs of pieces cover in their common time, (K,).
+
+    What a piece covers is a straight line: all of its way if the robot may be anywhere on it.
+    """
+    begin = np.maximum(one.t0_s, other.t0_s)
+    end = np.minimum(one.t1_s, other.t1_s)
+    ax, ay, bx, by = one.way(begin, end)
+    cx, cy, dx, dy = other.way(begin, end)
+    ends = [
+        _squared_to_line(ax, ay, cx, cy, dx, dy),
+        _squared_to_line(bx, by, cx, cy, dx, dy),
+        _squared_to_line(cx, cy, ax, ay, bx, by),
+        _squared_to_line(dx, dy, ax, ay, bx, by),
+    ]
+    sides = _side(ax, ay, bx, by, cx, cy) * _side(ax, ay, bx, by, dx, dy) < 0
+    cross = sides & (_side(cx, cy, dx, dy, ax, ay) * _side(cx, cy, dx, dy, bx, by) < 0)
+    least: Floats = np.where(cross, 0.0, np.minimum.reduce(ends))
+    return least
+
+
+def _side(ax: Floats, ay: Floats, bx: Floats, by: Floats, px: Floats, py: Floats) -> Floats:
+    """On which side of the line from a to b a point is: the sign."""
+    return (bx - ax) * (py - ay) - (by - ay) * (px - ax)
+
+
+def _squared_to_line(
+    px: Floats, py: Floats, ax: Floats, ay: Floats, bx: Floats, by: Floats
+) -> Floats:
+    """Return the squared distance of points from the lines between two ends."""
+    ux, uy = bx - ax, by - ay
+    squared = ux**2 + uy**2
+    along = np.divide(
+        (px - ax) * ux + (py - ay) * uy, squared, out=np.zeros_like(squared), where=squared > 0
+    )
+    share = np.clip(along, 0.0, 1.0)
+    return (px - ax - share * ux) ** 2 + (py - ay - share * uy) ** 2

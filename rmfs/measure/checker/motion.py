@@ -72,6 +72,8 @@ def lengths(layout: Layout, trace: Trace) -> Floats:
 class Pieces:
     """Motions of constant acceleration: position(t) = p + v (t - t0) + h (t - t0)².
 
+    Where a guided robot is on its way is not known; its piece of constant speed covers that way.
+
     Attributes
     ----------
     row
@@ -80,6 +82,8 @@ class Pieces:
         Start and end of the piece.
     x_m, y_m, vx, vy, hx, hy
         Position and velocity at `t0_s`, and half the acceleration.
+    guided
+        Whether the robot may be anywhere on the piece's way all the time.
     """
 
     row: NDArray[np.int64]
@@ -91,6 +95,7 @@ class Pieces:
     vy: Floats
     hx: Floats
     hy: Floats
+    guided: NDArray[np.bool_]
 
     def __len__(self) -> int:
         """Return the number of pieces."""
@@ -108,6 +113,13 @@ class Pieces:
             self.y_m + tau * (self.vy + tau * self.hy),
         )
 
+    def way(self, begin_s: Floats, end_s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Return the ends x0, y0, x1, y1 of where every piece may be between two times, in m."""
+        return (
+            *self.at(np.where(self.guided, self.t0_s, begin_s)),
+            *self.at(np.where(self.guided, self.t1_s, end_s)),
+        )
+
     @classmethod
     def joined(cls, parts: list[Pieces]) -> Pieces:
         """Combine several sets of pieces."""
@@ -118,8 +130,9 @@ class Pieces:
 
 def cut(layout: Layout, trace: Trace, limits: Kinematics) -> Pieces:
     """Divide rows on tiers into pieces, sorted by row; elevator rides have no pieces."""
-    standing = ~trace.is_kind(Motion.RUN, Motion.LIFT_RIDE)
+    standing = ~trace.is_kind(Motion.RUN, Motion.LIFT_RIDE, Motion.GUIDED)
     parts = [_resting(layout, trace, np.flatnonzero(standing))]
+    parts += [_guided(layout, trace, np.flatnonzero(trace.is_guided))]
     parts += _running(layout, trace, limits, np.flatnonzero(trace.kind == Motion.RUN))
     pieces = Pieces.joined(parts)
     pieces = pieces.take(pieces.t1_s > pieces.t0_s)
@@ -136,6 +149,20 @@ def _resting(layout: Layout, trace: Trace, rows: NDArray[np.int64]) -> Pieces:
         layout.x_m[place].astype(np.float64),
         layout.y_m[place].astype(np.float64),
         *(zero, zero, zero, zero),
+        np.zeros(len(rows), np.bool_),
+    )
+
+
+def _guided(layout: Layout, trace: Trace, rows: NDArray[np.int64]) -> Pieces:
+    origin, target = trace.from_wp[rows], trace.to_wp[rows]
+    x, y = layout.x_m[origin].astype(np.float64), layout.y_m[origin].astype(np.float64)
+    begin, end = trace.t0_us[rows] / MICROSECONDS, trace.t1_us[rows] / MICROSECONDS
+    share = np.divide(1.0, end - begin, out=np.zeros(len(rows)), where=end > begin)
+    zero = np.zeros(len(rows))
+    return Pieces(
+        *(rows, begin, end, x, y),
+        *((layout.x_m[target] - x) * share, (layout.y_m[target] - y) * share, zero, zero),
+        np.ones(len(rows), np.bool_),
     )
 
 
@@ -157,6 +184,7 @@ def _running(
         return Pieces(
             *(rows, np.minimum(begin, stop), np.minimum(end, stop), x + ux * way, y + uy * way),
             *(ux * speed, uy * speed, ux * half, uy * half),
+            np.zeros(len(rows), np.bool_),
         )
 
     v, zero = plan.speed_m_s, np.zeros(len(rows))

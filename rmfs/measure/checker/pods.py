@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .distance import below, minimum, squared_distance
+from .distance import meets
 from .episodes import worst
 from .motion import Pieces
 from .report import Finding, FindingKind
@@ -126,16 +126,14 @@ def _crossings(layout: Layout, trace: Trace, pieces: Pieces, stays: Stays) -> li
     count = np.searchsorted(pieces.row, row, side="right") - first
     piece = np.repeat(first, count) + _within(count)
     stay = np.repeat(stay, count)
-    meets = (pieces.t0_s[piece] < stays.t1_s[stay]) & (stays.t0_s[stay] < pieces.t1_s[piece])
-    moving, still = pieces.take(piece[meets]), _standing(layout, stays, stay[meets])
-    begin, end, power = squared_distance(moving, still)
+    together = (pieces.t0_s[piece] < stays.t1_s[stay]) & (stays.t0_s[stay] < pieces.t1_s[piece])
+    moving, still = pieces.take(piece[together]), _standing(layout, stays, stay[together])
+    begin, end = np.maximum(moving.t0_s, still.t0_s), np.minimum(moving.t1_s, still.t1_s)
     reach = 2 * layout.pod_radius_m
-    hit = below(power, np.full(len(power), (reach - TOLERANCE_M) ** 2))
-    where, squared = minimum(power[hit])
-    moment = begin[hit] + where * (end - begin)[hit]
-    depth = reach - np.sqrt(np.maximum(squared, 0.0))
-    who = trace.robot[moving.row[hit]], stays.pod[stay[meets][hit]]
-    place = stays.place[stay[meets][hit]]
+    hit, moment, squared = meets(moving, still, np.full(len(moving), (reach - TOLERANCE_M) ** 2))
+    moment, depth = moment[hit], reach - np.sqrt(np.maximum(squared[hit], 0.0))
+    who = trace.robot[moving.row[hit]], stays.pod[stay[together][hit]]
+    place = stays.place[stay[together][hit]]
     return [
         Finding(
             FindingKind.POD_CROSSED,
@@ -203,4 +201,5 @@ def _standing(layout: Layout, stays: Stays, stay: Index) -> Pieces:
     return Pieces(
         *(np.full(len(stay), -1), stays.t0_s[stay], stays.t1_s[stay]),
         *(layout.x_m[place], layout.y_m[place], zero, zero, zero, zero),
+        np.zeros(len(stay), np.bool_),
     )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .distance import below, minimum, squared_distance
+from .distance import meets
 from .episodes import worst
 from .report import Finding, FindingKind
 from .sweep import close_pairs
@@ -51,8 +51,7 @@ def check(
     examined = 0
     for one, other in close_pairs(pieces, radius, tier, robot):
         limit = (radius[one] + radius[other] - TOLERANCE_M) ** 2
-        _, _, power = squared_distance(pieces.take(one), pieces.take(other))
-        hit = below(power, limit)
+        hit, *_ = meets(pieces.take(one), pieces.take(other), limit)
         examined += len(one)
         hits.append((one[hit], other[hit]))
     one, other = (np.concatenate(side) for side in zip(*hits, strict=True))
@@ -66,9 +65,9 @@ def _collisions(
     robot = trace.robot[pieces.row]
     swap = robot[one] > robot[other]
     one, other = np.where(swap, other, one), np.where(swap, one, other)
-    begin, end, power = squared_distance(pieces.take(one), pieces.take(other))
-    where, squared = minimum(power)
-    moment = begin + where * (end - begin)
+    a, b = pieces.take(one), pieces.take(other)
+    _, moment, squared = meets(a, b, np.full(len(one), np.inf))
+    begin, end = np.maximum(a.t0_s, b.t0_s), np.minimum(a.t1_s, b.t1_s)
     depth = radius[one] + radius[other] - np.sqrt(np.maximum(squared, 0.0))
     return [
         Finding(

@@ -113,8 +113,7 @@ def boxes(pieces: Pieces, radius_m: Floats, tier: Index, begin: int, end: int) -
     whole = pieces.take(piece)
     t0 = np.maximum(whole.t0_s, slab * SLAB_S)
     t1 = np.minimum(whole.t1_s, (slab + 1) * SLAB_S)
-    xa, ya = whole.at(t0)
-    xb, yb = whole.at(t1)
+    xa, ya, xb, yb = whole.way(t0, t1)
     grow = radius_m[piece]
     made = Boxes(
         piece,

@@ -30,6 +30,7 @@ class Motion(IntEnum):
     LIFT_RIDE = 3
     LIFT = 4
     SET_DOWN = 5
+    GUIDED = 6
 
 
 COLUMNS = {
@@ -98,6 +99,12 @@ class Trace:
         follows = self.follows & (self.kind[:-1] == Motion.TURN)
         begins[1:][follows] = self.t0_us[:-1][follows]
         return int(begins.max(initial=0))
+
+    @property
+    def is_guided(self) -> NDArray[np.bool_]:
+        """Whether only the way is known, and not where on it the robot is, shape (K,)."""
+        guided: NDArray[np.bool_] = self.kind == Motion.GUIDED
+        return guided
 
     def is_kind(self, *kinds: Motion) -> NDArray[np.bool_]:
         """Return which rows are of one of these kinds, shape (K,)."""

@@ -1,5 +1,7 @@
 //! What is remembered of the motion: totals per robot, heat, trips and the trace.
 
+use std::collections::HashMap;
+
 use serde::{Deserialize, Serialize};
 
 use crate::energy::{Done, Energy};
@@ -7,8 +9,9 @@ use crate::heat::Heat;
 use crate::kinematics::Kind;
 use crate::log::Log;
 use crate::network::{NONE, Network};
+use crate::robot::Robot;
 use crate::search::Move;
-use crate::units::{MicroTurn, Us, floor_us, turn_between};
+use crate::units::{MicroTurn, Us, ceil_us, floor_us, turn_between};
 
 /// Kinds of pieces of motion in the trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,6 +23,9 @@ pub enum Piece {
     Ride = 3,
     Lift = 4,
     SetDown = 5,
+    /// Somewhere on the straight way between two waypoints, or turning at one: of a run that was
+    /// held up on its way no more is known.
+    Guided = 6,
 }
 
 /// Why a robot stands still; with the purpose of its way, see [`Heat`].
@@ -44,6 +50,17 @@ pub struct Row {
     pub pod: i32,
     /// With which a run was driven: robots are slow at times. 0 for other pieces.
     pub top_speed: f64,
+}
+
+/// A delay of a run that had begun.
+#[derive(Clone, Debug)]
+struct Late {
+    /// When the run starts, which tells it from others of the robot.
+    start: Us,
+    /// Waypoints of the run in use when the delay came.
+    begun: u32,
+    /// By how much it is late since then in all.
+    by: Us,
 }
 
 /// Totals of one robot since the last reset.
@@ -121,6 +138,10 @@ pub struct Record {
     pub since: Us,
     /// Until when each robot's motion is recorded.
     recorded: Vec<Us>,
+    /// What each robot's run in progress has been held up. Only robots outside the simulation hold
+    /// up runs in progress, and what they do cannot be saved.
+    #[serde(skip)]
+    late: HashMap<u32, Vec<Late>>,
 }
 
 impl Record {
@@ -134,6 +155,7 @@ impl Record {
             energy: None,
             since: 0,
             recorded: vec![0; robots],
+            late: HashMap::new(),
         }
     }
 
@@ -228,6 +250,145 @@ impl Record {
         });
     }
 
+    /// Takes note of how late a run in progress is by now.
+    pub fn hold_up(&mut self, robot: u32, step: &Move) {
+        let known = self.late.entry(robot).or_default();
+        if known.last().is_none_or(|last| (last.start, last.by) != (step.start, step.late)) {
+            known.push(Late { start: step.start, begun: step.begun, by: step.late });
+        }
+    }
+
+    /// When the robot sets off on a run, and when it reaches each waypoint, late as it may be.
+    fn reached(
+        &self,
+        network: &Network,
+        kind: &Kind,
+        robot: u32,
+        step: &Move,
+    ) -> (Us, Vec<(u32, Us)>) {
+        let line: Vec<(u32, f64)> = network.line(step.from, step.to, step.heading).collect();
+        let profile = kind.run(line.last().map_or(0.0, |end| end.1));
+        let known = self.late.get(&robot).map_or(&[][..], Vec::as_slice);
+        let mine: Vec<&Late> = known.iter().filter(|late| late.start == step.start).collect();
+        let of = |(index, &(node, distance)): (usize, &(u32, f64))| {
+            // a waypoint in use may have been reached, unless it was the last of them
+            let behind = |late: &&&Late| late.begun as usize <= index + 1;
+            let by = mine.iter().rev().find(behind).map_or(0, |late| late.by);
+            (node, step.start + by + ceil_us(profile.time_at(distance)))
+        };
+        let before = mine.iter().rev().find(|late| late.begun == 0).map_or(0, |late| late.by);
+        (step.start + before, line.iter().enumerate().map(of).collect())
+    }
+
+    /// A move as rows of the trace: the turn before it, if any, and the run or ride. A run that was
+    /// held up is told waypoint by waypoint.
+    pub fn rows(
+        &self,
+        network: &Network,
+        kind: &Kind,
+        robot: u32,
+        step: &Move,
+        pod: Option<u32>,
+    ) -> Vec<Row> {
+        let mut rows: Vec<Row> = move_rows(network, kind, robot, step, pod).collect();
+        if step.late == 0 || step.ride {
+            return rows;
+        }
+        let whole = rows.pop().expect("a move has a row");
+        let (set_off, reached) = self.reached(network, kind, robot, step);
+        if set_off > whole.start {
+            let start = (whole.from, whole.start);
+            let stands = guided(&whole, start, (whole.from, set_off));
+            rows.push(Row { piece: Piece::Hold, ..stands });
+        }
+        let mut here = (whole.from, set_off);
+        for (node, time) in reached {
+            rows.push(guided(&whole, here, (node, time)));
+            here = (node, time);
+        }
+        if let Some(last) = rows.last_mut() {
+            last.end = whole.end;
+        }
+        rows
+    }
+
+    /// Records that a robot gives up what it does, and is at rest as `later` has it: at the end of
+    /// the part of its run that it may still drive, or wherever it was put.
+    pub fn abandon(
+        &mut self,
+        network: &Network,
+        kind: &Kind,
+        robot: u32,
+        state: &Robot,
+        later: &Robot,
+        now: Us,
+    ) {
+        let (anchor, pod, mut heading) = (state.anchor, state.pod, state.heading);
+        let under_way = state.committed(network, kind, now) > 0;
+        let step = state.moves.front().filter(|step| under_way && !step.ride);
+        let begin = self.recorded[robot as usize];
+        let still = Row {
+            robot,
+            start: begin,
+            end: begin,
+            piece: Piece::Guided,
+            from: anchor,
+            to: anchor,
+            heading_before: heading,
+            heading,
+            pod: pod_id(pod),
+            top_speed: 0.0,
+        };
+        let mut rows: Vec<Row> = Vec::new();
+        let mut here = (anchor, begin);
+        if let Some(step) = step {
+            let turned = step.start.min(now);
+            if turned > begin {
+                rows.push(Row { end: turned, heading: step.heading, ..still.clone() });
+            }
+            heading = step.heading;
+            let (set_off, reached) = self.reached(network, kind, robot, step);
+            here.1 = turned.max(begin);
+            if set_off.min(now) > here.1 {
+                let end = (anchor, set_off.min(now));
+                rows.push(guided(&Row { heading, ..still.clone() }, here, end));
+                here = end;
+            }
+            for (node, time) in reached {
+                if time > now {
+                    break;
+                }
+                rows.push(guided(&Row { heading, ..still.clone() }, here, (node, time)));
+                here = (node, time);
+            }
+        }
+        if later.anchor != here.0 {
+            let end = (later.anchor, later.rested.max(here.1));
+            rows.push(guided(&Row { heading, ..still.clone() }, here, end));
+            here = end;
+        }
+        if later.heading != heading {
+            let last = guided(&Row { heading: later.heading, ..still.clone() }, here, here);
+            rows.push(Row { heading_before: heading, ..last });
+        }
+        self.late.remove(&robot);
+        for row in rows {
+            let (a, b) = (network.position(row.from), network.position(row.to));
+            let length = (b.0 - a.0).hypot(b.1 - a.1);
+            let totals = &mut self.totals[robot as usize];
+            totals.distance += length;
+            if pod.is_some() {
+                totals.loaded_distance += length;
+            }
+            *(if row.from == row.to { &mut totals.turning } else { &mut totals.moving }) +=
+                row.end - row.start;
+            if let Some(energy) = &mut self.energy {
+                energy.moved(robot, row.start, row.end, pod, Done::Time);
+            }
+            self.push(row);
+        }
+    }
+
     /// Records a whole move, the turn before it included; the robot stood until the turn.
     pub fn drive(
         &mut self,
@@ -257,9 +418,17 @@ impl Record {
             totals.loaded_distance += length;
         }
         let profile = self.energy.is_some().then(|| kind.run(length));
-        for row in move_rows(network, kind, robot, step, pod) {
+        let rows = self.rows(network, kind, robot, step, pod);
+        if let Some(late) = self.late.get_mut(&robot) {
+            late.retain(|late| late.start > step.start);
+        }
+        for row in rows {
             if let Some(energy) = &mut self.energy {
                 let done = match row.piece {
+                    // the whole run at its first waypoint
+                    Piece::Guided if row.from == step.from => {
+                        Done::Run(kind, profile.as_ref().expect("made above"), length)
+                    }
                     Piece::Turn => Done::Turn(kind, angle(network, step), 1.0),
                     Piece::Run => Done::Run(kind, profile.as_ref().expect("made above"), length),
                     _ => Done::Time,
@@ -297,8 +466,22 @@ fn pod_id(pod: Option<u32>) -> i32 {
     pod.map_or(-1, |pod| pod as i32)
 }
 
+/// A part of a run that was held up.
+fn guided(whole: &Row, from: (u32, Us), to: (u32, Us)) -> Row {
+    Row {
+        start: from.1,
+        end: to.1,
+        piece: Piece::Guided,
+        from: from.0,
+        to: to.0,
+        heading_before: whole.heading,
+        top_speed: 0.0,
+        ..whole.clone()
+    }
+}
+
 /// A move as rows of the trace: the turn before it, if any, and the run or ride.
-pub fn move_rows(
+fn move_rows(
     network: &Network,
     kind: &Kind,
     robot: u32,

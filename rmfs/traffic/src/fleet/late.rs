@@ -83,6 +83,11 @@ impl Fleet {
             return false;
         }
         let plans = delays.plans;
+        for (&robot, moves) in &plans {
+            for step in moves.iter().filter(|step| step.late > 0) {
+                self.record.hold_up(robot, step);
+            }
+        }
         self.follow(plans);
         true
     }

@@ -2,7 +2,7 @@
 
 use crate::kinematics::Kind;
 use crate::network::Network;
-use crate::record::{Piece, Row, Standing, Totals, enters_zone, move_rows, partly};
+use crate::record::{Piece, Row, Standing, Totals, enters_zone, partly};
 use crate::robot::{Phase, Step};
 use crate::search::Move;
 use crate::units::{Us, floor_us};
@@ -174,7 +174,8 @@ impl Fleet {
                     });
                 }
                 _ if state.committed(&self.network, kind, self.now) > 0 => {
-                    rows.extend(move_rows(&self.network, kind, robot, &state.moves[0], state.pod));
+                    let step = &state.moves[0];
+                    rows.extend(self.record.rows(&self.network, kind, robot, step, state.pod));
                 }
                 _ => {}
             }

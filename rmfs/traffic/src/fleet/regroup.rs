@@ -37,6 +37,13 @@ impl Fleet {
         for robot in 0..self.robots.len() as u32 {
             self.forget(robot);
         }
+        for (robot, state) in robots.iter().enumerate() {
+            if rests[robot].is_some() {
+                let old = &self.robots[robot];
+                let kind = &self.kinds[old.kind as usize];
+                self.record.abandon(&self.network, kind, robot as u32, old, state, self.now);
+            }
+        }
         self.robots = robots;
         for robot in 0..self.robots.len() as u32 {
             self.occupy(robot);
