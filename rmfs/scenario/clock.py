@@ -97,6 +97,11 @@ class Openings:
         Down periods. None: never down.
     gone_s
         Time by which all cycles have advanced at time zero.
+
+    Attributes
+    ----------
+    always
+        Whether there are no down periods.
     """
 
     def __init__(self, config: DownPeriods | None, gone_s: float) -> None:
@@ -105,6 +110,7 @@ class Openings:
             self._cycle = Cycle(config.cycle_s, gone_s)
             # begin, end, begin, end, ...: down after an odd number of boundaries
             self._borders = [nearest_us(s) for period in config.periods_s for s in period]
+        self.always = not self._borders
 
     def is_open(self, time_us: int) -> bool:
         """Return whether things are generated at a time; a period excludes its end."""

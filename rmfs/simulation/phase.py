@@ -235,7 +235,9 @@ class DecisionPhase:
         self._tasks_given()
 
     def _tasks_given(self) -> None:
-        self._alarms.asked(Problem.REPOSITIONING)
+        alarms = self._alarms
+        if alarms.overdue or Problem.REPOSITIONING in alarms.punctual:
+            alarms.asked(Problem.REPOSITIONING)
 
     def _start_prepared(self) -> None:
         world = self._world

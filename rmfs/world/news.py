@@ -28,7 +28,7 @@ class News:
 
     def keeps(self, follower: Follower) -> bool:
         """Whether a follower is currently subscribed."""
-        return any(one is follower for one in self._followers)
+        return follower in self._followers
 
     def keep(self, follower: Follower) -> None:
         """Subscribe a follower; the oldest one may be dropped."""

@@ -42,6 +42,8 @@ class RandomStation(ReplenishmentOrderAssignment[RandomStationParameters]):
 
     def decide(self) -> Iterator[SendBundle]:
         """Yield assignments until no waiting bundle fits into any station."""
+        if not self.view.bundles.without_station:
+            return
         stations = [station for station in self.view.replenishment_stations if station.active]
         # free space only shrinks meanwhile: what did not fit once need not be tried again
         too_large = inf

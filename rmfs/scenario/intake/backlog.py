@@ -32,8 +32,9 @@ class Rest:
 
     def ends(self, now_us: int) -> bool:
         """Return whether the process may continue at a time."""
-        blocked_us = self._blocked_us
-        until_us = self._openings.open_from_us(now_us if now_us >= blocked_us else blocked_us)
+        until_us = self._blocked_us
+        if not self._openings.always:
+            until_us = self._openings.open_from_us(max(now_us, until_us))
         if until_us > now_us:
             self.until_us = until_us
             return False

@@ -179,8 +179,8 @@ impl Backward {
     pub fn advance(&mut self, network: &Network, model: &Model, limit: u32) {
         while let Some((cost, state)) = self.queue.pop(limit) {
             look_up();
-            let index = state / ENTRIES;
-            let (node, heading) = ((index / self.headings) as u32, (index % self.headings) as u8);
+            let (index, headings) = ((state / ENTRIES) as u32, self.headings as u32);
+            let (node, heading) = (index / headings, (index % headings) as u8);
             if state % ENTRIES == ROLLING {
                 self.roll_back(network, model, node, heading, cost);
             } else {
@@ -242,11 +242,14 @@ impl Backward {
 
     /// The robot is at rest with any heading, turns and starts a run of known cost.
     fn start_here(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
-        for before in 0..self.headings as u8 {
-            let cost = cost + model.turning(before, heading);
-            let index = network.index(node, before);
-            if self.comes(network, node, before, heading) {
-                self.offer(network, node, before, 0, cost);
+        let first = network.index(node, 0);
+        let back = network.opposite(heading).map(usize::from);
+        let bound = self.bound_at_rest(network, node);
+        for (before, &turn) in model.turns_to(heading).iter().enumerate() {
+            let (index, cost) = (first + before, cost + turn);
+            let straight = before == usize::from(heading) || back == Some(before);
+            if self.comes(network, node, index, before as u8, straight) {
+                self.queue.improve(index * ENTRIES, cost, cost + bound);
             } else {
                 self.queue.note(index * ENTRIES + STRAIGHT, cost);
             }
@@ -254,13 +257,22 @@ impl Backward {
     }
 
     /// Whether somebody on a quickest way may come to rest at a waypoint with the heading `before` to
-    /// drive on with another: nobody stops to go straight on or back where he came from, or arrives
-    /// in a direction that no edge has, but for those who come by elevator.
-    fn comes(&self, network: &Network, node: u32, before: u8, heading: u8) -> bool {
-        match self.arrivals[network.index(node, before)] {
+    /// drive on with another: nobody stops to go `straight` on or back where he came from, or arrives
+    /// in a direction that no edge has, but for those who come by elevator. `index` is that of
+    /// (waypoint, heading).
+    #[inline]
+    fn comes(
+        &self,
+        network: &Network,
+        node: u32,
+        index: usize,
+        before: u8,
+        straight: bool,
+    ) -> bool {
+        match self.arrivals[index] {
             Arrival::Never => false,
             Arrival::OverElevator => true,
-            _ if before == heading || network.opposite(before) == Some(heading) => false,
+            _ if straight => false,
             Arrival::FromAisle => true,
             Arrival::FromStorage => {
                 // a loaded robot leaves no storage place but the one where it starts

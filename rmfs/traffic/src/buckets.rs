@@ -41,12 +41,14 @@ impl Buckets {
     }
 
     /// The least cost offered for a state, or `UNREACHABLE`.
+    #[inline]
     pub fn best(&self, state: usize) -> u32 {
         let (stamp, cost) = self.best[state];
         if stamp == self.stamp { cost } else { UNREACHABLE }
     }
 
     /// Keeps a cost for a state if it is less than the one known; the state never gets its turn.
+    #[inline]
     pub fn note(&mut self, state: usize, cost: u32) {
         if cost < self.best(state) {
             self.best[state] = (self.stamp, cost);
@@ -54,6 +56,7 @@ impl Buckets {
     }
 
     /// Offers a cost for a state; `total` (cost and bound of the rest) says when it is its turn.
+    #[inline]
     pub fn improve(&mut self, state: usize, cost: u32, total: u32) {
         if cost >= self.best(state) {
             return;

@@ -33,8 +33,10 @@ pub struct Model {
     run_constant: f64,
     /// `2 (a + b) / (a b)`: a shorter run of `l` metres takes the root of `l` times this, in seconds.
     short_run: f64,
-    /// Turning time between two headings, row-major.
+    /// Turning time between two headings, row-major: from, to.
     turn: Vec<u32>,
+    /// The same by the heading to which a robot turns.
+    turn_to: Vec<u32>,
     headings: usize,
 }
 
@@ -42,17 +44,19 @@ impl Model {
     /// Prepares the costs of one kind of robot.
     pub fn new(network: &Network, kind: &Kind) -> Self {
         let (a, b, v) = (kind.acceleration, kind.deceleration, kind.top_speed);
-        let turn = network
-            .headings
-            .iter()
-            .flat_map(|&from| network.headings.iter().map(move |&to| kind.turn(from, to) as u32))
-            .collect();
+        let pairs = || {
+            let headings = &network.headings;
+            headings.iter().flat_map(move |&one| headings.iter().map(move |&other| (one, other)))
+        };
+        let turn = pairs().map(|(from, to)| kind.turn(from, to) as u32).collect();
+        let turn_to = pairs().map(|(to, from)| kind.turn(from, to) as u32).collect();
         Self {
             pace: 1e6 / v,
             full_speed: kind.run_up() + kind.braking(),
             run_constant: (v / (2.0 * a) + v / (2.0 * b)) * 1e6,
             short_run: 2.0 * (a + b) / (a * b),
             turn,
+            turn_to,
             headings: network.heading_count(),
         }
     }
@@ -74,6 +78,12 @@ impl Model {
     /// Turning time between two headings by index.
     pub fn turning(&self, from: u8, to: u8) -> u32 {
         self.turn[from as usize * self.headings + to as usize]
+    }
+
+    /// Turning times from every heading to one.
+    pub fn turns_to(&self, to: u8) -> &[u32] {
+        let first = to as usize * self.headings;
+        &self.turn_to[first..first + self.headings]
     }
 
     /// Times from every (waypoint, heading) at rest to `goal`.
