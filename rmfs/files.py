@@ -6,6 +6,7 @@ import ctypes
 import errno
 import fcntl
 import os
+import re
 import shutil
 import tempfile
 from contextlib import contextmanager
@@ -17,6 +18,9 @@ from rmfs.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+
+_PARTIAL = re.compile(r"\.(?P<target>.+)\.partial-[a-z0-9_]{8}")
+"""Names of temporary folders beside their targets, as `tempfile.mkdtemp` makes them."""
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG)
 LARGEST_MIB = 64
@@ -191,9 +195,9 @@ def _missing_parents(target: Path) -> list[Path]:
 
 
 def _temporary_beside(target: Path) -> Path:
-    """Create the temporary folder, after removing one left behind by a killed process.
+    """Create the temporary folder, after removing those left behind by killed processes.
 
-    The target is locked, so no other process writes to such a folder.
+    The target is locked, so no other process writes to a temporary folder of it.
     """
     prefix = f".{target.name}.partial-"
     try:
@@ -201,9 +205,20 @@ def _temporary_beside(target: Path) -> Path:
         for left in target.parent.iterdir():
             if left.name.startswith(prefix):
                 shutil.rmtree(left, ignore_errors=True)
+            elif (owner := _PARTIAL.fullmatch(left.name)) and left.is_dir():
+                _sweep(left, target.with_name(owner["target"]))
         return Path(tempfile.mkdtemp(dir=target.parent, prefix=prefix))
     except OSError as error:
         raise InputError(f"{target}: cannot be written ({error.strerror})") from None
+
+
+def _sweep(left: Path, owner: Path) -> None:
+    """Remove the temporary folder of another target, unless a process is writing it."""
+    try:
+        with _locked(owner):
+            shutil.rmtree(left, ignore_errors=True)
+    except InputError:
+        return
 
 
 def _put_in_place(temporary: Path, target: Path) -> None:

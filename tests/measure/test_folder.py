@@ -143,6 +143,19 @@ def test_what_a_killed_process_has_left_is_removed(written):
     assert not left.exists() and other.exists()
 
 
+def test_what_killed_processes_have_left_of_other_targets_is_removed(written):
+    """Unless its owner is still at work: the folder's lock says so."""
+    dead = written.parent / ".dead.partial-a1b2c3_d"
+    dead.mkdir()
+    (dead / "run.json").write_text("{}")
+    with reserved(written.parent / "alive") as alive:
+        with reserved(written) as folder:
+            (folder / "run.json").write_text("{}")
+        assert alive.is_dir()
+        (alive / "run.json").write_text("{}")
+    assert sorted(path.name for path in written.parent.iterdir()) == ["alive", "where"]
+
+
 def test_the_old_run_comes_back_if_the_new_one_cannot_take_its_place(written, monkeypatch):
     """Where the system cannot exchange two folders at once."""
     from pathlib import Path

@@ -12,7 +12,9 @@ true minimum, so the solver's bound remains valid.
 from __future__ import annotations
 
 import math
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,7 +78,7 @@ def solve(
     configure(solver, limits, seed)
     solver.parameters.cp_model_presolve = presolve
     built = time.perf_counter()
-    status = solver.solve(model)
+    status = run(solver, model)
     require(status != cp_model.MODEL_INVALID, "program", f"CP-SAT refuses it: {model.validate()}")
     check_guard(solver, status, limits)
     return _outcome(program, solver, status, scale, began, built)
@@ -96,12 +98,43 @@ def configure(solver: cp_model.CpSolver, limits: Limits, seed: int) -> None:
     """
     parameters = solver.parameters
     parameters.num_workers = 1
+    # its own handler would replace that of Python, during the search and after it
+    parameters.catch_sigint_signal = False
     parameters.random_seed = seed
     parameters.relative_gap_limit = limits.gap
     if limits.deterministic_s is not None:
         parameters.max_deterministic_time = limits.deterministic_s
     if limits.wall_guard_s is not None:
         parameters.max_time_in_seconds = limits.wall_guard_s
+
+
+def run(solver: cp_model.CpSolver, model: cp_model.CpModel) -> CpSolverStatus:
+    """Solve a model in such a way that Ctrl-C ends the search.
+
+    Signals reach Python in the main thread only, and not while it is in the solver. The search
+    therefore has a thread of its own.
+
+    Parameters
+    ----------
+    solver
+        A solver that `configure` has set.
+    model
+        The model to solve.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user interrupts the search, which is stopped.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        return solver.solve(model)
+    with ThreadPoolExecutor(1) as pool:
+        search = pool.submit(solver.solve, model)
+        try:
+            return search.result()
+        except BaseException:
+            solver.stop_search()
+            raise
 
 
 def check_guard(solver: cp_model.CpSolver, status: CpSolverStatus, limits: Limits) -> None:

@@ -8,7 +8,7 @@ from time import perf_counter
 import numpy as np
 from ortools.sat.python import cp_model
 
-from rmfs.solvers.models.backends.cp_sat import check_guard, configure
+from rmfs.solvers.models.backends.cp_sat import check_guard, configure, run
 from rmfs.solvers.models.checks import require
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 from rmfs.solvers.models.tasks.sequence.bound import relaxed_bound
@@ -79,7 +79,7 @@ def solve(
     solver = cp_model.CpSolver()
     configure(solver, limits, seed)
     built = perf_counter()
-    ended = solver.solve(circuit.model)
+    ended = run(solver, circuit.model)
     check_guard(solver, ended, limits)
     status, work = _STATUS[ended], float(solver.deterministic_time)
     routes = circuit.read(solver) if status in (Status.OPTIMAL, Status.FEASIBLE) else None
