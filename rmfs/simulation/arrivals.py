@@ -99,9 +99,10 @@ class ArrivalProcess:
         world = self._world
         world.order_redraws += arrival.redraws
         left = world.inventory.uncommitted.item
-        world.orders_short += any(
-            left(sku) < units for sku, units in zip(arrival.skus, arrival.units, strict=True)
-        )
+        for sku, units in zip(arrival.skus, arrival.units, strict=True):
+            if left(sku) < units:
+                world.orders_short += 1
+                break
         order = Order.of(
             world.orders_created, world.now_s, arrival.due_s, arrival.skus, arrival.units
         )

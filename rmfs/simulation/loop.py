@@ -173,7 +173,7 @@ class Loop:
             self.wall_s += perf_counter() - started_s
 
     def _go_on_until(self, end_us: int, limit: Limit | None) -> Decision | None:
-        agenda = self.agenda
+        agenda, phase = self.agenda, self.phase
         limits = [limit] if limit is not None else []
         if self.optimisers.waits:
             limits.insert(0, self.optimisers.limit_us)
@@ -183,9 +183,14 @@ class Loop:
                 for one in limits:
                     # an answer that arrives during this wait enters the agenda
                     allowed_us = min(allowed_us, one(agenda.now_us))
-                self._move(min(agenda.next_us, allowed_us))
-            if not self._settle():
+                next_us = agenda.next_us
+                self._move(next_us if next_us < allowed_us else allowed_us)
+            while phase.settle():
+                if not agenda.run_settled():
+                    break
+            else:
                 return self.decision
+            self._unsettled = False
             if agenda.now_us >= end_us and self._quiet and agenda.next_us > end_us:
                 if end_us >= self._end_us:
                     self._end()
@@ -208,14 +213,6 @@ class Loop:
         self._quiet = not events
         agenda.run_due()
         self._unsettled = True
-
-    def _settle(self) -> bool:
-        """Let controllers decide at this instant; return False if the outside has to."""
-        while self.phase.settle():
-            if not self.agenda.run_settled():
-                self._unsettled = False
-                return True
-        return False
 
     def _refuse_pending(self, decision: Decision | None) -> None:
         if decision is not None:

@@ -217,7 +217,8 @@ class DecisionPhase:
         if self._visits.controllers:
             self._visits.give()
         outside.taken = 0  # all that was answered in this attempt is asked again, in its order
-        self._start_prepared()
+        if world.asking or outside.problems:
+            self._start_prepared()
         if outside.taken:
             outside.drop_taken()
         rule = self._controllers.installed[Problem.TA]

@@ -89,6 +89,8 @@ class FastLane:
             else:
                 serving.discard(index)
         new: dict[int, list[Order]] = {}
+        if newest == self._newest and not changed and not self._hopeful:
+            return []
         for index in serving if newest != self._newest else changed & serving:
             self._look(index, newest, new)
         self._newest = newest

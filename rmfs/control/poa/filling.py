@@ -79,7 +79,10 @@ class Filling(PickOrderAssignment[P]):
     def _stations_to_fill(self) -> list[PickStation]:
         """Stations with a slot to fill, ascending; only those with news are checked."""
         stations, to_fill = self.view.pick_stations, self._to_fill
-        for index in self._news.take():
+        changed = self._news.take()
+        if not changed and not to_fill:
+            return []
+        for index in changed:
             station = stations[index]
             if station.active and station.free_slots > self._kept_slots[index]:
                 to_fill.add(index)
