@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 STEPS = 400
 """Number of subgradient steps of Lagrangian bounds."""
 
-_SEARCH = {"pile_on": "cp_sat", "planning": "cp_sat"}
+_SEARCH = {"pile_on": "cp_sat", "planning": "cp_sat", "sequence": "columns"}
 """Method whose own bound is used, where it is not the default one."""
 
 _LARGEST = 4_000_000

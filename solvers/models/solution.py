@@ -277,6 +277,7 @@ WORK_UNITS = {
     "cp_sat": "deterministic seconds",
     "highs": "simplex iterations over all nodes",
     "clarabel": "interior-point iterations",
+    "columns": "deterministic seconds",
     "rule": "candidates scored",
     "scipy": "entries of the cost table",
     "min_cost_flow": "arcs",

@@ -1,7 +1,7 @@
 """Task sequences per robot: the return of one pod is combined with the fetch of the next."""
 
 from rmfs.solvers.models.methods import Methods
-from rmfs.solvers.models.tasks.sequence import cp_sat, greedy
+from rmfs.solvers.models.tasks.sequence import columns, cp_sat, greedy
 from rmfs.solvers.models.tasks.sequence.bound import relaxed_bound as relaxed_bound
 from rmfs.solvers.models.tasks.sequence.candidates import Ways as Ways
 from rmfs.solvers.models.tasks.sequence.candidates import every_way as every_way
@@ -13,6 +13,8 @@ from rmfs.solvers.models.tasks.sequence.schedule import objective as objective
 from rmfs.solvers.models.tasks.sequence.schedule import violations as violations
 
 solve = Methods[TaskSequence, Routes](
-    {"cp_sat": cp_sat.solve, "greedy": greedy.solve}, default="cp_sat", rule="greedy"
+    {"cp_sat": cp_sat.solve, "columns": columns.solve, "greedy": greedy.solve},
+    default="cp_sat",
+    rule="greedy",
 )
 methods = solve.names

@@ -152,6 +152,63 @@ def test_insertion_is_feasible_and_never_better_than_the_optimum() -> None:
     assert found > 100
 
 
+def test_column_generation_finds_the_optimum_and_its_bound_never_exceeds_it() -> None:
+    found = 0
+    for data, best in CASES:
+        solution = solve(data, "columns")
+        assert solution.bound <= best + 1e-9 * max(1.0, abs(best))
+        if isinf(best):
+            assert not solution.found
+            continue
+        found += 1
+        assert solution.status is Status.OPTIMAL
+        assert not violations(data, solution.required)
+        assert solution.objective == objective(data, solution.required)
+        assert solution.objective == pytest.approx(best, abs=1e-6)
+        assert solution.bound == pytest.approx(best, rel=1e-5, abs=1e-3)
+    assert found > 50
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_column_generation_and_circuits_agree(seed: int) -> None:
+    data = site(seed, 3, 6, 8)
+    circuits, columns = solve(data, "cp_sat"), solve(data, "columns")
+    assert columns.objective == pytest.approx(circuits.objective, abs=1e-6)
+    assert columns.status is circuits.status is Status.OPTIMAL
+
+
+def test_the_bound_of_column_generation_holds_under_any_limit_and_repeats() -> None:
+    data = site(4, 10, 20, 30)
+    best = solve(data, "columns")
+    assert best.status is Status.OPTIMAL
+    gaps = []
+    for work in (0.0, 0.2, 1.0):
+        first, again = (solve(data, "columns", Limits(deterministic_s=work)) for _ in range(2))
+        assert first.bound <= best.objective + 1e-9
+        assert best.objective <= first.objective + 1e-9
+        assert (first.objective, first.bound, first.work) == (
+            again.objective,
+            again.bound,
+            again.work,
+        )
+        gaps.append(first.gap)
+    assert gaps[-1] < gaps[0]
+    rule = greedy.solve(data)
+    stopped = solve(data, "columns", Limits(deterministic_s=0.0), start=rule.required)
+    assert stopped.required.tasks == rule.required.tasks
+
+
+def test_prices_bound_routes_that_must_not_use_a_place_twice() -> None:
+    """One place is best for both pods of a robot, and only one of them may have it."""
+    data = simple(
+        store_s=[[1.0, 60.0], [1.0, 60.0]], fetch_s=[[2.0, 2.0], [2.0, 2.0]], reach_s=[[1.0, 1.0]]
+    )
+    best = enumerated(data)
+    solution = solve(data, "columns")
+    assert solution.objective == solution.bound == pytest.approx(best)
+    assert sorted(solution.required.place.tolist()) == [0, 1]
+
+
 def test_short_ways_contain_the_plan_and_lose_little() -> None:
     for seed in range(3):
         data = site(seed, 3, 6, 8)

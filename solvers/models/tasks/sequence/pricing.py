@@ -1,0 +1,338 @@
+r"""Cheapest routes of each robot under prices of tasks and places, in exact whole numbers.
+
+With prices :math:`v_t` earned by doing task t and :math:`w_l \ge 0` paid for using place l, a route
+costs
+
+.. math:: driving + lateness - \sum_{t \in route} v_t + \sum_{l \in route} w_l
+
+The search extends routes task by task, the most promising first (A*). The estimate of what is
+still to come lets tasks be done again, and rounds times down to steps; it never exceeds the truth.
+A partial route is dropped if another one to the same task is no later, costs no more, and has used
+no task (nor remembered place) that this one has not: whatever completes the one completes the
+other at no more cost. Between two tasks, only those places matter for which no other is both nearer
+and cheaper.
+
+Places may repeat within a route unless they are *remembered*. This is a relaxation: the cheapest
+route found may cost less than any that can be driven, never more. Numbers are whole parts of
+a tick, so that nothing is rounded.
+"""
+
+from __future__ import annotations
+
+import heapq
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rmfs.solvers.models.tasks.sequence.data import NONE, TICKS_PER_S
+from rmfs.solvers.models.tasks.sequence.ticks import NEVER, Route, Ticks
+
+PARTS = 1024
+"""Prices and costs are in parts of a tick."""
+
+LABEL_ENTRIES = 2000
+"""What a partial route counts among the entries looked at, besides the ways from its end."""
+
+_NEVER = NEVER * PARTS
+_STEPS = 400
+"""Time steps of the estimates."""
+
+_LONGEST_S = 3600.0
+"""Time up to which routes are estimated if nothing limits them, in s."""
+
+
+class Prices(NamedTuple):
+    """Prices in parts.
+
+    Attributes
+    ----------
+    task
+        What is earned by doing each task, shape (T,).
+    place
+        What is paid for using each place, shape (L,), not negative.
+    """
+
+    task: NDArray[np.int64]
+    place: NDArray[np.int64]
+
+
+class Found(NamedTuple):
+    """What a search found.
+
+    Attributes
+    ----------
+    bound
+        No route of the robot costs less, in parts.
+    routes
+        Routes that cost less than asked, the cheapest first.
+    complete
+        Whether the search came to its end.
+    """
+
+    bound: int
+    routes: list[Route]
+    complete: bool
+
+
+class _Onward(NamedTuple):
+    """Ways from an owner to next tasks: one entry per task and place worth considering."""
+
+    task: NDArray[np.int64]
+    place: NDArray[np.int64]
+    takes: NDArray[np.int64]
+    cost: NDArray[np.int64]
+
+
+class _Label(NamedTuple):
+    """A partial route, or a whole one; ordered by its estimate, then by age."""
+
+    estimate: int
+    number: int
+    whole: bool
+    cost: int
+    time: int
+    last: int
+    used: int
+    tasks: tuple[int, ...]
+    places: tuple[int, ...]
+
+
+class Pricing:
+    """The search under given prices.
+
+    Parameters
+    ----------
+    ticks
+        The problem.
+    prices
+        The prices.
+    remembered
+        Places that a route may use once only, as a mask of shape (L,).
+    every
+        Whether to find every route below a cost, and not only those that no other one makes
+        superfluous under these prices; all places are remembered then. Default: no.
+
+    Attributes
+    ----------
+    entries
+        Entries of tables looked at so far: the deterministic work.
+    """
+
+    def __init__(
+        self,
+        ticks: Ticks,
+        prices: Prices,
+        remembered: NDArray[np.bool_],
+        *,
+        every: bool = False,
+    ) -> None:
+        self._ticks, self._prices, self._every = ticks, prices, every
+        self._remembered = np.ones(ticks.places, bool) if every else remembered
+        self._bit = [0] * ticks.places
+        for number, place in enumerate(np.flatnonzero(self._remembered).tolist()):
+            self._bit[place] = 1 << (ticks.tasks + number)
+        owners = range(ticks.robots + ticks.tasks)
+        self._onward = [self._ways(owner) for owner in owners]
+        self._ends = [self._last(owner) for owner in owners]
+        self.entries = 0
+        self._step, self._rest = self._estimates()
+
+    # --- ways -----------------------------------------------------------------------------------
+
+    def _ways(self, owner: int) -> _Onward:
+        ticks, prices = self._ticks, self._prices
+        own = owner - ticks.robots
+        if own < 0 and not ticks.carrying[owner]:
+            task = np.flatnonzero(ticks.reach[owner] < NEVER)
+            takes = ticks.reach[owner, task] + ticks.bring[task]
+            cost = takes * PARTS - prices.task[task]
+            return _Onward(task, np.full(len(task), NONE), takes, cost)
+        store = ticks.store[owner][:, np.newaxis]
+        allowed = (store < NEVER) & (ticks.fetch < NEVER)
+        if own >= 0:
+            allowed[:, own] = False
+        ways = np.where(allowed, store + ticks.fetch, NEVER)
+        paid = np.where(allowed, ways * PARTS + prices.place[:, np.newaxis], _NEVER)
+        order = np.lexsort((paid, ways), axis=0)
+        in_order = np.take_along_axis(paid, order, axis=0)
+        # a remembered place may have been used already, so it makes no other superfluous
+        least = np.where(self._remembered[order], _NEVER, in_order)
+        before = np.full_like(least, _NEVER)
+        before[1:] = np.minimum.accumulate(least, axis=0)[:-1]
+        rank, task = np.nonzero(in_order < before)
+        place = order[rank, task]
+        # tasks in order, as estimates are made of runs of ways
+        takes = ways[place, task] + ticks.bring[task]
+        cost = paid[place, task] + ticks.bring[task] * PARTS - prices.task[task]
+        return _Onward(task, place, takes, cost)
+
+    def _last(self, owner: int) -> list[tuple[int, int]]:
+        """Return the costs and places of ends after an owner, the cheapest first."""
+        ticks = self._ticks
+        if owner < ticks.robots and not ticks.carrying[owner]:
+            return [(0, NONE)]
+        store = ticks.store[owner]
+        allowed = np.flatnonzero(store < NEVER)
+        paid = store[allowed] * PARTS + self._prices.place[allowed]
+        ends = []
+        for index in np.argsort(paid, kind="stable").tolist():
+            place = int(allowed[index])
+            ends.append((int(paid[index]), place))
+            if not self._remembered[place]:
+                break
+        return ends
+
+    # --- estimates ------------------------------------------------------------------------------
+
+    def _estimates(self) -> tuple[int, NDArray[np.int64]]:
+        """Return the length of a time step, and what follows an arrival at each task in it.
+
+        Entry (q, t) is a lower bound on the cost after an arrival at t in step q or later.
+        """
+        ticks, prices = self._ticks, self._prices
+        until = self._until()
+        horizon = until if until < NEVER else round(_LONGEST_S * TICKS_PER_S)
+        length = max(1, -(-horizon // _STEPS))
+        steps = horizon // length + 1
+        ends = [one[0][0] if one else _NEVER for one in self._ends[ticks.robots :]]
+        end = np.array(ends, np.int64)
+        # no route can earn more than all tasks once
+        least = -int(np.maximum(prices.task, 0).sum())
+        rest = np.empty((steps + 1, ticks.tasks), np.int64)
+        rest[steps] = end if until < NEVER else np.minimum(end, least)
+        ways = self._onward[ticks.robots :]
+        count = np.array([len(one.task) for one in ways], np.int64)
+        some = np.flatnonzero(count)
+        self.entries += (steps + 1) * int(count.sum())
+        if not len(some):
+            rest[:] = end
+            return length, rest
+        task = np.concatenate([one.task for one in ways])
+        service = np.repeat(ticks.service, count)
+        takes = np.concatenate([one.takes for one in ways]) + service
+        cost = np.concatenate([one.cost for one in ways])
+        begins = (np.cumsum(count) - count)[some]
+        for step in range(steps - 1, -1, -1):
+            arrive = np.maximum(step * length + takes, ticks.earliest[task])
+            reached = np.minimum(arrive // length, steps)
+            # a step that leads to itself is not known yet
+            after = np.where(reached > step, rest[reached, task], least)
+            total = cost + PARTS * ticks.late(task, arrive) + after
+            total = np.where(arrive > ticks.latest[task], _NEVER, total)
+            rest[step] = end
+            rest[step, some] = np.minimum(end[some], np.minimum.reduceat(total, begins))
+        return length, rest
+
+    def _until(self) -> int:
+        """Return a time after which an arrival at any task costs more than it earns, in ticks."""
+        ticks, price = self._ticks, self._prices.task
+        worthy = price > 0
+        if not worthy.any():
+            return 0
+        last = ticks.latest[worthy]
+        if ticks.weight:
+            worth = -(-price[worthy] // (PARTS * ticks.weight))
+            last = np.minimum(last, np.maximum(0, ticks.due[worthy] + worth))
+        return int(last.max())
+
+    # --- search ---------------------------------------------------------------------------------
+
+    def cheapest(self, robot: int, below: int, most: int, labels: int) -> Found:
+        """Search the cheapest routes of a robot.
+
+        Parameters
+        ----------
+        robot
+            Who drives.
+        below
+            Cost that routes must stay below, in parts.
+        most
+            Number of routes after which the search ends.
+        labels
+            Number of partial routes after which it is given up.
+
+        Returns
+        -------
+        Routes, and a bound, at most `below`.
+        """
+        ticks = self._ticks
+        heap = [_Label(-_NEVER, 0, False, 0, int(ticks.ready[robot]), NONE, 0, (), ())]
+        settled: list[list[_Label]] = [[] for _ in range(ticks.tasks)]
+        found: list[Route] = []
+        bound, number = below, 0
+        while heap:
+            label = heapq.heappop(heap)
+            if label.whole or not labels:
+                if not found:
+                    bound = min(bound, label.estimate)
+                if not label.whole:
+                    return Found(bound, found, complete=False)
+                found.append(Route(robot, label.tasks, label.places))
+                if len(found) >= most:
+                    break
+                continue
+            labels -= 1
+            if label.last != NONE:
+                if self._superfluous(label, settled[label.last]):
+                    continue
+                settled[label.last].append(label)
+            for further in self._further(robot, label, below):
+                number += 1
+                heapq.heappush(heap, further._replace(number=number))
+        return Found(bound, found, complete=not heap)
+
+    def _superfluous(self, label: _Label, settled: list[_Label]) -> bool:
+        """Whether another partial route can replace this one, however it goes on."""
+        self.entries += len(settled)
+        for other in settled:
+            if other.cost <= label.cost and other.time <= label.time:
+                extra = other.used ^ label.used if self._every else other.used & ~label.used
+                if not extra:
+                    return True
+        return False
+
+    def _further(self, robot: int, label: _Label, below: int) -> list[_Label]:
+        """Return the ends of a partial route, and its continuations."""
+        ticks = self._ticks
+        owner = robot if label.last == NONE else ticks.robots + label.last
+        leaves = label.time + (0 if label.last == NONE else int(ticks.service[label.last]))
+        further = []
+        for paid, place in self._ends[owner]:
+            total = label.cost + paid
+            if total >= below:
+                break
+            if place == NONE or not self._bit[place] & label.used:
+                places = label.places if place == NONE else (*label.places, place)
+                further.append(
+                    label._replace(estimate=total, whole=True, cost=total, places=places)
+                )
+                if not self._every:
+                    break
+        ways = self._onward[owner]
+        self.entries += LABEL_ENTRIES + len(ways.task)
+        arrive = np.maximum(leaves + ways.takes, ticks.earliest[ways.task])
+        cost = label.cost + ways.cost + PARTS * ticks.late(ways.task, arrive)
+        step = np.minimum(arrive // self._step, len(self._rest) - 1)
+        estimate = cost + self._rest[step, ways.task]
+        good = np.flatnonzero((estimate < below) & (arrive <= ticks.latest[ways.task]))
+        for way in good.tolist():
+            task, place = int(ways.task[way]), int(ways.place[way])
+            uses = 1 << task | (0 if place == NONE else self._bit[place])
+            if uses & label.used:
+                continue
+            places = label.places if place == NONE else (*label.places, place)
+            further.append(
+                _Label(
+                    int(estimate[way]),
+                    0,
+                    False,
+                    int(cost[way]),
+                    int(arrive[way]),
+                    task,
+                    label.used | uses,
+                    (*label.tasks, task),
+                    places,
+                )
+            )
+        return further
