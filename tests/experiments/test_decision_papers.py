@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from decision_samples import sample
 
-from rmfs.experiments.papers import decision_library, offline_online
+from rmfs.experiments.papers import decision_library, decision_online, offline_online
 from rmfs.experiments.papers.study import command
 from rmfs.solvers.decisions.asking import question_of
 from rmfs.solvers.decisions.files import Decision, write
@@ -115,3 +115,32 @@ def test_every_arm_of_the_design_is_known() -> None:
     made = plan("offline-online")
     made.require_sound()
     assert {arm.levels["solver"] for arm in made.arms} == set(offline_online.ASKED)
+
+
+def test_questions_are_asked_again_with_other_settings(tmp_path: Path) -> None:
+    """Of two families: the gap to the best known value, and the steps that a setting asks for."""
+    from rmfs.solvers.control.tasks.routes import Question
+    from rmfs.solvers.models.solution import Limits
+
+    data = model_data(sample("sequence", 1))
+    asked = question_of(Question(data, "greedy", Limits(deterministic_s=0.01), 2, 2))
+    assert asked is not None
+    write(asked, tmp_path / "L" / "sequence" / "medium")
+    library = Library.load(tmp_path / "L")
+    improve(library, Effort(work=1.0), tell=lambda line: None)
+    rows = pd.DataFrame(decision_online.answered(library, ("medium", "real")))
+    assert set(rows["family"]) == {"sequence"}
+    best = next(iter(library.rows.values()))
+    greedy = solve(asked, "greedy")
+    expected = abs(greedy.objective - best.value) / greedy.objective
+    assert rows["gap"].tolist()[0] == pytest.approx(expected)
+    table = decision_online.compared(rows)
+    assert table["questions"].tolist() == [1] * len(table)
+    for name, steps in zip(decision_online.SETTINGS["planning"], (450, 675, 4500), strict=True):
+        changed = decision_online.SETTINGS["planning"][name](_Stations(3))  # type: ignore[arg-type]
+        assert changed["limits"]["iterations"] == steps
+
+
+class _Stations:
+    def __init__(self, number: int) -> None:
+        self.sizes = {"S": number}

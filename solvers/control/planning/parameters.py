@@ -12,6 +12,9 @@ from rmfs.solvers.control.parameters import SearchParameters
 NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 Count = Annotated[int, pydantic.Field(ge=1)]
 
+STEPS_PER_STATION = 75
+"""Steps of the search for each pick station of the site and each station planned."""
+
 
 class PlanningParameters(SearchParameters):
     """Parameters of TA planning."""
@@ -29,8 +32,9 @@ class PlanningParameters(SearchParameters):
     stations: Count = 64
     """Maximum number of pick stations planned at a time, those with the least work under way; the
     plans of the others are kept."""
-    steps: Annotated[int, pydantic.Field(ge=0)] = 150
-    """Steps of the search per plan, for each station that is planned."""
+    steps: Annotated[int, pydantic.Field(ge=0)] | None = None
+    """Steps of the search per plan, for each station that is planned; default: 75 times the number
+    of pick stations of the site, as plans of many stations take longer to improve."""
     buffer_s: NotNegative = 1.0
     """Minimum seconds between two questions, during which decisions are collected."""
     horizon_s: NotNegative = 60.0

@@ -9,6 +9,7 @@ import numpy as np
 
 from rmfs.control.asks import Ask
 from rmfs.solvers.control.items import servable
+from rmfs.solvers.control.planning.parameters import STEPS_PER_STATION
 from rmfs.solvers.control.planning.question import Question, solve
 from rmfs.solvers.control.workload import excess_s
 from rmfs.solvers.models.planning import Planning
@@ -170,8 +171,10 @@ def ask(
     kept = tuple(tuple(pod for pod in plan.pods[s.index] if may_come[pod]) for s in stations)
     may_come[[pod for station in others for pod in plan.pods[station]]] = False
     data = _planning(view, given, stations, rows, coming, may_come)
-    steps = given.steps * len(stations)
-    limits = Limits(iterations=steps, deterministic_s=given.work_s, gap=given.gap)
+    steps = given.steps
+    if steps is None:
+        steps = STEPS_PER_STATION * len(view.pick_stations)
+    limits = Limits(iterations=steps * len(stations), deterministic_s=given.work_s, gap=given.gap)
     question = Question(data, kept, given.method, limits, seed, given.bound_steps)
     sizes = {
         "stations": data.stations,

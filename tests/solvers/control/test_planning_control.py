@@ -234,3 +234,17 @@ def test_of_orders_that_a_visit_serves_alike_the_first_due_takes_it() -> None:
         waiting = [situation.order(900.0, s1=1), situation.order(100.0, s1=1)]
         found = said(situation, situation.make(PlanningControl, late_s=late_s))
         assert orders(found) == [waiting[first]]
+
+
+@pytest.mark.parametrize(("given", "each"), [({}, 75 * 3), ({"steps": 20}, 20)])
+def test_steps_grow_with_the_pick_stations_of_the_site(given: dict[str, int], each: int) -> None:
+    """The default is 75 per pick station of the site, for each station that is planned."""
+    for planned in (2, 64):
+        situation = Situation(small_layout(pick_stations=3))
+        situation.stock(0, s1=5)
+        situation.order(s1=1)
+        control = situation.make(PlanningControl, stations=planned, **given)
+        for robot in situation.world.robots:
+            situation.world.asking[robot.index] = robot
+        asks = [told for told in control.decide(NoConsult()) if isinstance(told, Ask)]
+        assert [one.question.limits.iterations for one in asks] == [each * min(planned, 3)]

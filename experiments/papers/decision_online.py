@@ -1,0 +1,122 @@
+"""Questions of the library asked again with the default search of controllers, and with others.
+
+Each question is asked as in its run, from the plan that the controller had, but with the method and
+limits of a setting. Published: the distance from the best known value, and the processor time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import asdict, replace
+from pathlib import Path
+from time import process_time
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from rmfs.experiments.papers.decision_library import LIBRARY, publish_table
+from rmfs.experiments.papers.study import PUBLISHED, command
+from rmfs.solvers.control.planning.parameters import STEPS_PER_STATION
+from rmfs.solvers.decisions.asking import asked_again
+from rmfs.solvers.decisions.files import read
+from rmfs.solvers.decisions.library.table import Library
+from rmfs.solvers.decisions.profiling import primal_gap
+from rmfs.solvers.models.solution import Limits
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from rmfs.solvers.decisions.files import Decision
+
+SIZES = ("medium", "real", "double")
+
+
+def _planned(steps: Callable[[int], int]) -> Callable[[Decision], dict[str, Any]]:
+    """Plan with a number of steps per station that depends on the number of stations."""
+
+    def asked(decision: Decision) -> dict[str, Any]:
+        stations = decision.sizes["S"]
+        limits = Limits(iterations=steps(stations) * stations, deterministic_s=1.0)
+        return {"method": "lns", "limits": asdict(limits)}
+
+    return asked
+
+
+SETTINGS: Mapping[str, Mapping[str, Callable[[Decision], dict[str, Any]]]] = {
+    "planning": {
+        "150 steps per station": _planned(lambda stations: 150),
+        "default: 75 steps per station, for each station": _planned(
+            lambda stations: STEPS_PER_STATION * stations
+        ),
+        "1,500 steps per station (`planning-split`)": _planned(lambda stations: 1500),
+    },
+    "sequence": {"default: CP-SAT, 0.01 s": lambda decision: {}},
+}
+"""What is asked differently, by family and name of the setting."""
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Ask the questions and publish the table."""
+    made = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    made.add_argument("--library", type=Path, default=LIBRARY, help="folder of the library")
+    made.add_argument("--published", type=Path, default=PUBLISHED, help="folder of tables")
+    made.add_argument("--size", action="append", choices=SIZES, help="sizes (default: all)")
+    given = made.parse_args(arguments)
+    library = Library.load(given.library)
+    rows = pd.DataFrame(answered(library, given.size or SIZES))
+    publish_table(given.published / "decision-settings.md", compared(rows))
+
+
+def answered(library: Library, sizes: tuple[str, ...]) -> Iterator[dict[str, Any]]:
+    """Yield the gap and the time of each question under each setting.
+
+    Parameters
+    ----------
+    library
+        The library.
+    sizes
+        Sizes of the questions.
+    """
+    for family, settings in SETTINGS.items():
+        for size in sizes:
+            for row in library.rows.values():
+                if (row.family, row.size) != (family, size):
+                    continue
+                decision = read(library.path(row))
+                for setting, changed in settings.items():
+                    asked = {**decision.asked, **changed(decision)}
+                    began = process_time()
+                    found = asked_again(replace(decision, asked=asked))
+                    seconds = process_time() - began
+                    gap = primal_gap(found.objective, row.value)
+                    yield {
+                        "family": family,
+                        "size": size,
+                        "setting": setting,
+                        "gap": gap,
+                        "seconds": seconds,
+                    }
+
+
+def compared(rows: pd.DataFrame) -> pd.DataFrame:
+    """Summarise gaps and times by family, setting and size.
+
+    Parameters
+    ----------
+    rows
+        As from `answered`.
+    """
+    groups = rows.groupby(["family", "setting", "size"], sort=False)
+    return pd.DataFrame(
+        {
+            "questions": groups.size(),
+            "median gap": groups["gap"].median().map("{:.2%}".format),
+            "largest gap": groups["gap"].max().map("{:.2%}".format),
+            "median processor time, ms": (1e3 * groups["seconds"].median()).map("{:.0f}".format),
+        }
+    ).reset_index()
+
+
+if __name__ == "__main__":
+    sys.exit(command(main))
