@@ -35,7 +35,7 @@ LABEL_ENTRIES = 2000
 """What a partial route counts among the entries looked at, besides the ways from its end."""
 
 _NEVER = NEVER * PARTS
-_STEPS = 400
+_STEPS = 100
 """Time steps of the estimates."""
 
 _LONGEST_S = 3600.0
@@ -76,26 +76,42 @@ class Found(NamedTuple):
 
 
 class _Onward(NamedTuple):
-    """Ways from an owner to next tasks: one entry per task and place worth considering."""
+    """Ways from an owner to next tasks: one entry per task and place worth considering.
+
+    `uses` has the bits of both.
+    """
 
     task: NDArray[np.int64]
     place: NDArray[np.int64]
     takes: NDArray[np.int64]
     cost: NDArray[np.int64]
+    uses: list[int]
 
 
 class _Label(NamedTuple):
-    """A partial route, or a whole one; ordered by its estimate, then by age."""
+    """A partial route, up to the arrival at its last task."""
 
-    estimate: int
-    number: int
-    whole: bool
     cost: int
     time: int
     last: int
     used: int
     tasks: tuple[int, ...]
     places: tuple[int, ...]
+
+
+class _Next(NamedTuple):
+    """What may follow a partial route: one of its ways (or `NONE`: its end), over a place.
+
+    Ordered by estimate, then by age.
+    """
+
+    estimate: int
+    number: int
+    label: _Label
+    way: int
+    place: int
+    cost: int
+    time: int
 
 
 class Pricing:
@@ -129,7 +145,8 @@ class Pricing:
     ) -> None:
         self._ticks, self._prices, self._every = ticks, prices, every
         self._remembered = np.ones(ticks.places, bool) if every else remembered
-        self._bit = [0] * ticks.places
+        # the last entry, at `NONE`, is that of no place
+        self._bit = [0] * (ticks.places + 1)
         for number, place in enumerate(np.flatnonzero(self._remembered).tolist()):
             self._bit[place] = 1 << (ticks.tasks + number)
         owners = range(ticks.robots + ticks.tasks)
@@ -147,7 +164,7 @@ class Pricing:
             task = np.flatnonzero(ticks.reach[owner] < NEVER)
             takes = ticks.reach[owner, task] + ticks.bring[task]
             cost = takes * PARTS - prices.task[task]
-            return _Onward(task, np.full(len(task), NONE), takes, cost)
+            return self._onward_by(task, np.full(len(task), NONE), takes, cost)
         store = ticks.store[owner][:, np.newaxis]
         allowed = (store < NEVER) & (ticks.fetch < NEVER)
         if own >= 0:
@@ -165,7 +182,17 @@ class Pricing:
         # tasks in order, as estimates are made of runs of ways
         takes = ways[place, task] + ticks.bring[task]
         cost = paid[place, task] + ticks.bring[task] * PARTS - prices.task[task]
-        return _Onward(task, place, takes, cost)
+        return self._onward_by(task, place, takes, cost)
+
+    def _onward_by(
+        self,
+        task: NDArray[np.int64],
+        place: NDArray[np.int64],
+        takes: NDArray[np.int64],
+        cost: NDArray[np.int64],
+    ) -> _Onward:
+        pairs = zip(task.tolist(), place.tolist(), strict=True)
+        return _Onward(task, place, takes, cost, [1 << one | self._bit[at] for one, at in pairs])
 
     def _last(self, owner: int) -> list[tuple[int, int]]:
         """Return the costs and places of ends after an owner, the cheapest first."""
@@ -256,31 +283,40 @@ class Pricing:
         -------
         Routes, and a bound, at most `below`.
         """
-        ticks = self._ticks
-        heap = [_Label(-_NEVER, 0, False, 0, int(ticks.ready[robot]), NONE, 0, (), ())]
-        settled: list[list[_Label]] = [[] for _ in range(ticks.tasks)]
+        start = _Label(0, int(self._ticks.ready[robot]), NONE, 0, (), ())
+        heap = self._further(robot, start, below, 0)
+        heapq.heapify(heap)
+        number = len(heap)
+        settled: list[list[_Label]] = [[] for _ in range(self._ticks.tasks)]
         found: list[Route] = []
-        bound, number = below, 0
+        bound = below
         while heap:
-            label = heapq.heappop(heap)
-            if label.whole or not labels:
-                if not found:
-                    bound = min(bound, label.estimate)
-                if not label.whole:
-                    return Found(bound, found, complete=False)
-                found.append(Route(robot, label.tasks, label.places))
+            ahead = heapq.heappop(heap)
+            if not found and (ahead.way == NONE or not labels):
+                bound = min(below, ahead.estimate)
+            before, place = ahead.label, ahead.place
+            places = before.places if place == NONE else (*before.places, place)
+            if ahead.way == NONE:
+                found.append(Route(robot, before.tasks, places))
                 if len(found) >= most:
-                    break
+                    return Found(bound, found, complete=not heap)
                 continue
+            if not labels:
+                return Found(bound, found, complete=False)
             labels -= 1
-            if label.last != NONE:
-                if self._superfluous(label, settled[label.last]):
-                    continue
-                settled[label.last].append(label)
-            for further in self._further(robot, label, below):
+            ways = self._onward[self._owner(robot, before)]
+            task, used = int(ways.task[ahead.way]), before.used | ways.uses[ahead.way]
+            label = _Label(ahead.cost, ahead.time, task, used, (*before.tasks, task), places)
+            if self._superfluous(label, settled[task]):
+                continue
+            settled[task].append(label)
+            for further in self._further(robot, label, below, number):
+                heapq.heappush(heap, further)
                 number += 1
-                heapq.heappush(heap, further._replace(number=number))
-        return Found(bound, found, complete=not heap)
+        return Found(bound, found, complete=True)
+
+    def _owner(self, robot: int, label: _Label) -> int:
+        return robot if label.last == NONE else self._ticks.robots + label.last
 
     def _superfluous(self, label: _Label, settled: list[_Label]) -> bool:
         """Whether another partial route can replace this one, however it goes on."""
@@ -292,21 +328,18 @@ class Pricing:
                     return True
         return False
 
-    def _further(self, robot: int, label: _Label, below: int) -> list[_Label]:
-        """Return the ends of a partial route, and its continuations."""
-        ticks = self._ticks
-        owner = robot if label.last == NONE else ticks.robots + label.last
+    def _further(self, robot: int, label: _Label, below: int, number: int) -> list[_Next]:
+        """Return the ends of a partial route and its continuations, numbered from a number on."""
+        ticks, owner = self._ticks, self._owner(robot, label)
         leaves = label.time + (0 if label.last == NONE else int(ticks.service[label.last]))
         further = []
         for paid, place in self._ends[owner]:
             total = label.cost + paid
             if total >= below:
                 break
-            if place == NONE or not self._bit[place] & label.used:
-                places = label.places if place == NONE else (*label.places, place)
-                further.append(
-                    label._replace(estimate=total, whole=True, cost=total, places=places)
-                )
+            if not self._bit[place] & label.used:
+                further.append(_Next(total, number, label, NONE, place, total, leaves))
+                number += 1
                 if not self._every:
                     break
         ways = self._onward[owner]
@@ -316,23 +349,9 @@ class Pricing:
         step = np.minimum(arrive // self._step, len(self._rest) - 1)
         estimate = cost + self._rest[step, ways.task]
         good = np.flatnonzero((estimate < below) & (arrive <= ticks.latest[ways.task]))
-        for way in good.tolist():
-            task, place = int(ways.task[way]), int(ways.place[way])
-            uses = 1 << task | (0 if place == NONE else self._bit[place])
-            if uses & label.used:
-                continue
-            places = label.places if place == NONE else (*label.places, place)
-            further.append(
-                _Label(
-                    int(estimate[way]),
-                    0,
-                    False,
-                    int(cost[way]),
-                    int(arrive[way]),
-                    task,
-                    label.used | uses,
-                    (*label.tasks, task),
-                    places,
-                )
-            )
+        columns = (good, estimate[good], ways.place[good], cost[good], arrive[good])
+        for way, least, at, so_far, time in zip(*(one.tolist() for one in columns), strict=True):
+            if not ways.uses[way] & label.used:
+                further.append(_Next(least, number, label, way, at, so_far, time))
+                number += 1
         return further
