@@ -43,6 +43,12 @@ def _planned(steps: Callable[[int], int]) -> Callable[[Decision], dict[str, Any]
     return asked
 
 
+def _routed(work_s: float) -> Callable[[Decision], dict[str, Any]]:
+    """Route by column generation under a limit of work."""
+    limits = asdict(Limits(deterministic_s=work_s, gap=0.01))
+    return lambda decision: {"method": "columns", "limits": limits}
+
+
 SETTINGS: Mapping[str, Mapping[str, Callable[[Decision], dict[str, Any]]]] = {
     "planning": {
         "150 steps per station": _planned(lambda stations: 150),
@@ -51,7 +57,11 @@ SETTINGS: Mapping[str, Mapping[str, Callable[[Decision], dict[str, Any]]]] = {
         ),
         "1,500 steps per station (`planning-split`)": _planned(lambda stations: 1500),
     },
-    "sequence": {"default: CP-SAT, 0.01 s": lambda decision: {}},
+    "sequence": {
+        "default: CP-SAT, 0.01 s": lambda decision: {},
+        "column generation, 0.3 s": _routed(0.3),
+        "column generation, 0.6 s": _routed(0.6),
+    },
 }
 """What is asked differently, by family and name of the setting."""
 

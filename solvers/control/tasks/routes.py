@@ -44,7 +44,7 @@ class Question:
     Attributes
     ----------
     method
-        `cp_sat` or `greedy`.
+        `cp_sat`, `columns` or `greedy`.
     tasks, places
         Number of tasks after each pod, and of places between them, considered by CP-SAT.
     """
@@ -59,11 +59,13 @@ class Question:
 def solve(question: Question) -> Answer:
     """Find the first step of each robot: `place` for its pod, then `task`; -1 for none, shape (R,).
 
-    Insertion first, then CP-SAT from its solution over the shortest arcs.
+    Insertion first, then from its solution CP-SAT over the shortest arcs, or column generation.
     """
     data = question.data
     found = sequence.solve(data, "greedy")
-    if found.values is not None and question.method == "cp_sat" and data.tasks:
+    if found.values is not None and question.method == "columns" and data.tasks:
+        found = sequence.solve(data, "columns", question.limits, start=found.values)
+    elif found.values is not None and question.method == "cp_sat" and data.tasks:
         ways = sequence.short_ways(data, found.values, tasks=question.tasks, places=question.places)
         found = sequence.solve(data, "cp_sat", question.limits, start=found.values, ways=ways)
     if found.values is None:
@@ -98,10 +100,11 @@ class Memo:
 class RoutesParameters(TaskParameters, SearchParameters):
     """Parameters of TA routes."""
 
-    method: Literal["cp_sat", "greedy"] = "cp_sat"
-    """Solution method: CP-SAT, starting from cheapest insertion, or insertion alone."""
+    method: Literal["cp_sat", "columns", "greedy"] = "cp_sat"
+    """Solution method: CP-SAT or column generation (`columns`), both starting from cheapest
+    insertion, or insertion alone. For large sites, use `columns` with `work_s = 0.6`."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.01
-    """Limit of the search in deterministic seconds of CP-SAT, which are close to wall time."""
+    """Limit of the search in deterministic seconds, which are close to wall time."""
     gap: NotNegative = 0.01
     """Relative gap between value and bound at which the search ends."""
     unit_value_s: NotNegative = 100.0
