@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import csv
 import difflib
+import io
 import itertools
 import json
+import math
 import tomllib
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -17,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from rmfs import references
 from rmfs.config import Table, read_toml
 from rmfs.errors import InputError
+from rmfs.files import read_bounded
 from rmfs.measure.dictionary import footprint_column
 from rmfs.measure.registry import RESERVED
 
@@ -28,6 +31,13 @@ if TYPE_CHECKING:
 
 PARTS = ("layout", "scenario", "controllers")
 """The three inputs of a run."""
+
+MOST_ARMS = 100_000
+"""Number of arms that a file may list."""
+MOST_COMBINATIONS = 1_000_000
+"""Number of combinations that the levels of factors may have."""
+LARGEST_MIB = 16
+"""Size limit of a file of arms."""
 
 Overrides = list[tuple[list[str], Any]]
 
@@ -101,6 +111,10 @@ def arms(design: DesignFile, folder: Path) -> tuple[list[Arm], list[str]]:
         factors.insert(0, listed)
     keys = list(dict.fromkeys(k for factor in factors for level in factor for k in level.shown))
     problems += _key_problems(design, keys)
+    if (count := math.prod(len(factor) for factor in factors)) > MOST_COMBINATIONS:
+        raise InputError(
+            f"factors: {count:,} combinations; at most {MOST_COMBINATIONS:,} are allowed"
+        )
     combinations = [
         combination
         for combination in itertools.product(*factors)
@@ -262,17 +276,17 @@ def _read_csv(path: Path) -> list[dict[str, str]]:
         If it is missing or wrong.
     """
     try:
-        with path.open(encoding="utf-8", newline="") as file:
-            reader = csv.DictReader(file, strict=True)
-            columns = list(reader.fieldnames or ())
-            rows = list(reader)
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such file") from None
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        text = read_bounded(path, LARGEST_MIB).decode("utf-8")
+        reader = csv.DictReader(io.StringIO(text, newline=""), strict=True)
+        columns = list(reader.fieldnames or ())
+        rows = list(itertools.islice(reader, MOST_ARMS + 1))
+    except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: cannot be read ({error})") from None
     doubled = [name for name in dict.fromkeys(columns) if columns.count(name) > 1]
     if doubled:
         raise InputError(f"{path}: line 1 names the column {doubled[0]} more than once")
+    if len(rows) > MOST_ARMS:
+        raise InputError(f"{path}: more than {MOST_ARMS:,} lines")
     for number, row in enumerate(rows, 2):
         if None in row or None in row.values():
             raise InputError(f"{path}: line {number} has not as many cells as the first line")

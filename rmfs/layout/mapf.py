@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rmfs.errors import InputError
-from rmfs.layout.graph import compressed
+from rmfs.files import read_bounded
 from rmfs.layout.model import Layout, RobotKind, Tier
 
 if TYPE_CHECKING:
@@ -22,6 +22,12 @@ if TYPE_CHECKING:
 
 BLOCKED = "@OTW"
 """Signs of cells that cannot be entered; all others (`.GSE`) are free."""
+
+MOST_CELLS = 1_200_000
+"""Size limit of a map; the largest published ones have 1024 x 1024 cells."""
+
+LARGEST_MIB = 8
+"""Size limit of a file, line ends included."""
 
 KIND = RobotKind(0.35, 1.0, 1.0, 1.5, 2.5, 2.2)
 """The robot of the default layout, since these files specify no size or speed."""
@@ -44,14 +50,8 @@ def read_map(path: Path, robots: list[int] | None = None) -> Layout:
     free = _free(path)
     number = cell_waypoints(free)
     rows, columns = np.nonzero(free)
-    edges = [
-        (int(number[row, column]), int(number[r, c]))
-        for row, column in zip(rows.tolist(), columns.tolist(), strict=True)
-        for r, c in ((row, column + 1), (row, column - 1), (row + 1, column), (row - 1, column))
-        if 0 <= r < free.shape[0] and 0 <= c < free.shape[1] and free[r, c]
-    ]
     count = len(rows)
-    start, target = compressed(count, sorted(edges))
+    start, target = _edges(number)
     if robots is None:
         first = [int(number[row][free[row]][0]) for row in range(len(free)) if free[row].any()]
         places = np.array(first[:10], np.int32)
@@ -81,6 +81,17 @@ def read_map(path: Path, robots: list[int] | None = None) -> Layout:
         robot_kind=np.zeros(len(places), np.int16),
         robot_kinds=(KIND,),
     )
+
+
+def _edges(number: NDArray[np.int64]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Return offsets and heads of the edges between neighbouring free cells."""
+    around = np.pad(number, 1, constant_values=-1)
+    # above, left, right, below: in the order of their numbers
+    sides = (around[:-2, 1:-1], around[1:-1, :-2], around[1:-1, 2:], around[2:, 1:-1])
+    beside = np.stack([side[number >= 0] for side in sides], axis=1)
+    degree = (beside >= 0).sum(axis=1)
+    start = np.concatenate([[0], np.cumsum(degree)]).astype(np.int32)
+    return start, beside[beside >= 0].astype(np.int32)
 
 
 def read_cells(path: Path) -> NDArray[np.int64]:
@@ -117,8 +128,8 @@ def read_rows(path: Path) -> list[str]:
         If the file is not a grid map.
     """
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
+        lines = read_bounded(path, LARGEST_MIB).decode("utf-8").splitlines()
+    except UnicodeDecodeError as error:
         raise InputError(f"{path}: cannot be read ({error})") from None
     head = [line.split() for line in lines[:4]]
     if len(head) < 4 or [words[:1] for words in head] != [["type"], ["height"], ["width"], ["map"]]:
@@ -127,6 +138,11 @@ def read_rows(path: Path) -> list[str]:
         height, width = int(head[1][1]), int(head[2][1])
     except (IndexError, ValueError):
         raise InputError(f"{path}: height and width must be integers") from None
+    if height * width > MOST_CELLS:
+        raise InputError(
+            f"{path}: height and width: {height * width:,} cells; at most {MOST_CELLS:,} are "
+            "allowed"
+        )
     rows = [line.rstrip() for line in lines[4:] if line.strip()]
     if len(rows) != height or any(len(row) != width for row in rows):
         raise InputError(f"{path}: expected {height} rows of {width} cells")
@@ -135,7 +151,8 @@ def read_rows(path: Path) -> list[str]:
 
 def _free(path: Path) -> NDArray[np.bool_]:
     rows = read_rows(path)
-    free = np.array([[sign not in BLOCKED for sign in row] for row in rows], np.bool_)
+    signs = np.array(rows).view("U1").reshape(len(rows), -1)
+    free = ~np.isin(signs, list(BLOCKED))
     if free.sum() < 2:
         raise InputError(f"{path}: has fewer than two free cells")
     return free

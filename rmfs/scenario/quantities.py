@@ -12,6 +12,8 @@ Positive = Annotated[float, pydantic.Field(gt=0)]
 NotNegative = Annotated[float, pydantic.Field(ge=0)]
 Share = Annotated[float, pydantic.Field(ge=0, le=1)]
 Natural = Annotated[int, pydantic.Field(ge=0)]
+Waiting = Annotated[int, pydantic.Field(ge=0, le=100_000)]
+"""Orders that exist at once."""
 Count = Annotated[int, pydantic.Field(ge=1, le=1_000_000)]
 
 Number = TypeVar("Number", int, float)

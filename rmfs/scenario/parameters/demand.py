@@ -10,7 +10,7 @@ from pydantic import Field
 from rmfs.scenario.parameters.calendar import DownPeriods, OrderBatches
 from rmfs.scenario.parameters.files import StreamFile
 from rmfs.scenario.parameters.rates import TIED_TO, ConstantRate, OrderRates, TiedTo
-from rmfs.scenario.quantities import Block, Natural, Positive, Share, not_below
+from rmfs.scenario.quantities import Block, Positive, Share, Waiting, not_below
 
 
 class _Demand(Block):
@@ -29,7 +29,7 @@ class BacklogDemand(_Demand):
     """
 
     mode: Literal["backlog"] = Field("backlog", description="a constant number of orders waits")
-    orders: Natural = Field(200, description="orders waiting for a pick station")
+    orders: Waiting = Field(200, description="orders waiting for a pick station")
     pause_by_stock: bool = Field(True, description="whether the two stock levels below apply")
     pause_below_share: Share = Field(
         0.1, description="pause orders when the stored share of the pods' capacity falls below this"
@@ -56,7 +56,7 @@ class PoissonDemand(_Demand):
     )
     per_station: bool = Field(True, description="whether rates are per pick station")
     tied_to: TiedTo = Field("nothing", description=TIED_TO)
-    initial_orders: Natural = Field(30, description="orders waiting at time zero")
+    initial_orders: Waiting = Field(30, description="orders waiting at time zero")
     profile: OrderRates = Field(ConstantRate(), description="how the rate changes over time")
 
 
