@@ -103,7 +103,7 @@ class TestPromise:
 class TestRefusals:
     def test_a_target_beyond_both_ends(self) -> None:
         respond = Noisy(noise=0.001)
-        with pytest.raises(InputError, match=r"between 300 and 400: .* not be 0.9"):
+        with pytest.raises(InputError, match=r"between 300 and 400: .* and is 0.9"):
             calibrate(sought(low=300.0), respond, quiet)
         assert max(len(seeds) for _, seeds in respond.asked) == 32
 

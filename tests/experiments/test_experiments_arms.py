@@ -117,8 +117,11 @@ def test_short_names_tell_factors_apart():
     [
         ({"exclude": [{"layout.robot": 8}]}, "exclude 1: layout.robot is not a factor; did you"),
         ({"factors": {"robots": [8]}}, "factor robots: is no parameter"),
-        ({"factors": {"layout.robots": [8, 8]}}, "level 8 is there more than once"),
-        ({"factors": {"seed": [{"label": "a"}]}}, "factor seed: a column of the results"),
+        ({"factors": {"layout.robots": [8, 8]}}, "level 8 occurs more than once"),
+        (
+            {"factors": {"seed": [{"label": "a"}]}},
+            "factor seed: this is the name of another column",
+        ),
         ({"base": {"layout": 7}}, "base: layout = 7 is neither a name nor a file"),
         ({"seeded": ["seed"]}, "seeded: seed: must begin with"),
         ({"arms_file": "nothing.csv"}, "nothing.csv: no such file"),
@@ -144,7 +147,7 @@ def test_problems_of_arms_are_told(design, changes, told):
         ({"format": "rmfs-design/2"}, "format"),
         (
             {"stages": [{"name": "a", "until": {"column": "wall_s"}}]},
-            "is measured by the clock",
+            "is a measured time",
         ),
         ({"stages": [{"name": "a", "arms": {"best": 1, "by": "units_per_h"}}]}, "stage before"),
         (

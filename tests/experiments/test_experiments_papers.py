@@ -102,7 +102,7 @@ def test_the_demonstrator_is_run_and_published(design, tmp_path, monkeypatch):
 
 def test_a_folder_without_the_layout_is_refused(tmp_path, capsys):
     assert command(demonstrator.main, ["--reference", str(tmp_path)]) == WRONG_INPUT
-    assert "office-4bot.xinst is not there" in capsys.readouterr().err
+    assert "office-4bot.xinst does not exist" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("study", [demonstrator, figure_5b])

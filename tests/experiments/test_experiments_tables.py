@@ -102,7 +102,7 @@ def test_anova_as_a_table(results):
     assert "| robots" in text and "| robots x psa" in text and "partial η²" in text
     latex = tables.effects(found, "units_per_h").to("latex")
     assert r"{$\eta$$^2$}" in latex and "ω" not in latex
-    assert "interactions of two factors have a row each" in text
+    assert "each interaction of two factors has a row" in text
 
 
 def test_digits_follow_the_spread():

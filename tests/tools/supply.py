@@ -260,13 +260,13 @@ def known_weaknesses() -> str:
     crates, packages = (
         sum(row["ecosystem"] == kind for row in mended) for kind in ("cargo", "pypi")
     )
-    paragraph = f"""Known vulnerabilities: no advisory applies. PyPI was queried on {days} and listed
-none for the locked versions of {len(clear)} of the {len(rows)} Python packages. It only answers for the
-newest version of a package, so there is no answer for {", ".join(untold)}. The locked versions were
-also compared with a stored list of advisories and the versions that fix them: {crates} on the
-crates, from a copy of the RustSec database of June 2026, and {packages} from the PyPA database, the
-newest ones of some packages, from 2021 to 2023. `python -m tests.tools.supply --ask` queries PyPI
-again."""
+    paragraph = f"""Known vulnerabilities: no advisory applies. PyPI was queried on {days} and
+listed none for the locked versions of {len(clear)} of the {len(rows)} Python packages. It only
+answers for the newest version of a package, so there is no answer for {", ".join(untold)}. The
+locked versions were also compared with a stored list of advisories and the versions that fix them:
+{crates} on the crates, from a copy of the RustSec database of June 2026, and {packages} from the
+PyPA database, the newest ones of some packages, from 2021 to 2023.
+`python -m tests.tools.supply --ask` queries PyPI again."""
     return textwrap.fill(paragraph, 100, break_long_words=False, break_on_hyphens=False)
 
 
