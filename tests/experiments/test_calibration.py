@@ -159,7 +159,7 @@ class TestCommand:
             (["--column", "on_time"], "column on_time: not a number of the footprint"),
             (["--column", "wall_s"], "column wall_s: not a number"),
             (["--key", "scenario.demand.order_per_h"], "order_per_h"),
-            (["--set", "scenario.demand.orders_per_h=3"], "is what is sought"),
+            (["--set", "scenario.demand.orders_per_h=3"], "is the parameter to calibrate"),
             (["--set", "orders"], "expected KEY=VALUE"),
             (["--between", "300", "20"], "low = 300: must be below high = 20"),
             (["--between", "-5", "20"], "orders_per_h"),
