@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from rmfs import experiments
 from rmfs.errors import InputError
-from rmfs.experiments.design.arms import factor_names
+from rmfs.experiments.design.arms import _read_csv, factor_names
 
 
 def names(path) -> list[str]:
@@ -174,3 +176,9 @@ def test_what_a_design_does_not_name_is_the_default(design):
 def test_an_unknown_design_lists_the_shipped_ones():
     with pytest.raises(InputError, match=r"shipped: .*smoke"):
         experiments.plan("smoek")
+
+
+def test_a_doubled_column_of_an_arms_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "arms.csv").write_text("layout.robots,layout.robots\n4,8\n")
+    with pytest.raises(InputError, match=r"line 1 names the column layout\.robots more than once"):
+        _read_csv(tmp_path / "arms.csv")
