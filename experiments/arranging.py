@@ -49,7 +49,7 @@ def across(table: Table, plan: Plan, factor: str) -> Table:
     name = plan.short_names.get(factor, factor)
     if name not in levels or levels.shape[1] < 2:
         valid = ", ".join(map(str, levels.columns)) if levels.shape[1] > 1 else "needs two factors"
-        raise InputError(f"--across {factor}: no factor beside another one; valid: {valid}")
+        raise InputError(f"--across {factor}: not one of several factors; valid: {valid}")
     rows = pd.MultiIndex.from_frame(levels.drop(columns=name))
     order = rows.drop_duplicates()
     parts: dict[tuple[str, str], pd.Series] = {}
@@ -80,7 +80,7 @@ def _levels(table: Table, plan: Plan) -> pd.DataFrame:
     made = pd.DataFrame(rows, index=table.frame.index)
     made = made[[column for column in made if len(made[column].unique()) > 1]]
     if made.empty or made.duplicated().any():
-        raise InputError("the factors of this design do not tell its arms apart")
+        raise InputError("the factors of this design do not distinguish its arms")
     return made
 
 

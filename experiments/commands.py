@@ -113,12 +113,12 @@ def _tell_time(found: Any, left: int, processes: int) -> None:
     from rmfs.experiments.running.progress import spoken
 
     if found is None:
-        typer.echo("  time     unknown: no short run got through")
+        typer.echo("  time     unknown: no short run succeeded")
         return
     total = spoken(found.total_s(left, processes))
     typer.echo(
-        f"  time     about {total} for {left} runs, {processes} at a time "
-        f"({found.run_s:.1f} s a run, up to {found.longest_s:.1f} s; from {found.source})"
+        f"  time     about {total} for {left} runs, {processes} at a time ({found.run_s:.1f} "
+        f"s per run, up to {found.longest_s:.1f} s; from {found.source})"
     )
 
 
@@ -169,13 +169,13 @@ def status(design: Made, out: Out = None) -> None:
     digests = {arm.digest for arm in made.arms}
     outdated = int((~rows["arm_digest"].isin(list(digests))).sum())
     if outdated:
-        typer.echo(f"{outdated} stored runs belong to other inputs and do not count")
+        typer.echo(f"{outdated} stored runs belong to other inputs and are ignored")
     if len(rows):
         mine = assigned(made, store)
         short = mine["arm"].value_counts()
         lacking = [arm.name for arm in made.arms if short.get(arm.name, 0) < short.max()]
         if lacking and done.finished < done.wanted:
-            typer.echo(f"arms with runs to do: {len(lacking)}")
+            typer.echo(f"arms with unfinished runs: {len(lacking)}")
     lost = failed(made, store)
     for row in lost.itertuples():
         typer.echo(f"failed: {row.arm}, seed {row.seed}: {row.error}")
@@ -201,7 +201,9 @@ def table(
     bootstrap: Bootstrap = False,
     by_factor: Annotated[
         bool,
-        typer.Option("--by-factor", help="Show a column per factor instead of the names of arms."),
+        typer.Option(
+            "--by-factor", help="Show one column per factor instead of the names of arms."
+        ),
     ] = False,
     across: Annotated[
         str | None,
@@ -292,7 +294,7 @@ def plot(
     from rmfs.experiments.provenance import write
 
     if kind not in KINDS:
-        raise InputError(f"--kind {kind}: no such picture; valid: {', '.join(KINDS)}")
+        raise InputError(f"--kind {kind}: no such plot; valid: {', '.join(KINDS)}")
     one = opened(design, out)
     made, (frame, note) = one.plan, one.rows()
     chosen = list(columns or KINDS[kind])

@@ -291,7 +291,7 @@ def chosen_columns(
     wrong = [column for column in columns if column not in there]
     if wrong:
         valid = ", ".join(c for c in (*names("footprint"), *numbers()) if c in there)
-        raise InputError(f"column {', '.join(wrong)}: not in both; valid: {valid}")
+        raise InputError(f"column {', '.join(wrong)}: not in both sides; valid: {valid}")
     if columns:
         return list(columns)
     if everything:

@@ -86,7 +86,7 @@ def _how(one: Comparison) -> str:
         alone = max(there) > one.pairs
         return f"{told}, of {there[0]} and {there[1]}" if alone else told
     counts = f"{len(one.baseline.rows)} and {len(one.other.rows)}"
-    return f"no common seed: {counts} runs taken as independent (Welch)"
+    return f"no common seed: {counts} runs treated as independent (Welch)"
 
 
 def _number(value: float, scale: float = 1.0) -> str:

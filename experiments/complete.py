@@ -36,7 +36,7 @@ def lacking(plan: Plan, store: Store, only: Collection[str] = ()) -> str:
     wanted = len(runs)
     if len(done) == wanted and now.complete:
         return ""
-    said = [f"incomplete: {len(done)} of {wanted} runs are in"]
+    said = [f"incomplete: {len(done)} of {wanted} runs are finished"]
     failed = len(lost & {(run.arm, run.replication) for run in runs})
     if failed:
         said.append(f"{failed} failed")
@@ -45,7 +45,7 @@ def lacking(plan: Plan, store: Store, only: Collection[str] = ()) -> str:
     if empty:
         said.append(f"{empty} of {len(known)} arms have none")
     if not now.complete and may_grow(plan):
-        said.append("stages may ask for more")
+        said.append("stages may add more")
     return ", ".join(said)
 
 

@@ -39,13 +39,13 @@ class Foresight(Measure):
     """
 
     columns = (
-        Column("stays", INTEGER, "stays", "Storage places chosen anew"),
+        Column("stays", INTEGER, "stays", "Stays whose storage places were optimised"),
         Column(
             "foresight_storage_s",
             REAL,
             "s",
-            "Unhindered loaded driving that perfect foresight of the next visits could have saved "
-            "by other storage places (PSA), at most",
+            "Upper bound on the unhindered loaded driving that perfect foresight of the next "
+            "visits could have saved by other storage places (PSA)",
         ),
         Column(
             "foresight_storage_share",
@@ -53,13 +53,13 @@ class Foresight(Measure):
             "share",
             "foresight_storage_s / (robots x duration)",
         ),
-        Column("lifts", INTEGER, "lifts", "Trips to pods chosen anew"),
+        Column("lifts", INTEGER, "lifts", "Trips to pods whose robots were optimised"),
         Column(
             "foresight_tasks_s",
             REAL,
             "s",
-            "Unhindered empty driving that perfect foresight of the next lifts could have saved by "
-            "other robots (TA), at most",
+            "Upper bound on the unhindered empty driving that perfect foresight of the next "
+            "lifts could have saved by other robots (TA)",
         ),
         Column(
             "foresight_tasks_share",

@@ -76,7 +76,7 @@ def opened(design: str, out: Path | None = None) -> Opened:
     folder = Path(design)
     if folder.is_dir():
         if out is not None:
-            raise InputError(f"--out: {design} is a folder of results itself")
+            raise InputError(f"--out: {design} cannot be combined with a folder of results")
         return Opened(design, planning.load(folder), Store(folder))
     made = planning.plan(design)
     refuse(made)

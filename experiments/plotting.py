@@ -94,9 +94,9 @@ def draw(
         If there is no such plot, or it cannot be drawn from these results.
     """
     if kind not in KINDS:
-        raise InputError(f"{kind}: no such picture; valid: {', '.join(KINDS)}")
+        raise InputError(f"{kind}: no such plot; valid: {', '.join(KINDS)}")
     if len(columns) > MOST_COLUMNS:
-        raise InputError(f"a picture shows at most {MOST_COLUMNS} columns")
+        raise InputError(f"a plot shows at most {MOST_COLUMNS} columns")
     wish = wish or Wish()
     match kind:
         case "intervals":
@@ -191,8 +191,8 @@ def _interaction(
         raise InputError("interaction: needs two factors with more than one level each")
     if len(pairs) > MOST_PAIRS:
         raise InputError(
-            f"interaction: {len(pairs)} pairs of factors are too many for one picture; choose some "
-            f"by --factor: {', '.join(short)}"
+            f"interaction: {len(pairs)} pairs of factors are too many for one plot; choose "
+            f"some with --factor: {', '.join(short)}"
         )
     across = min(3, len(pairs))
     rows = -(-len(pairs) // across)

@@ -106,7 +106,7 @@ def require_columns(frame: pd.DataFrame, columns: list[str]) -> None:
     require(frame, *columns)
     words = [c for c in columns if not _is_number(frame[c])]
     if words:
-        raise InputError(f"column {', '.join(words)}: holds no numbers")
+        raise InputError(f"column {', '.join(words)}: is not numeric")
 
 
 def _is_number(values: pd.Series) -> bool:

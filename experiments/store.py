@@ -172,7 +172,7 @@ class Store:
             except FileNotFoundError:
                 continue  # merged in between
         else:
-            raise InputError(f"{self.folder / RUNS}: files vanish while they are read")
+            raise InputError(f"{self.folder / RUNS}: files disappear while they are read")
         if not tables:
             return pd.DataFrame(columns=pd.Index(wanted or COLUMNS))
         frame: pd.DataFrame = _together(tables).to_pandas()
@@ -274,8 +274,8 @@ def _read_failure(path: Path, keys: Sequence[str]) -> dict[str, Any]:
 
 def _corrupted(path: Path, why: str) -> InputError:
     return InputError(
-        f"{path}: corrupted ({' '.join(why.split())}); remove it and run the experiment again: "
-        "only what it held is repeated"
+        f"{path}: corrupted ({' '.join(why.split())}); remove it and run the experiment "
+        "again: only the runs in it are repeated"
     )
 
 
@@ -285,8 +285,9 @@ def _together(tables: list[pa.Table]) -> pa.Table:
         return pa.concat_tables(tables, promote_options="permissive")
     except pa.ArrowException as error:
         raise InputError(
-            f"stored results do not go together ({' '.join(str(error).split())}); remove those "
-            "with another type and run the experiment again: only what they held is repeated"
+            f"stored results are incompatible ({' '.join(str(error).split())}); remove those "
+            "with another type and run the experiment again: only the runs in them are "
+            "repeated"
         ) from None
 
 

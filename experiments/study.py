@@ -143,7 +143,7 @@ class Study:
         from rmfs.experiments.plotting import KINDS, Wish, draw
 
         if kind not in KINDS:
-            raise InputError(f"kind {kind}: no such picture; valid: {', '.join(KINDS)}")
+            raise InputError(f"kind {kind}: no such plot; valid: {', '.join(KINDS)}")
         chosen = list(columns or KINDS[kind])
         rows = self.frame if kind == "progression" else self._rows(by, self._columns(chosen))
         if by is not None:
@@ -176,7 +176,7 @@ class Study:
         if by not in self.plan.factors:
             raise InputError(f"{by}: no such factor; factors: {', '.join(self.plan.factors)}")
         if columns == [by]:
-            raise InputError(f"{by}: is the factor itself")
+            raise InputError(f"{by}: is the factor given as `by`")
         grouped = self.frame.groupby([by, "replication"], sort=False)
         return grouped[columns].mean().reset_index()
 

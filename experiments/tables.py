@@ -276,7 +276,7 @@ def differences(
     made = made[[("pairs", ""), *(c for c in made if c != ("pairs", ""))]]
     made.columns = pd.MultiIndex.from_tuples(columns_of(made))
     caption = (
-        f"Arm minus {baseline}, seed by seed, with {confidence:.0%} confidence intervals "
+        f"Arm minus {baseline}, paired by seed, with {confidence:.0%} confidence intervals "
         f"({_called(method)}); p values of paired t tests, corrected by Holm over the table."
     )
     return Table(made, decimals, caption)

@@ -25,9 +25,9 @@ Range = tuple[float, float]
 
 
 def calibrate(
-    target: Annotated[float, typer.Option(help="The mean that is asked for.")],
+    target: Annotated[float, typer.Option(help="The desired mean.")],
     between: Annotated[
-        Range, typer.Option(metavar="LOW HIGH", help="Range in which the level is sought.")
+        Range, typer.Option(metavar="LOW HIGH", help="Range that contains the level.")
     ],
     layout: LayoutOption = "default",
     scenario: ScenarioOption = "default",
@@ -35,21 +35,28 @@ def calibrate(
     set_: SetOption = None,
     pacing: Annotated[str, typer.Option(metavar="MODE", help="As in rmfs run.")] = "instant",
     key: Annotated[
-        str, typer.Option(help="The parameter whose level is sought.")
+        str, typer.Option(help="The parameter to calibrate.")
     ] = "scenario.demand.orders_per_h",
     column: Annotated[
-        str, typer.Option("--column", "-c", help="Column of the footprint whose mean is asked for.")
+        str,
+        typer.Option(
+            "--column", "-c", help="Column of the footprint whose mean is to reach the target."
+        ),
     ] = "on_time_share",
-    tolerance: Annotated[float, typer.Option(help="How far the mean may be off.")] = 0.02,
+    tolerance: Annotated[
+        float, typer.Option(help="Maximum deviation of the mean from the target.")
+    ] = 0.02,
     confidence: Annotated[
-        float, typer.Option(help="Probability with which it is not farther off.")
+        float, typer.Option(help="Probability that the deviation is not larger.")
     ] = 0.95,
-    search_seeds: Annotated[int, typer.Option(help="Seeds at each level of the search.")] = 4,
+    search_seeds: Annotated[
+        int, typer.Option(help="Number of seeds at each level of the search.")
+    ] = 4,
     test_seeds: Annotated[
-        int, typer.Option(help="Seeds with which a test begins; fresh ones for each test.")
+        int, typer.Option(help="Initial number of seeds of a test; every test uses new seeds.")
     ] = 10,
-    first_seed: Annotated[int, typer.Option(help="The first of all seeds.")] = 0,
-    most_runs: Annotated[int, typer.Option(help="Runs after which it gives up.")] = 2000,
+    first_seed: Annotated[int, typer.Option(help="First seed.")] = 0,
+    most_runs: Annotated[int, typer.Option(help="Maximum number of runs.")] = 2000,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -85,7 +92,7 @@ def calibrate(
     )
     changes = {".".join(path): value for path, value in map(parse_override, set_ or [])}
     if key in changes:
-        raise InputError(f"--set {key}: is what is sought")
+        raise InputError(f"--set {key}: is the parameter to calibrate")
     inputs = {"layout": layout, "scenario": scenario, "controllers": controllers}
     base: dict[str, Any] = {**inputs, "pacing": pacing, **changes}
     folder = out if out is not None else RESULTS / f"calibrate-{column}"
@@ -108,14 +115,14 @@ def verdict(found: Calibration, key: str, column: str) -> str:
     goal = found.goal
     if not found.found:
         return (
-            f"not found: {goal.most_runs} runs do not suffice for {column} = {goal.target:g} "
+            f"not found: {goal.most_runs} runs are not enough for {column} = {goal.target:g} "
             f"within {goal.tolerance:g}; raise --most-runs or --tolerance"
         )
     tested = found.steps[-1]
     return (
         f"{key} = {found.level:g}: {column} is {goal.target:g} within {goal.tolerance:g} with "
         f"confidence {goal.confidence:.0%} ({found.mean:.4g} +- {found.half_width:.2g} in the "
-        f"test, {tested.seeds} seeds; {found.runs} runs in all)"
+        f"test, {tested.seeds} seeds; {found.runs} runs in total)"
     )
 
 
@@ -140,9 +147,9 @@ def steps_table(found: Calibration, key: str, column: str) -> Table:
     frame.columns = pd.MultiIndex.from_tuples([*rows[0]])
     goal = found.goal
     caption = (
-        f"Sought: {column} = {goal.target:g} within {goal.tolerance:g}, confidence "
-        f"{goal.confidence:.0%}. The search compares means over the same few seeds; a test has "
-        "fresh seeds, and its interval counts all tests before it."
+        f"Target: {column} = {goal.target:g} within {goal.tolerance:g}, confidence "
+        f"{goal.confidence:.0%}. The search compares means over the same few seeds. A test "
+        "uses new seeds, and its interval allows for all earlier tests."
     )
     decimals = {(key, ""): 3, (column, "mean"): 4, (column, HALF): 4}
     return Table(frame, decimals, caption)

@@ -210,9 +210,9 @@ class _Procedure:
             if (low > 0) != (high > 0):
                 return low, high
         raise InputError(
-            f"between {goal.low:g} and {goal.high:g}: the mean goes from {low + goal.target:.4g} "
-            f"to {high + goal.target:.4g} ({self.search_seeds} seeds); the target must lie "
-            f"between, and not be {goal.target:g}"
+            f"between {goal.low:g} and {goal.high:g}: the mean goes from "
+            f"{low + goal.target:.4g} to {high + goal.target:.4g} ({self.search_seeds} "
+            f"seeds); the target must lie between these, and is {goal.target:g}"
         )
 
     def _search(self, low: float, high: float) -> None:

@@ -172,7 +172,7 @@ def _grid_factor(key: str, levels: list[Any], problems: list[str]) -> list[Level
     made = [_level(key, level, problems) for level in levels]
     names = [level.name for level in made]
     doubles = sorted({name for name in names if names.count(name) > 1})
-    problems += [f"factor {key}: level {name} is there more than once" for name in doubles]
+    problems += [f"factor {key}: level {name} occurs more than once" for name in doubles]
     return made
 
 
@@ -305,7 +305,7 @@ def _key_problems(design: DesignFile, keys: list[str]) -> Iterator[str]:
     for key in keys:
         known = key in RESERVED or footprint_column(key) is not None
         if known and key not in PARTS:
-            yield f"factor {key}: a column of the results has this name already"
+            yield f"factor {key}: this is the name of another column of the results"
     for number, rule in enumerate(design.exclude, 1):
         if not rule:
             yield f"exclude {number}: names no factor"
@@ -408,4 +408,4 @@ def _anchored_rule(path: list[str], value: Any, folder: Path) -> Any:
 def _name_problems(made: list[Arm]) -> list[str]:
     names = [arm.name for arm in made]
     doubles = sorted({name for name in names if names.count(name) > 1})
-    return [f"arm {name}: the name is there more than once" for name in doubles]
+    return [f"arm {name}: the name occurs more than once" for name in doubles]

@@ -29,7 +29,7 @@ def _measure(name: str) -> str:
     if column is None or not column.is_number:
         raise ValueError("is not a number of the footprint")
     if column.measured:
-        raise ValueError("is measured by the clock: what is run next would not repeat")
+        raise ValueError("is a measured time: which runs follow would not be reproducible")
     return name
 
 
@@ -39,7 +39,9 @@ def _goal(column: str, stated: Goal | None) -> Goal:
         return stated
     better = better_of(column)
     if better == "neither":
-        raise ValueError(f'neither more nor less of {column} is better: add goal = "max" or "min"')
+        raise ValueError(
+            f'the data dictionary states no goal for {column} is better: add goal = "max" or "min"'
+        )
     return "max" if better == "more" else "min"
 
 

@@ -83,7 +83,9 @@ def d_optimal(rows: NDArray[np.float64], count: int, seed: int = 0) -> list[int]
     """
     total, parameters = rows.shape
     if not parameters <= count <= total:
-        raise InputError(f"{count} arms: must be from {parameters} to {total} to tell the effects")
+        raise InputError(
+            f"{count} arms: must be from {parameters} to {total} to estimate the effects"
+        )
     rng = np.random.default_rng(seed)
     chosen = rng.permutation(total)[:count]
     # a little of the identity, should the first choice miss a level

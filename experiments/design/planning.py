@@ -248,7 +248,7 @@ def load(folder: Path) -> Plan:
     try:
         told = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise InputError(f"{folder}: holds no experiment ({FILE} is missing)") from None
+        raise InputError(f"{folder}: contains no experiment ({FILE} is missing)") from None
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: cannot be read ({error})") from None
     if not isinstance(told, dict) or told.get("format") != FORMAT:

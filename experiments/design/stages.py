@@ -195,7 +195,7 @@ def _select(
         wanted += [(arm, seed) for arm in found.left]
         if not any(known.without_value(arm, seed, rule.column) for arm in found.left):
             return wanted, False
-        remarks.append(f"stage {name}: given up, as runs of arms that may be the best failed")
+        remarks.append(f"stage {name}: stopped, as runs of arms that may be the best failed")
         return wanted, True
     remarks.append(f"stage {name}: {found.verdict()}")
     return wanted, True

@@ -113,8 +113,8 @@ def goal_of(column: str, stated: Goal | None = None) -> Goal:
     better = better_of(column)
     if better == "neither":
         raise InputError(
-            f"column {column}: neither more nor less of it is better in itself; say which: "
-            f"--goal {column}=more or --goal {column}=less"
+            f"column {column}: the data dictionary states no goal; give one: --goal "
+            f"{column}=more or --goal {column}=less"
         )
     return better
 

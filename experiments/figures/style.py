@@ -58,7 +58,7 @@ def saving(
 
     form = "" if path is None else path.suffix.lower().removeprefix(".")
     if path is not None and form not in FORMATS:
-        raise InputError(f"{path}: unknown kind of picture; valid: .{', .'.join(FORMATS)}")
+        raise InputError(f"{path}: unknown suffix; valid: .{', .'.join(FORMATS)}")
     with mpl.rc_context({"svg.hashsalt": "rmfs", "axes.grid": True, "grid.alpha": 0.3}):
         # not by pyplot: it would change the back end of who calls from a notebook
         figure = Picture(figsize=(width, height), layout="constrained", **layout)

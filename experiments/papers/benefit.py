@@ -81,9 +81,10 @@ def overview(frame: pd.DataFrame, groups: Sequence[str], columns: Sequence[str] 
         shown = digits(made[column, HALF], made[column, "mean"])
         decimals |= {(column, "mean"): shown, (column, HALF): shown}
     caption = (
-        "Means over seeds with 95% confidence intervals (Student's t). station_share: units per "
-        "hour / what the pick stations can do. Decisions: who took them, as shares of all that "
-        "optimisers were asked for. units_per_h_bound: proven for every controller."
+        "Means over seeds with 95% confidence intervals (Student's t). station_share: units "
+        "per hour as a share of the pick stations' capacity. Decisions: shares by their "
+        "source, of all decisions for which optimisers were asked. units_per_h_bound: proven "
+        "for every controller."
     )
     return Table(made, decimals, caption)
 
@@ -114,7 +115,7 @@ def gains(
             rows[f"{where}, {controllers}"] = _percent(runs, controllers, baseline, columns)
     made = rows_frame(rows, ", ".join((*groups, CONTROLLERS)))
     caption = (
-        f"Difference to {baseline} in percent, seed by seed, with 95% confidence intervals "
+        f"Difference to {baseline} in percent, paired by seed, with 95% confidence intervals "
         "(Student's t)."
     )
     return Table(made, {(c, part): 1 for c in columns for part in ("mean", HALF)}, caption)
@@ -144,8 +145,9 @@ def of_optimiser(
                 continue
             rows[f"{where}, {controllers}"] = _percent(runs, controllers, start, columns)
     caption = (
-        "What the optimiser adds to its own start rule, which is the same controller without a "
-        "solver: difference in percent, seed by seed, with 95% confidence intervals (Student's t)."
+        "Gain of the optimiser over its own start rule, which is the same controller without "
+        "a solver: difference in percent, paired by seed, with 95% confidence intervals "
+        "(Student's t)."
     )
     made = rows_frame(rows, ", ".join((*groups, CONTROLLERS)))
     return Table(made, {(c, part): 1 for c in columns for part in ("mean", HALF)}, caption)

@@ -101,10 +101,10 @@ def needed(frame: pd.DataFrame, enough: float = ENOUGH) -> Table:
         **{("more, %", HALF): 1, ("seeds", ""): 0},
     }
     caption = (
-        f"Robots needed for {enough:.0%} of what the pick stations can do, interpolated between "
-        "fleets seed by seed, and how many more than without batteries; 95% confidence intervals "
-        "(Student's t); no figure where some seed reaches it with no fleet of the design, or with "
-        "each."
+        f"Robots needed for {enough:.0%} of the pick stations' capacity, interpolated between "
+        "fleets and paired by seed, and how many more these are than without batteries; 95% "
+        "confidence intervals (Student's t); no figure if, for some seed, no fleet of the "
+        "design reaches it or all do."
     )
     return Table(rows_frame(rows, "recovery"), decimals, caption)
 
@@ -118,9 +118,9 @@ def _figures(column: str, values: pd.Series) -> dict[tuple[str, str], float]:
 def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("charging", __doc__)
-    options.add_argument("--large", action="store_true", help="the large site instead")
-    options.add_argument("--rules", action="store_true", help="the rules of CA instead")
-    options.add_argument("--demand", action="store_true", help="with --rules: demand that changes")
+    options.add_argument("--large", action="store_true", help="use the large site instead")
+    options.add_argument("--rules", action="store_true", help="compare the rules of CA instead")
+    options.add_argument("--demand", action="store_true", help="with --rules: use changing demand")
     given = options.parse_args(arguments)
     if given.demand and not given.rules:
         options.error("--demand: only with --rules")

@@ -67,8 +67,13 @@ def main(arguments: list[str] | None = None) -> None:
     made.add_argument("--library", type=Path, default=LIBRARY, help="folder of the library")
     made.add_argument("--published", type=Path, default=PUBLISHED, help="folder of tables")
     made.add_argument("--time", action="store_true", help="time methods first")
-    made.add_argument("--questions", type=int, default=2, help="of each family and size, to time")
-    made.add_argument("--seeds", type=int, default=2, help="of each method, to time")
+    made.add_argument(
+        "--questions",
+        type=int,
+        default=2,
+        help="number of questions of each family and size to time",
+    )
+    made.add_argument("--seeds", type=int, default=2, help="number of seeds of each method to time")
     made.add_argument("--size", action="append", help="sizes to time (default: small and real)")
     made.add_argument("--family", action="append", help="families to time (default: all)")
     given = made.parse_args(arguments)

@@ -66,10 +66,11 @@ def gain(frame: pd.DataFrame, columns: Sequence[str] = COLUMNS) -> Table:
     rows["RAWSim-O (one run)"] = {
         (column, "mean"): 100 * (with_lane / without - 1) for column, with_lane, without in pairs
     }
-    made = rows_frame(rows, "what the fast lane adds, %")
+    made = rows_frame(rows, "gain of the fast lane, %")
     caption = (
-        "With against without fast lane, seed by seed, in percent with 95% confidence intervals of "
-        "the mean; one run more lies within the mean +- what stands under one run, with 95%."
+        "Gain of the fast lane, paired by seed, in percent with 95% confidence intervals of "
+        "the mean; a single further run lies within the mean +- the value under one run with "
+        "a probability of 95%."
     )
     return Table(made, dict.fromkeys(next(iter(rows.values())), 2), caption)
 

@@ -77,7 +77,7 @@ def needed(frame: pd.DataFrame, groups: Sequence[str], enough: float = ENOUGH) -
                 break
         rows[", ".join(str(level) for level in levels)] = row
     caption = (
-        f"Smallest fleet of the design that reaches {enough:.0%} of what the pick stations can do."
+        f"Smallest fleet of the design that reaches {enough:.0%} of the pick stations' capacity."
     )
     decimals = {("robots", ""): 0, ("share", "mean"): 3, ("share", HALF): 3}
     return Table(rows_frame(rows, ", ".join(groups)), decimals, caption)
@@ -119,7 +119,9 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("fewer-robots", __doc__)
     options.add_argument(
-        "--later", action="store_true", help="the third hour, and orders that arrive, instead"
+        "--later",
+        action="store_true",
+        help="use the third hour and orders that arrive over time instead",
     )
     given = options.parse_args(arguments)
     if given.later:

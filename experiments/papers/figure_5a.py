@@ -106,9 +106,9 @@ def as_table(found: pd.DataFrame) -> Table:
     decimals = {column: digits(half, found["difference"]) for column in parts}
     decimals |= {("%", ""): 1, ("p", ""): 4, ("seeds", ""): 0}
     caption = (
-        "Storage rule exchanged (random, then nearest) against kept (random): rates per hour in "
-        "the two halves of 24 h, difference in differences seed by seed with 95% confidence "
-        "interval (Student's t)."
+        "Storage rule exchanged (random, then nearest) against kept (random): rates per hour "
+        "in the two halves of 24 h, difference in differences, paired by seed, with 95% "
+        "confidence interval (Student's t)."
     )
     return Table(frame, decimals, caption)
 

@@ -70,8 +70,9 @@ def bounds(found: Mapping[int, float], limit: float) -> Table:
         for robots in fleets
     }
     caption = (
-        "Units per hour that no controller exceeds that stores what it picks, whatever it knows "
-        "(docs: bounds). With more robots the bound stays what it is in the last row."
+        "Upper bound on units per hour of any controller that stores what it picks, whatever "
+        "it knows (docs: bounds). With more robots than in the last row, the bound does not "
+        "change."
     )
     decimals = {("units_per_h", ""): 0, ("station_share", ""): 3}
     return Table(rows_frame(rows, "robots"), decimals, caption)
@@ -80,8 +81,8 @@ def bounds(found: Mapping[int, float], limit: float) -> Table:
 def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("fleet-large", __doc__)
-    options.add_argument("--later", action="store_true", help="the third hour instead")
-    options.add_argument("--bound", action="store_true", help="print the bound; no runs")
+    options.add_argument("--later", action="store_true", help="use the third hour instead")
+    options.add_argument("--bound", action="store_true", help="only print the bound")
     given = options.parse_args(arguments)
     name = "fleet-large"
     if given.later:

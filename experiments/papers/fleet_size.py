@@ -63,8 +63,8 @@ def added(frame: pd.DataFrame, rule: str = RULE, column: str = UNITS) -> Table:
     made.columns = pd.MultiIndex.from_tuples(columns)
     shown = digits(made[column, HALF], made[column, "mean"])
     caption = (
-        f"What one robot more adds to {column}, from each fleet to the next, seed by seed, with "
-        "95% confidence intervals (Student's t)."
+        f"Gain in {column} per additional robot, from each fleet to the next, paired by seed, "
+        "with 95% confidence intervals (Student's t)."
     )
     decimals = {(column, "mean"): shown, (column, HALF): shown, ("seeds", ""): 0}
     return Table(made, decimals, caption)
@@ -76,7 +76,7 @@ def unbeaten(frame: pd.DataFrame, column: str = UNITS) -> Table:
     best = front(robots, per_arm(frame, column)["mean"], "less", "more")
     chosen = frame.set_index("arm").loc[best].reset_index()
     table = means(chosen, ["robots", *(c for c in COLUMNS if c in frame)])
-    caption = f"Arms that no other one beats, with fewer robots or more {column}. {table.caption}"
+    caption = f"Arms that no other arm dominates in robots and {column}. {table.caption}"
     return Table(table.frame, table.decimals, caption)
 
 

@@ -63,8 +63,9 @@ def losses(frame: pd.DataFrame) -> Table:
     decimals |= {("change, %", part): 1 for part in ("mean", HALF)}
     decimals |= {("lateness, s", ""): 0, ("repairs", ""): 0}
     caption = (
-        "Units per hour, and their change against perfect execution seed by seed, with 95% "
-        "confidence intervals (Student's t); lateness of all motions, and plans repaired."
+        "Units per hour, and their change compared with perfect execution, paired by seed, "
+        "with 95% confidence intervals (Student's t); lateness of all motions, and plans "
+        "repaired."
     )
     return Table(rows_frame(rows, "robots and lateness"), decimals, caption)
 
@@ -87,7 +88,7 @@ def gains(frame: pd.DataFrame) -> Table:
             }
     decimals = {("repair, %", "mean"): 1, ("repair, %", HALF): 1, ("p value", ""): 3}
     caption = (
-        "Change of units per hour by repair, seed by seed, with 95% confidence intervals "
+        "Change of units per hour by repair, paired by seed, with 95% confidence intervals "
         "(Student's t); p values of the paired t test, not corrected."
     )
     return Table(rows_frame(rows, "robots and lateness"), decimals, caption)

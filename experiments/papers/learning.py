@@ -91,10 +91,10 @@ def compared(frame: pd.DataFrame) -> Table:
     decimals |= {("late_share", "mean"): 3, ("late_share", HALF): 3}
     decimals |= {(one, part): 4 for one, part in columns if part == "p"}
     caption = (
-        "Means over held-out seeds with 95% confidence intervals (Student's t). Gains: more units "
-        "picked, or fewer late orders where orders arrive, seed by seed; p: paired t test after "
-        "Holm's correction within the regime. bundles_per_h: who stores less than others lives on "
-        "stock."
+        "Means over held-out seeds with 95% confidence intervals (Student's t). Gains: more "
+        "units picked, or fewer late orders if orders arrive over time, paired by seed; p: "
+        "paired t test after Holm's correction within the regime. bundles_per_h: a "
+        "controller that stores fewer bundles than others uses up stock."
     )
     return Table(made, decimals, caption)
 

@@ -115,9 +115,10 @@ INSTANCES = [
 shorter simulations."""
 
 CAPTION = (
-    "Path planning methods over an hour of constant work: means over seeds with 95% confidence "
-    "intervals (Student's t); planning is wall time per simulated hour, failures are searches "
-    "that found no way yet. The difference in orders is to time-windows, seed by seed."
+    "Path planning methods over an hour with a constant backlog: means over seeds with 95% "
+    "confidence intervals (Student's t); planning is wall time per simulated hour, failures "
+    "are searches that found no path. The difference in orders is to time-windows, paired by "
+    "seed."
 )
 
 

@@ -54,7 +54,7 @@ def differences(frame: pd.DataFrame) -> Table:
     for column in (*SPREAD, *COSTS):
         shown = digits(made[column, HALF], made[column, "mean"])
         decimals |= {(column, part): shown for part in ("mean", HALF)}
-    caption = "Differences seed by seed, with 95% confidence intervals (Student's t)."
+    caption = "Differences paired by seed, with 95% confidence intervals (Student's t)."
     return Table(made, decimals, caption)
 
 

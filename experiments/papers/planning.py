@@ -40,9 +40,11 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("planning", __doc__)
     other = options.add_mutually_exclusive_group()
-    other.add_argument("--large", action="store_true", help="the large site instead")
+    other.add_argument("--large", action="store_true", help="use the large site instead")
     other.add_argument(
-        "--anticipation", action="store_true", help="with orders still to come, instead"
+        "--anticipation",
+        action="store_true",
+        help="compare with planning that considers future orders instead",
     )
     given = options.parse_args(arguments)
     name, baseline = "planning", START_RULE

@@ -199,11 +199,12 @@ def even(frame: pd.DataFrame) -> Table:
     decimals = {(name, part): 0 for name in ("slots", "way, s") for part in _PARTS}
     decimals |= {("packer, s per tote", part): 1 for part in _PARTS}
     caption = (
-        "Where split orders break even with whole ones. slots: of the wall, for units per hour, "
-        "with a bootstrap interval over seeds; the smallest wall of the design stands for that and "
-        "all below, inf for none. packer: time for each tote beyond the first of an order at which "
-        "pickers and packers together work as long per unit. way: to the wall, at which orders are "
-        "packed as early in the mean; negative: never. These two with any number of slots, 95% "
+        "Where split orders break even with whole ones. slots: number of slots of the wall "
+        "from which on splitting picks more units per hour, with a bootstrap interval over "
+        "seeds; the smallest wall of the design may stand for smaller ones, and inf means "
+        "none. packer: time per additional tote of an order at which pickers and packers "
+        "together work as long per unit. way: time to the wall at which orders are packed as "
+        "early on average; negative: never. These two are for any number of slots, 95% "
         "confidence intervals (Student's t)."
     )
     return Table(rows_frame(rows, f"{DEMAND}, way to the wall"), decimals, caption)
@@ -237,9 +238,10 @@ def against_better(frame: pd.DataFrame) -> Table:
             rows[f"{demand}, {label}"] = row
     made = rows_frame(rows, f"{DEMAND}, wall")
     caption = (
-        "Units per hour of splitting as far as the wall goes, in percent more than whole orders, "
-        "than splitting whether the wall has room or not, and than whichever of the two has the "
-        "higher mean in these runs, seed by seed, with 95% confidence intervals (Student's t)."
+        "Gain in units per hour of splitting within the wall's capacity, in percent, "
+        "compared with whole orders, with splitting regardless of the wall, and with the one "
+        "of the two with the higher mean in these runs, paired by seed, with 95% confidence "
+        "intervals (Student's t)."
     )
     return Table(made, {key: 1 for row in rows.values() for key in row}, caption)
 
@@ -248,8 +250,8 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("price-of-splitting", __doc__)
     site = options.add_mutually_exclusive_group()
-    site.add_argument("--default", action="store_true", help="the default site instead")
-    site.add_argument("--large", action="store_true", help="the large site instead")
+    site.add_argument("--default", action="store_true", help="use the default site instead")
+    site.add_argument("--large", action="store_true", help="use the large site instead")
     given = options.parse_args(arguments)
     name = "price-of-splitting"
     if given.default or given.large:

@@ -57,8 +57,10 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("price-of-thinking", __doc__)
     other = options.add_mutually_exclusive_group()
-    other.add_argument("--wall", action="store_true", help="wall time at four limits instead")
-    other.add_argument("--planning", action="store_true", help="plans of several visits instead")
+    other.add_argument("--wall", action="store_true", help="use wall time at four limits instead")
+    other.add_argument(
+        "--planning", action="store_true", help="use plans of several visits instead"
+    )
     given = options.parse_args(arguments)
     if given.wall:
         given.design = "price-of-thinking-wall"

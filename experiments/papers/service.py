@@ -65,9 +65,9 @@ def differences(frame: pd.DataFrame) -> Table:
             }
     decimals = {(f"{SHARE}, points", part): 1 for part in ("mean", HALF)}
     caption = (
-        "Differences of on-time shares in points, seed by seed, with 95% confidence intervals "
-        "(Student's t). The best rule is the one with the highest mean in these runs, which "
-        "favours the rules."
+        "Differences of on-time shares in percentage points, paired by seed, with 95% "
+        "confidence intervals (Student's t). The best rule is the one with the highest mean "
+        "in these runs, which favours the rules."
     )
     return Table(rows_frame(rows, "due, compared"), decimals, caption)
 
@@ -95,9 +95,10 @@ def differences_by_class(frame: pd.DataFrame) -> Table:
             row[f"{share}, points", HALF] = found.half_width
         rows[f"best rule ({rule})" if other == rule else other] = row
     caption = (
-        "What the optimiser has on time more than others, in points, seed by seed, with 95% "
-        "confidence intervals (Student's t). The best rule is the one with most urgent orders on "
-        "time in these runs. equal weights: the optimiser, every class of weight 1."
+        "Differences of the optimiser's on-time shares to others, in percentage points, "
+        "paired by seed, with 95% confidence intervals (Student's t). The best rule is the "
+        "one with the highest on-time share of urgent orders in these runs. equal weights: "
+        "the optimiser, every class of weight 1."
     )
     made = rows_frame(rows, "against")
     return Table(made, {key: 1 for row in rows.values() for key in row}, caption)
@@ -106,7 +107,7 @@ def differences_by_class(frame: pd.DataFrame) -> Table:
 def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("service", __doc__)
-    options.add_argument("--priorities", action="store_true", help="classes of orders instead")
+    options.add_argument("--priorities", action="store_true", help="use classes of orders instead")
     given = options.parse_args(arguments)
     if given.priorities and given.design == "service":
         given.design = "service-priorities"

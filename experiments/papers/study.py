@@ -116,22 +116,27 @@ def parser(
     made.add_argument(
         "--published", type=Path, default=PUBLISHED, help=f"folder of tables (default: {PUBLISHED})"
     )
-    made.add_argument("--jobs", type=int, help="runs at a time (default: one per core)")
+    made.add_argument(
+        "--jobs", type=int, help="maximum number of parallel runs (default: one per core)"
+    )
     made.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler or cluster profile")
     made.add_argument(
-        "--replications", type=int, metavar="N", help="the first N seeds only; more can follow"
+        "--replications",
+        type=int,
+        metavar="N",
+        help="use only the first N seeds; more can be added later",
     )
     made.add_argument(
         "--smoke",
         action="store_true",
-        help="two seeds, five simulated minutes: shows that everything works",
+        help="use two seeds and five simulated minutes, to check that everything works",
     )
     if reference is not None:
         made.add_argument(
             "--reference",
             type=Path,
             metavar="DIR",
-            help=f"folder of RAWSim-O's public instances: take DIR/{reference} for the layout",
+            help=f"folder of RAWSim-O's public instances: use the layout DIR/{reference}",
         )
         made.set_defaults(reference_layout=reference)
     return made
@@ -205,7 +210,7 @@ def _reference(given: argparse.Namespace) -> tuple[dict[str, str] | None, str]:
         return None, ""
     layout = folder / given.reference_layout
     if not layout.is_file():
-        raise InputError(f"--reference {folder}: {layout} is not there")
+        raise InputError(f"--reference {folder}: {layout} does not exist")
     return {"layout": str(layout.absolute())}, "-reference"
 
 
@@ -217,6 +222,6 @@ def command(study: Callable[[list[str] | None], None], arguments: list[str] | No
         print(f"{' '.join(str(error).split())}", file=sys.stderr)
         return WRONG_INPUT
     except KeyboardInterrupt:
-        print("interrupted; call again to go on", file=sys.stderr)
+        print("interrupted; call again to continue", file=sys.stderr)
         return INTERRUPTED
     return 0

@@ -147,8 +147,9 @@ class DaskWorkers:
             yield
         except (OSError, RuntimeError, CancelledError) as error:
             raise InputError(
-                f"--dask {self._address}: the scheduler is gone ({type(error).__name__}); "
-                "what has ended is stored: the same command goes on from there"
+                f"--dask {self._address}: the connection to the scheduler is lost "
+                f"({type(error).__name__}); finished runs are stored: repeat the command to "
+                "continue"
             ) from None
 
 
@@ -173,7 +174,7 @@ def job_script(path: Path) -> str:
     """
     profile = read_profile(path)
     if profile.cluster == "local":
-        raise InputError(f'{path}: cluster = "local" has no job script: no batch system is asked')
+        raise InputError(f'{path}: cluster = "local" has no job script, as it uses no batch system')
     cluster = started(profile.model_copy(update={"workers": 0}), str(path))
     try:
         return str(cluster.job_script())

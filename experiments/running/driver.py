@@ -203,14 +203,14 @@ class _Driver:
         if len(outdated):
             arms = outdated["arm"].nunique()
             self.watcher.remark(
-                f"{len(outdated)} finished runs of {arms} arms were made with other inputs and do "
-                "not count any more: their runs are done again"
+                f"{len(outdated)} finished runs of {arms} arms were made with other inputs "
+                "and are ignored: these runs are repeated"
             )
         others = rows[rows["arm_digest"].isin(list(digests)) & (rows["code"] != code()["code"])]
         if len(others):
             self.watcher.remark(
-                f"{len(others)} finished runs were made with other code than the present one; "
-                "remove the folder to do them again"
+                f"{len(others)} finished runs were made with another version of the code; "
+                "remove the folder to repeat them"
             )
 
     @contextmanager

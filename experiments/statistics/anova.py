@@ -240,8 +240,8 @@ def _table(
     for effect in mains:
         if _between(data, effect, mains)[1] == 0:
             raise InputError(
-                f"analysis of variance: the levels of {names[effect[0]]} cannot be told from those "
-                "of the other factors"
+                f"analysis of variance: the levels of {names[effect[0]]} cannot be separated "
+                "from those of the other factors"
             )
     told, chosen, residual = "", mains, alone
     rows: dict[str, tuple[float, int]] = {}
@@ -249,16 +249,16 @@ def _table(
         whole, cells = data.fit([*mains, *pairs]), data.fit_combinations()
         if data.runs > whole.rank and _told_apart(data, mains, pairs):
             chosen, residual = [*mains, *pairs], whole
-            told = "interactions of two factors have a row each"
+            told = "each interaction of two factors has a row"
         elif data.runs > cells.rank > alone.rank:
             rows[POOLED] = (alone.rest - cells.rest, cells.rank - alone.rank)
             residual = cells
             told = (
-                "these runs cannot tell the interactions of single pairs of factors apart: all "
-                "interactions are one row"
+                "these runs cannot separate the interactions of single pairs of factors: all "
+                "interactions form one row"
             )
         else:
-            told = "too few runs to tell interactions: they are in the residual"
+            told = "too few runs to separate interactions: they are in the residual"
     elif len(names) > 1:
         told = "interactions are in the residual"
     if data.runs <= residual.rank:

@@ -57,8 +57,8 @@ class Selection:
         if self.proven:
             return f"{self.best} selected after {self.observations} seeds"
         return (
-            f"cut off after {self.observations} seeds with {len(self.left)} arms left; the best "
-            f"mean is that of {self.best}"
+            f"stopped after {self.observations} seeds with {len(self.left)} arms left; the "
+            f"best mean is that of {self.best}"
         )
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rmfs.trips import TripRun, TripStream
 
 app = typer.Typer(
-    help="Compare path planners without orders: random trips, duels, growth, random cases.",
+    help="Compare path planners without orders: random trips, comparisons, growth with the fleet.",
     no_args_is_help=True,
 )
 
@@ -53,7 +53,10 @@ Out = Annotated[
 ]
 Lists = Annotated[
     Path | None,
-    typer.Option(help="Robots and trips on a .map; a list of its format.", show_default=False),
+    typer.Option(
+        help="Robots and trips on a .map, in the format of the League of Robot Runners.",
+        show_default=False,
+    ),
 ]
 PLANNER_HELP = "Planner: NAME, or NAME:KEY=VALUE,KEY=VALUE with parameters"
 
@@ -167,7 +170,7 @@ def warehouses_command(
 
     if not any(least <= site.robots <= most for site in warehouses.SITES):
         valid = ", ".join(str(site.robots) for site in warehouses.SITES)
-        raise InputError(f"--least {least} --most {most}: no site between; there are {valid}")
+        raise InputError(f"--least {least} --most {most}: no site in this range; valid: {valid}")
     chosen = rules or ["default", "random"]
     frame = warehouses.table(chosen, (least, most), later, seed, check=check, tell=_tell)
     typer.echo(duels.markdown(frame, warehouses.DECIMALS))
@@ -224,7 +227,7 @@ def _complaints(name: str, run: TripRun) -> list[str]:
     if run.report is not None and not run.report.ok:
         found.append(f"{name}: {run.report.summary()}")
     if run.stalled:
-        found.append(f"{name}: nothing moves any more at {run.end_s:.0f} s\n{run.stalled}")
+        found.append(f"{name}: no robot can move any more at {run.end_s:.0f} s\n{run.stalled}")
     return found
 
 

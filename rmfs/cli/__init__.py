@@ -1,8 +1,8 @@
 """The command line, the only part that may import everything.
 
-A user error is reported as one line on standard error with exit code 2, an interruption ends with
-exit code 130, and a detected defect with one line, a file to report and exit code 1. Commands
-import their modules themselves, so that help and errors appear at once.
+A user error is reported as one line on standard error, with exit code 2. An interruption ends with
+exit code 130. A detected defect is reported as one line, with a file to send and exit code 1.
+Commands import their modules themselves, so that help and errors appear at once.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`rmfs check`: what a run would be refused for, before it; what its files prove, after it."""
+"""`rmfs check`: whether a run would be refused, before it; what its files prove, after it."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def audited(folders: list[Path]) -> None:
 
 
 def told_of_energy(layout: Layout, energy: Energy) -> list[str]:
-    """Describe, in lines, the energy that a fleet draws and what it can get."""
+    """Describe, in lines, the energy that a fleet draws and the energy available to it."""
     from rmfs.simulation.charging.balance import balance, working_w
 
     working = working_w(layout, energy)

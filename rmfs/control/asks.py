@@ -42,7 +42,7 @@ class Answer:
     wall_s, build_s
         Total wall time, and the part spent building the solver's model.
     built
-        Size of the model that was built (nonzeros), which counts besides the work.
+        Size of the model that was built (nonzeros), which is charged in addition to the work.
     scale
         Reference for the relative gap, in the unit of the objective, such as the cost of the pods
         called. Default: the objective, which is unsuitable if gains and costs cancel out.

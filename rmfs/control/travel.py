@@ -47,7 +47,8 @@ class TravelTables:
     paths
         Lengths of shortest paths.
     distances, to, away
-        By waypoint: distances by metric, times to it and times from it, shape (N,) each.
+        Dictionaries by waypoint, with arrays of shape (N,): distances (by metric), travel times to
+        the waypoint, and travel times from it.
     """
 
     def __init__(self, layout: Layout) -> None:
@@ -60,8 +61,8 @@ class TravelTables:
 class Travel:
     """Travel times and distances between waypoints.
 
-    Exact times come from traffic and are cached per waypoint, as are distances: request them for
-    stations, of which there are few, and use `estimate_s` from anywhere else.
+    Exact times come from traffic and are cached per waypoint, and so are distances. Request them
+    only for stations, of which there are few, and use `estimate_s` for all other waypoints.
 
     Parameters
     ----------

@@ -6,7 +6,7 @@ These functions raise `InputError`; the command line prints it as one line and e
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -20,6 +20,9 @@ from rmfs.layout.loading import load, load_with_notes
 from rmfs.layout.parameters import LayoutParameters
 from rmfs.layout.toml import to_toml
 from rmfs.rawsimo.layout.writing import SUFFIXES, import_layout
+
+if TYPE_CHECKING:
+    from rmfs.layout.model import Layout
 
 app = typer.Typer(help="Generate, draw, check, import and convert layouts.", no_args_is_help=True)
 
@@ -37,6 +40,8 @@ Settings = Annotated[
 Force = Annotated[bool, typer.Option("--force", help="Replace a file that exists.")]
 
 EXIT_REFUSED = 2
+MOST_MEASURED = 50_000
+"""Waypoints up to which `check` measures the graph: seconds."""
 
 
 @app.command()
@@ -114,6 +119,8 @@ def check_command(
         f"{len(loaded.replenishment_stations)} replenishment stations, "
         f"{len(loaded.elevators)} elevators, {len(loaded.tiers)} tiers"
     )
+    if loaded.waypoints <= MOST_MEASURED:
+        _print_measures(loaded)
 
 
 @app.command("import")
@@ -165,6 +172,18 @@ def _suffix(path: Path, suffix: str) -> None:
 def _vacant(path: Path, *, force: bool) -> None:
     if path.exists() and not force:
         raise InputError(f"{path}: exists already; --force replaces it")
+
+
+def _print_measures(layout: Layout) -> None:
+    from rmfs.layout.networkx_graph import measures
+
+    found = measures(layout)
+    if found.to_station_mean_m is not None:
+        typer.echo(
+            "way from a storage place to the nearest pick station: "
+            f"{found.to_station_mean_m:.1f} m on average, at most {found.to_station_max_m:.1f} m"
+        )
+    typer.echo(f"waypoints whose closure would cut the floor apart: {found.bottlenecks}")
 
 
 def _print_notes(notes: list[str]) -> None:

@@ -53,7 +53,7 @@ class StationKind:
     name
         Its name in files, tables and the viewer.
     letter
-        Prefix of a station's number where there is little room.
+        Prefix of a station's number, used where space is short.
     colour
         Colour of the stations, and of robots on their way to them.
     handles

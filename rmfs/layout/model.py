@@ -13,6 +13,7 @@ from rmfs.digest import OMITTED
 from rmfs.layout.kinds import PICK, REPLENISHMENT, StationKind
 
 if TYPE_CHECKING:
+    import networkx as nx  # type: ignore[import-untyped]
     import numpy as np
     from numpy.typing import NDArray
 
@@ -215,3 +216,9 @@ class Layout:
     def robots(self) -> int:
         """Number of robots."""
         return len(self.robot_waypoint)
+
+    def to_networkx(self) -> nx.DiGraph[int]:
+        """Return waypoints and edges as a graph of networkx; see `networkx_graph.to_networkx`."""
+        from rmfs.layout.networkx_graph import to_networkx
+
+        return to_networkx(self)

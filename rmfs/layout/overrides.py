@@ -66,9 +66,10 @@ def override(layout: Layout, overrides: Sequence[tuple[list[str], Any]], source:
     Parameters
     ----------
     overrides
-        (path, value) pairs. `robots` is the number per tier, drawn anew on road waypoints, as are
-        those of `robots_per_pick_station`. A share of the stations of a kind keeps the ones that
-        are switched on first; it is rounded down to at least one.
+        (path, value) pairs. `robots` is the number of robots per tier; with it, or with
+        `robots_per_pick_station`, robots are redrawn on road waypoints. If only a share of the
+        stations of a kind is kept, these are the ones that are switched on first; their number is
+        rounded down, to at least one.
     source
         Name of the file, for messages.
 

@@ -60,7 +60,7 @@ class Recorder(Observer):
     open_bundles
         Bundles not yet stored, by index.
     visits
-        Visits of pods to stations; `end_s` is nan for those that are there at the end.
+        Visits of pods to stations; `end_s` is nan for visits still in progress at the end.
     busy
         Periods in which stations handled something.
     tasks

@@ -38,7 +38,7 @@ class OrderContent(NamedTuple):
         Number of draws of a SKU with too few uncommitted units, at most `DRAWS_PER_LINE` for each
         line.
     priority
-        Its class, or -1 where there are none (`orders.due.mode = "classes"`).
+        Its class, or -1 if there are none (`orders.due.mode = "classes"`).
     """
 
     skus: tuple[int, ...]

@@ -68,7 +68,7 @@ class Deciding:
     def connect(
         self, apply: Callable[[Any, Call | None], None], optimisers: OptimiserGateway
     ) -> None:
-        """Set who applies decisions, and who takes questions for optimisers."""
+        """Set the parts that apply decisions and that receive questions for optimisers."""
         self._apply, self._optimisers = apply, optimisers
 
     def ask(self, problem: Problem, given: Iterable[Any], answer: Call | None = None) -> None:

@@ -66,7 +66,7 @@ class Kernel(Loop):
         Notified of everything that happens.
     outside
         Decision problems that `step` returns for decisions outside, such as `["poa", "pps"]`. Their
-        controllers stay installed: they determine when they would be asked, and give advice.
+        controllers stay installed: they determine the times of the questions, and give advice.
     pacing
         How simulated time accounts for the computation of optimisers.
     traffic
@@ -77,7 +77,7 @@ class Kernel(Loop):
     Attributes
     ----------
     world, view
-        The state of the warehouse, and the same as controllers see it.
+        The state of the warehouse, and the read-only view of it that controllers get.
     interventions
         Controllers exchanged interactively, with the times (s).
 

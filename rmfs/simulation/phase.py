@@ -42,8 +42,8 @@ class DecisionPhase:
 
     The order is: answers of optimisers, MM, arrivals, SA, RPS, ROA, POA, late binding, PPS, PSA,
     CA, TA. Anything that a step makes due is done before later steps. PPS, PSA and repositioning
-    decide when TA asks them; in steps of their own, PPS and PSA may only ask optimisers. TA is also
-    asked when repositioning requests it.
+    decide when TA asks them; the steps of PPS and PSA are only for questions to optimisers. TA is
+    also asked when repositioning requests it.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class DecisionPhase:
         self._alarms.connect(steps.STEP_OF)
 
     def connect(self, applying: Applying, arrivals: ArrivalProcess) -> None:
-        """Set who applies decisions, and who creates orders and bundles."""
+        """Set the parts that apply decisions and that create orders and bundles."""
         self._applying, self._arrivals = applying, arrivals
         self._steps = self._what_is_done()
 

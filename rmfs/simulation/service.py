@@ -59,7 +59,7 @@ class Hands(Protocol):
         ...
 
     def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:
-        """Start a unit that would occupy station and robot for these times by the layout."""
+        """Start a unit; it occupies station and robot for these times, those of the layout."""
         ...
 
 

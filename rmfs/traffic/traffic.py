@@ -196,7 +196,7 @@ class Traffic(Readings):
         rests
             For each robot the waypoint at which it stands or will stop, its heading in radians
             (that of an edge), and the time it stands there, in microseconds. None for a robot that
-            keeps the run it is in the middle of, as far as the way is clear.
+            continues its present run as far as the path is clear.
 
         Raises
         ------

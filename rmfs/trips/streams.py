@@ -50,7 +50,7 @@ class TripStream(Protocol):
         """Return the commands that follow an event of traffic."""
 
     def given(self, command: Command) -> Iterable[Command]:
-        """Return the commands that follow from a command to another robot."""
+        """Return the further commands that a command which another robot received leads to."""
 
 
 class PodTrips:

@@ -194,7 +194,7 @@ class LiveRun:
         Parameters
         ----------
         page
-            Who asks, so that it is noticed when that page is gone.
+            Name of the page that asks, so that its absence is noticed.
         """
         if page:
             with self._meeting:

@@ -194,9 +194,9 @@ class Staff:
         return self.unit_times.mean_s(self._unit_s[station]) * self.factor(picker, now_s)
 
     def least_s(self, station_s: float) -> float:
-        """Return a lower bound of the time of a unit, in s, if the layout says `station_s`.
+        """Return a lower bound of the time of a unit, in s; 0 if there is no positive bound.
 
-        It is 0 if there is no positive bound.
+        The argument is the time of a unit according to the layout.
         """
         return self.unit_times.least_s(station_s) * least_factor(self.given)
 

@@ -1,7 +1,7 @@
 """Tasks of robots: one class for each kind of task.
 
-Every task is a trip, with or without a pod, to a station or a place. A kind defines when the task
-is possible, what the world reserves for it at its start, and what is released at its end.
+Every task is a trip, with or without a pod, to a station or a place. A kind defines when a task is
+possible, what the world reserves at its start, and what it releases at its end.
 """
 
 from __future__ import annotations

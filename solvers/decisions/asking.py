@@ -35,7 +35,7 @@ ASKERS = {
 """Modules of `rmfs.solvers.control` that define a `Question` and its `solve`, by name."""
 
 _MATCHING = "matching"
-"""Dispatch that looks at pairs alone: its question is the matching that it makes of the data."""
+"""Name of dispatch by pairs alone, whose question is a matching."""
 
 _MADE: Mapping[str, Callable[[Any], Any]] = {
     "limits": lambda given: Limits(**given),
@@ -43,7 +43,7 @@ _MADE: Mapping[str, Callable[[Any], Any]] = {
     "waypoint": lambda given: np.array(given, np.int64),
     "start": lambda given: tuple(map(tuple, given)),
 }
-"""How what goes with a question is made of JSON, where it is no number or text."""
+"""Conversion from JSON of the settings of a question that are neither numbers nor texts."""
 
 
 def question_of(question: object) -> Decision | None:

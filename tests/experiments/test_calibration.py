@@ -103,7 +103,7 @@ class TestPromise:
 class TestRefusals:
     def test_a_target_beyond_both_ends(self) -> None:
         respond = Noisy(noise=0.001)
-        with pytest.raises(InputError, match=r"between 300 and 400: .* not be 0.9"):
+        with pytest.raises(InputError, match=r"between 300 and 400: .* and is 0.9"):
             calibrate(sought(low=300.0), respond, quiet)
         assert max(len(seeds) for _, seeds in respond.asked) == 32
 
@@ -159,7 +159,7 @@ class TestCommand:
             (["--column", "on_time"], "column on_time: not a number of the footprint"),
             (["--column", "wall_s"], "column wall_s: not a number"),
             (["--key", "scenario.demand.order_per_h"], "order_per_h"),
-            (["--set", "scenario.demand.orders_per_h=3"], "is what is sought"),
+            (["--set", "scenario.demand.orders_per_h=3"], "is the parameter to calibrate"),
             (["--set", "orders"], "expected KEY=VALUE"),
             (["--between", "300", "20"], "low = 300: must be below high = 20"),
             (["--between", "-5", "20"], "orders_per_h"),

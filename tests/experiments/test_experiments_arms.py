@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from rmfs import experiments
 from rmfs.errors import InputError
-from rmfs.experiments.design.arms import factor_names
+from rmfs.experiments.design.arms import _read_csv, factor_names
 
 
 def names(path) -> list[str]:
@@ -117,8 +119,11 @@ def test_short_names_tell_factors_apart():
     [
         ({"exclude": [{"layout.robot": 8}]}, "exclude 1: layout.robot is not a factor; did you"),
         ({"factors": {"robots": [8]}}, "factor robots: is no parameter"),
-        ({"factors": {"layout.robots": [8, 8]}}, "level 8 is there more than once"),
-        ({"factors": {"seed": [{"label": "a"}]}}, "factor seed: a column of the results"),
+        ({"factors": {"layout.robots": [8, 8]}}, "level 8 occurs more than once"),
+        (
+            {"factors": {"seed": [{"label": "a"}]}},
+            "factor seed: this is the name of another column",
+        ),
         ({"base": {"layout": 7}}, "base: layout = 7 is neither a name nor a file"),
         ({"seeded": ["seed"]}, "seeded: seed: must begin with"),
         ({"arms_file": "nothing.csv"}, "nothing.csv: no such file"),
@@ -144,7 +149,7 @@ def test_problems_of_arms_are_told(design, changes, told):
         ({"format": "rmfs-design/2"}, "format"),
         (
             {"stages": [{"name": "a", "until": {"column": "wall_s"}}]},
-            "is measured by the clock",
+            "is a measured time",
         ),
         ({"stages": [{"name": "a", "arms": {"best": 1, "by": "units_per_h"}}]}, "stage before"),
         (
@@ -171,3 +176,9 @@ def test_what_a_design_does_not_name_is_the_default(design):
 def test_an_unknown_design_lists_the_shipped_ones():
     with pytest.raises(InputError, match=r"shipped: .*smoke"):
         experiments.plan("smoek")
+
+
+def test_a_doubled_column_of_an_arms_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "arms.csv").write_text("layout.robots,layout.robots\n4,8\n")
+    with pytest.raises(InputError, match=r"line 1 names the column layout\.robots more than once"):
+        _read_csv(tmp_path / "arms.csv")

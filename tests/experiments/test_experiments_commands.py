@@ -98,7 +98,7 @@ def test_tables_and_pictures_say_what_runs_are_lacking(design, tmp_path, monkeyp
     )
     # a fourth seed has not been run at all
     path = str(design(seeds=[1, 2, 3, 4]))
-    note = "incomplete: 10 of 16 runs are in, 2 failed"
+    note = "incomplete: 10 of 16 runs are finished, 2 failed"
     assert main(["experiment", "table", path]) == 3
     out = capsys.readouterr()
     assert note in " ".join(out.out.split()) and out.err == f"rmfs: {note}\n"
@@ -115,18 +115,18 @@ def test_tables_and_pictures_say_what_runs_are_lacking(design, tmp_path, monkeyp
     for sources in (["results/tiny"], ["results/tiny", "results/tiny"]):
         assert main(["compare", *sources, "-c", "units_per_h"]) == 3
         out = " ".join(told(capsys).split())
-        assert "Note: results/tiny: incomplete: 10 of 12 runs are in, 2 failed." in out
+        assert "Note: results/tiny: incomplete: 10 of 12 runs are finished, 2 failed." in out
     assert main(["compare", "results/tiny", "--allow-incomplete"]) == 0
     assert "Note: " in capsys.readouterr().out
     whole = "results/tiny#robots=8,psa=nearest"
     assert main(["compare", arm, whole, "-c", "units_per_h"]) == 3
     out = " ".join(told(capsys).split())
     assert "paired by 2 common seeds, of 2 and 3" in out
-    assert f"Note: {arm}: incomplete: 2 of 3 runs are in, 1 failed." in out
+    assert f"Note: {arm}: incomplete: 2 of 3 runs are finished, 1 failed." in out
     assert main(["compare", whole, "results/tiny#robots=16,psa=nearest"]) == 0
     assert "Note: " not in told(capsys)
     assert main(["experiment", "table", str(design())]) == 3
-    assert "10 of 12 runs are in, 2 failed" in capsys.readouterr().err
+    assert "10 of 12 runs are finished, 2 failed" in capsys.readouterr().err
     design(seeds=[1])
     assert main(["experiment", "table", path]) == 0
     assert capsys.readouterr().err == ""
@@ -138,7 +138,7 @@ def test_arms_without_a_run_are_counted(design, tmp_path, monkeypatch, capsys):
     with pytest.raises(KeyboardInterrupt):
         drive(experiments.plan(path), Store(Path("results/tiny")), Inline(after=1, slots=1))
     assert main(["experiment", "plot", str(path), "-f", "p.png"]) == 3
-    assert "1 of 12 runs are in, 3 of 4 arms have none" in capsys.readouterr().err
+    assert "1 of 12 runs are finished, 3 of 4 arms have none" in capsys.readouterr().err
 
 
 def test_tables_on_the_terminal_and_in_files(made, tmp_path, capsys):
@@ -176,8 +176,8 @@ def test_results_are_found_from_their_folder(made, tmp_path, monkeypatch, capsys
     assert main(["experiment", "plot", folder]) == 0
     assert (tmp_path / "results" / "tiny" / "intervals-units_per_h.png").exists()
     for arguments, text in (
-        (["status", str(tmp_path)], "holds no experiment"),
-        (["table", folder, "--out", "x"], "is a folder of results itself"),
+        (["status", str(tmp_path)], "contains no experiment"),
+        (["table", folder, "--out", "x"], "cannot be combined with a folder of results"),
         (["run", folder], "name the design file, and --out"),
     ):
         assert main(["experiment", *arguments]) == 2
@@ -198,7 +198,7 @@ def test_report_is_one_file_with_everything(made, design, capsys):
     design(file="more.toml", factors=None, seeds=[1, 2, 3], name="single", description="a < b")
     assert main(["experiment", "report", path, "-f", "r.html"]) == 3
     text = Path("r.html").read_text()
-    assert "incomplete: 2 of 3 runs are in" in text and "a &lt; b" in text
+    assert "incomplete: 2 of 3 runs are finished" in text and "a &lt; b" in text
     assert "Differences" not in text
     assert main(["experiment", "report", made, "--baseline", "x"]) == 2
 
@@ -234,7 +234,7 @@ def test_pictures(made, capsys):
     [
         (["experiment", "plot", "DESIGN", "--kind", "pie"], "valid: intervals, effects"),
         (["experiment", "table", "DESIGN", "-c", "unit_per_h"], "did you mean units_per_h"),
-        (["experiment", "table", "DESIGN", "-c", "layout"], "column layout: holds no numbers"),
+        (["experiment", "table", "DESIGN", "-c", "layout"], "column layout: is not numeric"),
         (["experiment", "table", "DESIGN", "--baseline", "x"], "x: no such arm; arms: robots=8"),
         (["experiment", "table", "DESIGN", "--out", "empty"], "no finished runs yet"),
         (["experiment", "run", "nothing.toml"], "no such file, and no shipped design"),
@@ -277,7 +277,7 @@ def test_compare_tables(made, capsys):
         columns=["arm", "replication"]
     ).to_csv("c.csv", index=False)
     assert main(["compare", "results/tiny#robots=8,psa=random", "c.csv"]) == 0
-    assert "no common seed: 3 and 3 runs taken as independent (Welch)" in told(capsys)
+    assert "no common seed: 3 and 3 runs treated as independent (Welch)" in told(capsys)
 
 
 def test_what_says_nothing_is_not_printed(tmp_path, monkeypatch, capsys):

@@ -149,7 +149,7 @@ def test_runs_of_other_code_are_told(design, store, monkeypatch):
     monkeypatch.setattr("rmfs.experiments.running.driver.code", lambda: other)
     notes = Notes()
     drive(plan, store, Inline(), notes)
-    assert any("12 finished runs were made with other code" in r for r in notes.remarks)
+    assert any("12 finished runs were made with another version" in r for r in notes.remarks)
 
 
 def test_a_failing_run_is_recorded_and_the_rest_goes_on(design, store):
@@ -302,7 +302,7 @@ def test_nothing_is_there_before_the_first_run(design, store):
     assert progress_of(plan, store).finished == 0
     plan.save(store.folder)
     assert isinstance(experiments.load(store.folder), pd.DataFrame)
-    with pytest.raises(InputError, match="holds no experiment"):
+    with pytest.raises(InputError, match="contains no experiment"):
         experiments.load(store.folder / "elsewhere")
 
 

@@ -102,7 +102,7 @@ def test_the_demonstrator_is_run_and_published(design, tmp_path, monkeypatch):
 
 def test_a_folder_without_the_layout_is_refused(tmp_path, capsys):
     assert command(demonstrator.main, ["--reference", str(tmp_path)]) == WRONG_INPUT
-    assert "office-4bot.xinst is not there" in capsys.readouterr().err
+    assert "office-4bot.xinst does not exist" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("study", [demonstrator, figure_5b])
@@ -152,7 +152,7 @@ def test_fleets_that_others_beat_are_not_on_the_front():
     table = fleet_size.unbeaten(fleets())
     assert list(table.frame.index) == ["robots=8,psa=near", "robots=16,psa=near"]
     assert list(table.frame["robots", "mean"]) == [8.0, 16.0]
-    assert "no other one beats" in table.caption
+    assert "no other arm dominates" in table.caption
 
 
 def test_the_fleet_size_study_is_published(design, tmp_path, monkeypatch):

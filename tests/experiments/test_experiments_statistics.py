@@ -140,7 +140,7 @@ def test_selection_follows_the_procedure_step_by_step():
     lowest = kim_nelson({"a": a, "b": b}, first=3, indifference=delta, goal="min")
     assert lowest.best == "b"
     cut = kim_nelson({"a": a, "b": b}, first=3, indifference=0.01, most=5)
-    assert cut.over and not cut.proven and "cut off" in cut.verdict()
+    assert cut.over and not cut.proven and "2 arms left" in cut.verdict()
 
 
 def test_anova_finds_the_factors_that_were_put_in():
@@ -250,7 +250,7 @@ def test_a_fraction_has_its_interactions_in_one_row():
     assert found.loc["interactions", "df"] == 2 and found.loc["residual", "df"] == 36 - 9 - 3
     assert found.loc["interactions", "p"] < 1e-6
     assert found.loc["residual", "sum_sq"] / found.loc["residual", "df"] < 3
-    assert "all interactions are one row" in found.attrs["interactions"]
+    assert "all interactions form one row" in found.attrs["interactions"]
     within = third["y"] - third.groupby(["a", "b", "c"])["y"].transform("mean")
     within -= within.groupby(third["replication"]).transform("mean")
     assert found.loc["residual", "sum_sq"] == pytest.approx((within**2).sum())
@@ -264,7 +264,7 @@ def test_where_runs_run_out_interactions_stay_in_the_residual():
     with pytest.raises(InputError, match="3 runs are too few for 1 factors"):
         anova(factorial({"a": 3}, seeds=1), "y", ["a"])
     twins = grid.assign(b=grid["a"])
-    with pytest.raises(InputError, match="levels of a cannot be told from those"):
+    with pytest.raises(InputError, match="levels of a cannot be separated from those"):
         anova(twins, "y", ["a", "b"])
 
 

@@ -190,7 +190,7 @@ until = {column = "pods_used", relative_half_width = 0.9, max_seeds = 3}
     Path("own.toml").write_text(DESIGN + until)
     assert not experiments.plan("own.toml").problems
     Path("own.toml").write_text(DESIGN + until.replace("pods_used", "looked_at_s"))
-    with pytest.raises(InputError, match="is measured by the clock"):
+    with pytest.raises(InputError, match="is a measured time"):
         experiments.plan("own.toml")
     Path("own.toml").write_text(DESIGN + until.replace("pods_used", "pods_unused"))
     with pytest.raises(InputError, match="is not a number of the footprint"):

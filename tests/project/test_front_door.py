@@ -75,7 +75,7 @@ def test_a_study_of_a_few_runs(here: Path) -> None:
         (lambda: study.table("units"), "units: no such column"),
         (lambda: study.table(by="robots"), "no such factor; factors: layout.robots"),
         (lambda: study.compare(baseline="x"), "baseline x: valid: "),
-        (lambda: study.plot(kind="bars"), "kind bars: no such picture; valid: intervals, effects"),
+        (lambda: study.plot(kind="bars"), "kind bars: no such plot; valid: intervals, effects"),
         (lambda: study.plot(kind="pareto", by="layout.robots"), "by layout.robots: for intervals"),
     ):
         with pytest.raises(InputError, match=message):

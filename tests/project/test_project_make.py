@@ -1,6 +1,7 @@
 """The Makefile, and the tool that finds or brings a Rust."""
 
 import os
+import platform
 import re
 import shutil
 import subprocess
@@ -118,6 +119,16 @@ def test_without_rust_and_network_one_line_says_what_is_needed(
     assert not (checkout / ".rust").exists()
 
 
+def test_an_installer_of_another_checksum_is_not_run(checkout: Path) -> None:
+    program(checkout, "curl", f'for last; do :; done; echo "touch {checkout}/run" >"$last"')
+    (checkout / "bin" / "sha256sum").symlink_to(str(shutil.which("sha256sum")))
+    told = bring_rust(checkout)
+    assert told.returncode == 1
+    assert "has another checksum than published; it is not run" in told.stderr
+    assert not (checkout / "run").exists()
+    assert not (checkout / ".rust").exists()
+
+
 def test_rustup_brings_the_pinned_version(checkout: Path) -> None:
     """A stand-in for curl fetches a stand-in for rustup's installer."""
     installer = (
@@ -125,8 +136,12 @@ def test_rustup_brings_the_pinned_version(checkout: Path) -> None:
         "for name in rustc cargo; do printf '#!/bin/sh\\necho \"%s %s in $RUSTUP_HOME\"\\n' "
         '$name "$2" >"$CARGO_HOME/bin/$name"; chmod +x "$CARGO_HOME/bin/$name"; done'
     )
-    (checkout / "installer").write_text(installer)
+    (checkout / "installer").write_text(f"#!/bin/sh\n{installer}")
     program(checkout, "curl", f'for last; do :; done; cat "{checkout}/installer" >"$last"')
+    kind = f"{platform.system()}-{platform.machine()}"
+    sums = re.search(rf"{kind}\).*\n *([0-9a-f]{{64}})", text(".ci/rust"))
+    assert sums is not None
+    program(checkout, "sha256sum", f"echo {sums[1]}")
     told = bring_rust(checkout)
     assert told.returncode == 0, told.stderr
     pinned = re.search(r"^PINNED=(.+)$", text(".ci/rust"), re.MULTILINE)

@@ -186,7 +186,7 @@ def page(frame: pd.DataFrame, share: Mapping[str, float]) -> str:
     lines = [
         HEAD,
         f"With the default rules, decisions take {share['decisions']:.0%} of the time of such a "
-        f"run (an hour), planning of ways {share['planning']:.0%}, all else {rest:.0%}.\n",
+        f"run (an hour), path planning {share['planning']:.0%}, and everything else {rest:.0%}.\n",
         "| problem | rule | calls | decisions | median, decision | mean, call | 95 % | max |",
         "|---|---|---:|---:|---:|---:|---:|---:|",
     ]

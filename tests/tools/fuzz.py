@@ -133,7 +133,7 @@ def _driven(layout: Layout, case: dict[str, Any], *, well_formed: bool) -> Verdi
     shape = f"{layout.waypoints} waypoints, {layout.robots} robots, {name}"
     if done.stalled:
         if well_formed and name == OURS:
-            raise FuzzError(f"nothing moves any more\n{done.stalled}")
+            raise FuzzError(f"no robot moves any more\n{done.stalled}")
         return Verdict("stopped", f"{shape}: at {done.end_s:.0f} s")
     moved = set(done.traffic.trips()["robot"].tolist())
     left = [r for r in range(layout.robots) if r not in moved and not done.traffic.plan(r)]

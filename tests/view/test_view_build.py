@@ -4,6 +4,7 @@ import hashlib
 import json
 import shutil
 import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from rmfs.view import pages
 
 WEB = Path(pages.__file__).parent / "web"
 SOURCES = ("index.html", "package-lock.json", "package.json", "tsconfig.json", "vite.config.ts")
-BUILT = ("index.html", "app.js", "app.css", "build.json")
+BUILT = ("index.html", "app.js", "app.css", "build.json", "notices.txt")
 OLDEST_NODE = (20, 19)
 UNREACHABLE = ("ENOTFOUND", "EAI_AGAIN", "ECONNREFUSED", "ECONNRESET", "ETIMEDOUT")
 
@@ -36,7 +37,21 @@ def test_the_build_was_made_from_these_sources() -> None:
 
 def test_everything_served_is_built() -> None:
     assert {path.name for path in pages.STATIC.iterdir()} == set(BUILT)
-    assert {name for name, _ in pages.FILES.values()} == set(BUILT) - {"build.json"}
+    assert {name for name, _ in pages.FILES.values()} == set(BUILT) - {"build.json", "notices.txt"}
+
+
+def test_the_licences_of_the_packages_in_the_page_are_shipped() -> None:
+    lock = json.loads((WEB / "package-lock.json").read_text())["packages"]
+    notices = pages.content("notices.txt").decode()
+    for package in lock[""]["dependencies"]:
+        locked = lock[f"node_modules/{package}"]
+        assert f"{package} {locked['version']} ({locked['license']})\n" in notices
+    assert notices.count("Copyright") >= len(lock[""]["dependencies"])
+    assert notices.count("Permission is hereby granted") == len(lock[""]["dependencies"])
+    for name in ("app.js", "app.css"):  # so that exported pages carry them, too
+        assert pages.content(name).decode().startswith(f"/*!\n{notices}*/\n")
+    settings = tomllib.loads((WEB.parents[2] / "pyproject.toml").read_text())
+    assert "rmfs/view/static/notices.txt" in settings["project"]["license-files"]
 
 
 @pytest.mark.slow

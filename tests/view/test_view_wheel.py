@@ -23,5 +23,11 @@ def test_the_wheel_carries_the_page(tmp_path: Path) -> None:
         names = set(content.namelist())
         for file, _ in pages.FILES.values():
             assert content.read(f"rmfs/view/static/{file}") == pages.content(file)
+        notices = pages.content("notices.txt")
+        assert content.read("rmfs/view/static/notices.txt") == notices
+        (shown,) = [
+            name for name in names if name.endswith("licenses/rmfs/view/static/notices.txt")
+        ]
+        assert content.read(shown) == notices
     assert "rmfs/view/live.py" in names
     assert not any(name.startswith("rmfs/view/web/") for name in names)

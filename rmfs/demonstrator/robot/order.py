@@ -87,7 +87,7 @@ class Order:
         return self.turned and self.passed == len(self.tags)
 
     def cut(self, upto: int) -> None:
-        """End the order after that many waypoints, or at the robot's position if it is further."""
+        """End the order after `upto` waypoints, or at the robot's position if it is further."""
         upto = max(upto, self.passed)
         del self.tags[upto:], self.metres[upto:]
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def population(layout: Layout) -> Iterator[Violation]:
-    """Yield what a run needs but the layout lacks."""
+    """Yield a violation for each thing that a run needs and the layout lacks."""
     counts = {
         "robots": layout.robots,
         "pick stations": len(layout.pick_stations),

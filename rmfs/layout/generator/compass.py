@@ -25,7 +25,7 @@ class Direction(IntEnum):
         return Direction((self + 2) % 4)
 
     def step(self, tile: Tile, tiles: int = 1) -> Tile:
-        """Return the tile reached from `tile` after that many tiles."""
+        """Return the tile reached from `tile` after `tiles` steps in this direction."""
         rows, columns = _STEP[self]
         return tile[0] + tiles * rows, tile[1] + tiles * columns
 

@@ -1,9 +1,10 @@
 """Where a robot may go from each tile.
 
-RAWSim-O default layout. One-way traffic follows one rule everywhere, aisles, ring road and halls
-alike: counted from the north-west corner of the ring road, even rows run east and odd rows west,
-even columns run north and odd columns south (all four reversed for a clockwise ring). Lines along a
-hall are counted from its outer edge instead: the outermost runs with the ring road.
+As in RAWSim-O's default layout, one-way traffic follows the same rule in aisles, ring road and
+halls. Rows and columns are counted from the north-west corner of the ring road. Even rows run east
+and odd rows west; even columns run north and odd columns south. All four directions are reversed
+for a clockwise ring. Only the lines along a hall are counted from its outer edge; the outermost
+line runs in the direction of the ring road.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What the checker found: one finding per violation, and the report that gathers them."""
+"""Results of the checker: one finding per violation, and the report that collects them."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ class Converted(NamedTuple):
     Attributes
     ----------
     orders, lines, units, skus
-        Numbers of what was converted.
+        Numbers of converted orders, lines, units and SKUs.
     first, last
         Times of the first and the last order.
     left_out

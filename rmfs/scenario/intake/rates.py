@@ -36,7 +36,7 @@ class Rate(Protocol):
         """Return the rate at a time."""
 
     def redraw(self, now_us: int) -> None:
-        """Discard what has been drawn of later times."""
+        """Discard everything that has been drawn for later times."""
 
 
 def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: int) -> Rate:

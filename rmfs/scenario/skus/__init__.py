@@ -1,4 +1,4 @@
-"""SKUs: sets of them as arrays, drawn, read, written and drawn as a curve."""
+"""Sets of SKUs as arrays: generated, read, written, and plotted by popularity."""
 
 from typing import TYPE_CHECKING, Any
 

@@ -63,7 +63,7 @@ class OrderFileBuilder:
             codes.append(texts.setdefault(text, len(texts)))
 
     def build(self) -> OrderFile:
-        """Return what has been added."""
+        """Return the `OrderFile` of the orders and lines added."""
         columns = {
             name: (np.array(codes, dtype=np.int32), tuple(texts))
             for name, codes, texts in zip(self._columns, self._codes, self._texts, strict=True)

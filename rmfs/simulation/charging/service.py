@@ -23,7 +23,7 @@ class ChargeService:
     Attributes
     ----------
     power_w
-        What the place gives now; 0 while it is out of order.
+        Present charging power of the place, in W; 0 while it is out of service.
     """
 
     def __init__(

@@ -33,10 +33,35 @@ function recorded(): Plugin {
   };
 }
 
+/**
+ * Puts the licences of the packages in the page at the head of its script and style, so that
+ * exported pages carry them too, and into a file of their own.
+ */
+function licensed(): Plugin {
+  return {
+    name: "licensed",
+    closeBundle() {
+      const packages = Object.keys(JSON.parse(readFileSync("package.json", "utf8")).dependencies);
+      const notices = packages.sort().map((name) => {
+        const about = JSON.parse(readFileSync(`node_modules/${name}/package.json`, "utf8"));
+        const text = readFileSync(`node_modules/${name}/LICENSE`, "utf8").trim();
+        return `${name} ${about.version} (${about.license})\n\n${text.replaceAll("\r\n", "\n")}\n`;
+      });
+      const head = "The page of the viewer of rmfs contains these packages:\n\n";
+      const all = head + notices.join("\n");
+      writeFileSync(join(OUT, "notices.txt"), all);
+      for (const name of ["app.js", "app.css"]) {
+        const file = join(OUT, name);
+        writeFileSync(file, `/*!\n${all}*/\n${readFileSync(file, "utf8")}`);
+      }
+    },
+  };
+}
+
 // Fixed names and one file each: the server knows what it serves, and the export can inline it.
 export default defineConfig({
   base: "./",
-  plugins: [recorded()],
+  plugins: [licensed(), recorded()],
   build: {
     outDir: OUT,
     emptyOutDir: true,

@@ -39,8 +39,8 @@ class PileOn:
         The lines of the open orders, sorted by order, then SKU, shape (L,). Orders are numbered
         0..O-1 and each has a line.
     stock
-        Units per pod and SKU that no order has reserved yet, shape (P, K). Only SKUs that somebody
-        wants need a column.
+        Units per pod and SKU that no order has reserved yet, shape (P, K). Only SKUs with demand
+        need a column.
     travel
         Cost of bringing a pod to a station, shape (P, S).
     available
@@ -58,8 +58,8 @@ class PileOn:
     worth
         Extra reward for giving an order its (first) slot, shape (O,): age, due time. Default: none.
     may_call
-        Whether pods may be called to each station, shape (S,); the others receive only pods
-        that are on their way already. Default: to all.
+        Whether pods may be called to each station, shape (S,); the others receive only pods that
+        are on their way already. Default: to all.
     variant
         How orders may be covered. Default: whole.
     weights

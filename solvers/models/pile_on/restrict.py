@@ -41,7 +41,7 @@ class Compact:
         return replace(values, pod_station=pod_station, pod_robot=pod_robot)
 
     def shrink(self, values: Assignment) -> Assignment:
-        """Turn a decision of the full input (candidate pairs only) into one of the small."""
+        """Turn a decision of the full input (candidate pairs only) into one of the small input."""
         return replace(
             values,
             pod_station=values.pod_station[self.pods],

@@ -1,4 +1,7 @@
-"""Stays choose zones in turn: by cost difference per hour or, if that fails, by begin."""
+"""Stays choose zones in turn: those with the greatest cost difference per hour first.
+
+If this leaves a stay without a zone, stays choose in the order in which they begin.
+"""
 
 from __future__ import annotations
 

@@ -88,7 +88,7 @@ def lateness_s(data: TaskSequence, task: int, arrival_s: float) -> float:
 
 
 def arrivals_s(data: TaskSequence, routes: Routes) -> NDArray[np.float64]:
-    """Return when the pod of each task arrives at its station, shape (T,), in s; nan if left.
+    """Return when the pod of each task arrives at its station, shape (T,), in s; nan if not done.
 
     Parameters
     ----------
