@@ -81,11 +81,6 @@ class Order:
         except (KeyError, TypeError, ValueError) as error:
             raise ProtocolError(f"no order: {error!r}") from None
 
-    @property
-    def is_done(self) -> bool:
-        """Whether the order is completed."""
-        return self.turned and self.passed == len(self.tags)
-
     def cut(self, upto: int) -> None:
         """End the order after `upto` waypoints, or at the robot's position if it is further."""
         upto = max(upto, self.passed)
