@@ -253,7 +253,7 @@ def _rows(path: Path, columns: Sequence[str] | None) -> pa.Table:
 
 
 def _read_failure(path: Path, keys: Sequence[str]) -> dict[str, Any]:
-    """Read what is told of a failed run.
+    """Read the record of a failed run.
 
     Raises
     ------

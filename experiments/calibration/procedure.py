@@ -371,7 +371,7 @@ def _root(steps: Sequence[Step], goal: Goal, *, rising: bool) -> tuple[float, fl
 
 
 def _rounded(level: float) -> float:
-    """Round to a few digits, so that a level can be told and typed."""
+    """Round to a few digits, so that a level is easy to read and type."""
     if level == 0:
         return 0.0
     return round(level, DIGITS - 1 - floor(log10(abs(level))))

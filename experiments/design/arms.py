@@ -391,7 +391,7 @@ def anchored(given: str, folder: Path) -> str:
     beside = folder / given
     try:
         return str(beside) if beside.is_file() else given
-    except OSError:  # too long for a file's name: told where the input is looked for
+    except OSError:  # too long for a file name: reported where the input is read
         return given
 
 

@@ -101,7 +101,7 @@ def per_robot_and_hour(frame: pd.DataFrame) -> pd.Series:
 
 
 def picture(study: Study) -> None:
-    """Draw the share of perfect execution over the mean lateness of a motion."""
+    """Plot units per hour, as a share of perfect execution, over lateness per robot and hour."""
     frame = study.frame.assign(lateness=per_robot_and_hour(study.frame))
     path = study.place("late-motions.png")
     with saving(path, 6.0, 4.0) as figure:

@@ -72,7 +72,7 @@ class DaskWorkers:
 
     def __init__(self, address: str, work: Callable[[Job], Outcome] | None = None) -> None:
         self._distributed = optional("distributed", EXTRA, "--dask")
-        # it writes tracebacks of its own threads; what matters is told here, in a line
+        # it logs tracebacks of its own threads; what matters is reported here in one line
         for name in ("distributed", "distributed.client"):
             logging.getLogger(name).setLevel(logging.CRITICAL)
         self._work = work

@@ -247,7 +247,9 @@ class Call:
 
 
 class By(NamedTuple, Generic[D]):
-    """A decision with the call on whose solution it is based; None: the controller's own rule.
+    """A decision and the call whose solution it is based on.
+
+    The call is None if the controller's own rule decided.
 
     A bare decision is attributed to the controller if it comes from `decide`, and to the answer if
     it comes from `answered`.

@@ -252,7 +252,7 @@ def _tasks() -> list[Mapped]:
         for t, o in kinds.items()
     ]
     return [
-        Mapped("TaskCountNone", "none: tasks only are counted"),
+        Mapped("TaskCountNone", "none: only tasks are counted"),
         Mapped("TaskTimeNone", "`robots` * `duration_s` less the times of all tasks"),
         *(one for pair in pairs for one in pair),
         Mapped("TaskTimeBusyAvg", "`robot_busy_share` * `duration_s`"),

@@ -46,13 +46,14 @@ class Field:
     kind
         Kind of its entries.
     shape
-        One letter per dimension; empty for a single value. For `lists`, the letter of their number.
+        One letter per dimension; empty for a single value. For `lists`, the letter of the
+        dimension that counts them.
     optional
         Whether it may be omitted.
     meaning
         Description, with the unit.
     texts
-        Allowed values of a text.
+        Allowed values, if the kind is `text`.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Functions shared by several TA rules: distances of stations, and their robots."""
+"""Functions on stations and robots shared by several TA rules."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ class _Orders:
         if wants != has or not wants.total():
             self._wrong(row, f"order {order} wants {wants.total()} units and has {has.total()}")
         if units != wants.total():
-            self._wrong(row, f"order {order} has {wants.total()} units (told: {units})")
+            self._wrong(row, f"order {order} has {wants.total()} units (recorded: {units})")
 
     def _end(self, row: int, order: int, time_us: int) -> None:
         if order in self.ended:

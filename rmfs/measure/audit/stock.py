@@ -31,7 +31,7 @@ def check(layout: Layout, rows: Rows, skus: pd.DataFrame, pods: pd.DataFrame) ->
     named = (moved.pod >= 0) & (moved.sku >= 0) & (moved.units > 0)
     faults = moved.lines(~named, "names no pod, no SKU or no units")
     initial = moved.kind == Happening.STOCK
-    faults += moved.lines(initial & (moved.time_us > 0), "stock of time zero, told later")
+    faults += moved.lines(initial & (moved.time_us > 0), "stock of time zero, recorded later")
     moved = moved.taken(named)
     sign = np.where(moved.kind == Happening.UNIT_PICKED, -1, 1)
     units = (sign * moved.units).astype(np.float64)

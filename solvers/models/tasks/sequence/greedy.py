@@ -34,7 +34,7 @@ def solve(
     seed: int = 0,
     start: Routes | None = None,
 ) -> Solution[Routes]:
-    """Insert tasks one after another; those that must be done first, then by due time.
+    """Insert tasks one by one: mandatory tasks before optional ones, then the most urgent first.
 
     Parameters
     ----------
