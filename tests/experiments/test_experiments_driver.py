@@ -292,7 +292,7 @@ def test_rows_with_another_type_are_one_clear_line(design, store):
     (file, *_) = sorted((store.folder / "runs").glob("*.parquet"))
     frame = pd.read_parquet(file)
     frame.assign(units_per_h="many").to_parquet(file)
-    with pytest.raises(InputError, match=r"do not go together .*units_per_h.*run the experiment"):
+    with pytest.raises(InputError, match=r"are incompatible .*units_per_h.*run the experiment"):
         store.rows()
 
 
