@@ -216,7 +216,11 @@ def test_an_overlay_shows_the_difference_of_two_heat_maps(
     shown = np.array(page.evaluate("Array.from(rmfs.panes[0].counts)"))
     assert (shown == counted[1] - counted[0]).all()
     assert (shown != 0).sum() > 100
-    assert "visits more in A" in page.text_content(".legend")
+    # the scale follows as soon as the figures beside the picture are due again
+    page.wait_for_function(
+        "words => document.querySelector('.legend').textContent.includes(words)",
+        arg=f"{np.abs(shown).max():.0f} visits more in A",
+    )
     assert page.locator(".charts h3").first.text_content().count("B ") == 1
     assert "overlay=1" in page.evaluate("window.rmfs.link()")
     page.uncheck("#tick-overlay")

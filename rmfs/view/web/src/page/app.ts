@@ -56,6 +56,7 @@ export class App {
   private following = false;
   private heatStale = true;
   private figures_ms = Number.NEGATIVE_INFINITY;
+  private figuresStale = true;
   private last_ms = performance.now();
   private readonly side: { update(): void }[];
   private readonly notice = h("div", { className: "notice", role: "status" });
@@ -216,6 +217,7 @@ export class App {
       this.store.set({ time_s, playing: time_s < this.end_s });
     }
     if (this.dirty) this.draw(now_ms);
+    this.refreshFigures(now_ms);
     requestAnimationFrame((next_ms) => this.frame(next_ms));
   }
 
@@ -235,10 +237,15 @@ export class App {
     if (this.heatStale) this.countHeat();
     for (const pane of this.panes) pane.frame(now_ms);
     this.frames++;
-    if (now_ms - this.figures_ms > FIGURES_MS) {
-      this.figures_ms = now_ms;
-      for (const part of this.side) part.update();
-    }
+    this.figuresStale = true;
+  }
+
+  /** Works out the figures beside the picture anew; what changes too soon after the last time waits. */
+  private refreshFigures(now_ms: number): void {
+    if (!this.figuresStale || now_ms - this.figures_ms <= FIGURES_MS) return;
+    this.figuresStale = false;
+    this.figures_ms = now_ms;
+    for (const part of this.side) part.update();
   }
 
   private countHeat(): void {
