@@ -1,5 +1,8 @@
 //! What is remembered of the motion: totals per robot, heat, trips and the trace.
 
+mod moves;
+mod rows;
+
 use std::collections::HashMap;
 
 use serde::{Deserialize, Serialize};
@@ -8,25 +11,14 @@ use crate::energy::{Done, Energy};
 use crate::heat::Heat;
 use crate::kinematics::Kind;
 use crate::log::Log;
-use crate::network::{NONE, Network};
+use crate::network::Network;
 use crate::robot::Robot;
 use crate::search::Move;
-use crate::units::{MicroTurn, Us, ceil_us, floor_us, turn_between};
+use crate::units::{Us, ceil_us};
 
-/// Kinds of pieces of motion in the trace.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[repr(i8)]
-pub enum Piece {
-    Hold = 0,
-    Turn = 1,
-    Run = 2,
-    Ride = 3,
-    Lift = 4,
-    SetDown = 5,
-    /// Somewhere on the straight way between two waypoints, or turning at one: of a run that was
-    /// held up on its way no more is known.
-    Guided = 6,
-}
+pub use moves::{angle, enters_zone, partly};
+pub use rows::{Piece, Row};
+use rows::{guided, move_rows, pod_id};
 
 /// Why a robot stands still; with the purpose of its way, see [`Heat`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,22 +26,6 @@ pub enum Standing {
     Idle,
     Waiting(usize),
     Served(usize),
-}
-
-/// One piece of motion of one robot.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Row {
-    pub robot: u32,
-    pub start: Us,
-    pub end: Us,
-    pub piece: Piece,
-    pub from: u32,
-    pub to: u32,
-    pub heading_before: u8,
-    pub heading: u8,
-    pub pod: i32,
-    /// With which a run was driven: robots are slow at times. 0 for other pieces.
-    pub top_speed: f64,
 }
 
 /// A delay of a run that had begun.
@@ -452,93 +428,4 @@ impl Record {
             trace.push(row);
         }
     }
-}
-
-/// By how much the robot turns before a move.
-pub fn angle(network: &Network, step: &Move) -> MicroTurn {
-    turn_between(
-        network.headings[step.heading_before as usize],
-        network.headings[step.heading as usize],
-    )
-}
-
-fn pod_id(pod: Option<u32>) -> i32 {
-    pod.map_or(-1, |pod| pod as i32)
-}
-
-/// A part of a run that was held up.
-fn guided(whole: &Row, from: (u32, Us), to: (u32, Us)) -> Row {
-    Row {
-        start: from.1,
-        end: to.1,
-        piece: Piece::Guided,
-        from: from.0,
-        to: to.0,
-        heading_before: whole.heading,
-        top_speed: 0.0,
-        ..whole.clone()
-    }
-}
-
-/// A move as rows of the trace: the turn before it, if any, and the run or ride.
-fn move_rows(
-    network: &Network,
-    kind: &Kind,
-    robot: u32,
-    step: &Move,
-    pod: Option<u32>,
-) -> impl Iterator<Item = Row> + use<> {
-    let turn = kind.turn(
-        network.headings[step.heading_before as usize],
-        network.headings[step.heading as usize],
-    );
-    let row = |start: Us, end: Us, piece: Piece, to: u32, heading_before: u8| Row {
-        robot,
-        start,
-        end,
-        piece,
-        from: step.from,
-        to,
-        heading_before,
-        heading: step.heading,
-        pod: pod_id(pod),
-        top_speed: if piece == Piece::Run { kind.top_speed } else { 0.0 },
-    };
-    let turning = (turn > 0)
-        .then(|| row(step.start - turn, step.start, Piece::Turn, step.from, step.heading_before));
-    let piece = if step.ride { Piece::Ride } else { Piece::Run };
-    let driving = row(step.start, step.end, piece, step.to, step.heading);
-    turning.into_iter().chain(std::iter::once(driving))
-}
-
-/// What a robot has done at `now` of a move it has begun.
-pub fn partly(network: &Network, kind: &Kind, step: &Move, pod: Option<u32>, now: Us) -> Totals {
-    let turn = kind.turn(
-        network.headings[step.heading_before as usize],
-        network.headings[step.heading as usize],
-    );
-    let turning = (now - (step.start - turn)).clamp(0, turn);
-    let driving = (now - step.start).clamp(0, step.end - step.start);
-    if step.ride {
-        return Totals { turning, riding: driving, ..Totals::default() };
-    }
-    let length = network.line(step.from, step.to, step.heading).last().map_or(0.0, |end| end.1);
-    let distance = kind.run(length).position_at(driving as f64 / 1e6);
-    let loaded_distance = if pod.is_some() { distance } else { 0.0 };
-    Totals { turning, moving: driving, distance, loaded_distance, ..Totals::default() }
-}
-
-/// When a run enters a zone: the time at which its first waypoint there is reached.
-/// `None` if it does not, or starts inside.
-pub fn enters_zone(network: &Network, kind: &Kind, step: &Move, zone: u32) -> Option<Us> {
-    if zone == NONE || network.zone[step.from as usize] == zone {
-        return None;
-    }
-    if step.ride {
-        return (network.zone[step.to as usize] == zone).then_some(step.end);
-    }
-    let line: Vec<(u32, f64)> = network.line(step.from, step.to, step.heading).collect();
-    let length = line.last()?.1;
-    let (_, distance) = line.iter().find(|(node, _)| network.zone[*node as usize] == zone)?;
-    Some(step.start + floor_us(kind.run(length).time_at(*distance)))
 }

@@ -1,0 +1,47 @@
+//! Figures of a single move: its turn, the part done by a time, when it enters a zone.
+
+use super::Totals;
+use crate::kinematics::Kind;
+use crate::network::{NONE, Network};
+use crate::search::Move;
+use crate::units::{MicroTurn, Us, floor_us, turn_between};
+
+/// By how much the robot turns before a move.
+pub fn angle(network: &Network, step: &Move) -> MicroTurn {
+    turn_between(
+        network.headings[step.heading_before as usize],
+        network.headings[step.heading as usize],
+    )
+}
+
+/// What a robot has done at `now` of a move it has begun.
+pub fn partly(network: &Network, kind: &Kind, step: &Move, pod: Option<u32>, now: Us) -> Totals {
+    let turn = kind.turn(
+        network.headings[step.heading_before as usize],
+        network.headings[step.heading as usize],
+    );
+    let turning = (now - (step.start - turn)).clamp(0, turn);
+    let driving = (now - step.start).clamp(0, step.end - step.start);
+    if step.ride {
+        return Totals { turning, riding: driving, ..Totals::default() };
+    }
+    let length = network.line(step.from, step.to, step.heading).last().map_or(0.0, |end| end.1);
+    let distance = kind.run(length).position_at(driving as f64 / 1e6);
+    let loaded_distance = if pod.is_some() { distance } else { 0.0 };
+    Totals { turning, moving: driving, distance, loaded_distance, ..Totals::default() }
+}
+
+/// When a run enters a zone: the time at which its first waypoint there is reached.
+/// `None` if it does not, or starts inside.
+pub fn enters_zone(network: &Network, kind: &Kind, step: &Move, zone: u32) -> Option<Us> {
+    if zone == NONE || network.zone[step.from as usize] == zone {
+        return None;
+    }
+    if step.ride {
+        return (network.zone[step.to as usize] == zone).then_some(step.end);
+    }
+    let line: Vec<(u32, f64)> = network.line(step.from, step.to, step.heading).collect();
+    let length = line.last()?.1;
+    let (_, distance) = line.iter().find(|(node, _)| network.zone[*node as usize] == zone)?;
+    Some(step.start + floor_us(kind.run(length).time_at(*distance)))
+}
