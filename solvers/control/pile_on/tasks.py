@@ -86,9 +86,10 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     task meanwhile goes to the next free robot.
 
     Decisions outside M1G are made by rules. A robot with a pod continues while the pod can serve
-    its station, and then parks it where PSA says. Up to a share of the robots bring pods to
-    replenishment stations, the nearest station with work first, with pods chosen by PPS
-    lexicographic; the others rest. If the optimiser fails, pod match decides.
+    its station (or, optionally, another pick station nearby), and then parks it where PSA says. Up
+    to a share of the robots bring pods to replenishment stations, the nearest station with work
+    first, with pods chosen by PPS lexicographic; the others rest. If the optimiser fails, pod match
+    decides.
     """
 
     parameters_model = PileOnTasksParameters
