@@ -1,8 +1,8 @@
 """RAWSim-O's footprint columns and files, and their counterparts in rmfs.
 
 Text in backticks is a column of the footprint, or `table.column` of another table; the rest is
-prose. Columns that RAWSim-O computes incorrectly are computed correctly here; for columns that rmfs
-omits, the reason is given.
+prose. Columns that RAWSim-O computes incorrectly are computed correctly in rmfs; for columns that
+rmfs omits, the reason is given.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Mapped(NamedTuple):
 
 _SPREAD = ("Avg", "Med", "LQ", "UQ")
 _NAMES = {"Avg": "mean", "Med": "median", "LQ": "lower_quartile", "UQ": "upper_quartile"}
-_RULE = "name and parameters of the rule in run.json: controllers.parameters.{}"
+_RULE = "name and parameters of the rule: run.json, key controllers.parameters.{}"
 
 
 def _spread(theirs: str, ours: str) -> list[Mapped]:
@@ -47,7 +47,7 @@ def _over_stations(theirs: str, ours: str, mean: str | None, note: str = "") -> 
 def _names() -> list[Mapped]:
     rules = {
         "PP": "pp",
-        "TA": "ta (and pps, part of it there)",
+        "TA": "ta (and pps, which is part of TA in RAWSim-O)",
         "SA": "sa",
         "IS": "rps",
         "PS": "psa",
@@ -60,7 +60,7 @@ def _names() -> list[Mapped]:
         Mapped("Instance", "`layout`"),
         Mapped("Setting", "`scenario`"),
         Mapped("Controller", "`controllers`"),
-        Mapped("Tag", "none: run folders are named freely, and designs name their arms"),
+        Mapped("Tag", "none: name the run folder, or the arms of a design, as you like"),
         *(Mapped(theirs, _RULE.format(ours)) for theirs, ours in rules.items()),
     ]
 
@@ -84,7 +84,10 @@ def _size() -> list[Mapped]:
 
 
 def _counts() -> list[Mapped]:
-    rejected = "none: the supply does not report refused arrivals; see `order_redraws`"
+    rejected = (
+        "none: rejected arrivals are not recorded; `order_redraws` counts drawn lines without stock"
+    )
+    whole = "over the measured time (RAWSim-O: only over samples not yet written to disk)"
     return [
         Mapped("BundlesPlaced", "`bundles_created`"),
         Mapped("OrdersPlaced", "`orders_created`"),
@@ -92,25 +95,30 @@ def _counts() -> list[Mapped]:
         Mapped("OrdersRejected", rejected),
         Mapped("BundlesInBacklogRemaining", "`backlog_bundles_end`"),
         Mapped("OrdersInBacklogRemaining", "`backlog_orders_end`"),
-        Mapped(
-            "BundlesInBacklogAvg", "`backlog_bundles_mean`, over the whole time (theirs forgets)"
-        ),
-        Mapped("OrdersInBacklogAvg", "`backlog_orders_mean`, over the whole time (theirs forgets)"),
+        Mapped("BundlesInBacklogAvg", f"`backlog_bundles_mean`, {whole}"),
+        Mapped("OrdersInBacklogAvg", f"`backlog_orders_mean`, {whole}"),
         Mapped("BundlesHandled", "`bundles_stored`"),
         Mapped("ItemsHandled", "`units_picked`"),
         Mapped("LinesHandled", "`lines_picked`"),
         Mapped("OrdersHandled", "`orders_completed`"),
         Mapped("UnitsHandled", "`units_picked` + `bundles_stored`"),
-        Mapped("Collisions", "`collisions`, proven by the checker of the trace"),
-        Mapped("FailedReservations", "`plan_failures`: nothing is reserved piece by piece"),
-        Mapped("PathPlanningTimeouts", "none: planning is limited by work, never by the clock"),
-        Mapped("PathPlanningTimeoutFractional", "none, likewise"),
+        Mapped("Collisions", "`collisions`, counted by the independent checker of the trace"),
+        Mapped(
+            "FailedReservations",
+            "`plan_failures`: failed plans of whole routes; routes are not reserved in segments",
+        ),
+        Mapped(
+            "PathPlanningTimeouts", "none: planning is limited by counted work, not by wall time"
+        ),
+        Mapped("PathPlanningTimeoutFractional", "none, as above"),
     ]
 
 
 def _motion() -> list[Mapped]:
-    optimal = "none in metres; `trips.unhindered_s` bounds the time of each trip from below"
-    prose = "of the trips whose `trips.station` is of that kind"
+    optimal = "none in metres; `trips.unhindered_s` is a lower bound on the time of each trip"
+    trips = "of the trips to {} stations (`trips.station`)"
+    time = "mean of `trips.end_s` - `trips.start_s` "
+    pick, replenish = trips.format("pick"), trips.format("replenishment")
     return [
         Mapped("DistanceTraveled", "`distance_m`"),
         Mapped("DistanceTraveledPerBot", "`distance_per_robot_m`"),
@@ -120,12 +128,14 @@ def _motion() -> list[Mapped]:
         Mapped("TimeQueueing", "mean of `robots.queueing_s`; `robot_queueing_share`"),
         Mapped("TripDistance", "`distance_m` / `trips`"),
         Mapped("TripTime", "`trip_time_mean_s` + sum of `robots.queueing_s` / `trips`"),
-        Mapped("TripTimeWithoutQueueing", "`trip_time_mean_s`: ours end at the queue zone"),
-        Mapped("TripCount", "`trips`: legs of tasks, not moves between waypoints"),
-        Mapped("LastMileTripOStationCount", f"number {prose}"),
-        Mapped("LastMileTripOStationTimeAvg", f"mean of `trips.end_s` - `trips.start_s` {prose}"),
-        Mapped("LastMileTripIStationCount", f"number {prose}"),
-        Mapped("LastMileTripIStationTimeAvg", f"mean of `trips.end_s` - `trips.start_s` {prose}"),
+        Mapped(
+            "TripTimeWithoutQueueing", "`trip_time_mean_s`: our trips end where the queue begins"
+        ),
+        Mapped("TripCount", "`trips`: trips between destinations of tasks, not between waypoints"),
+        Mapped("LastMileTripOStationCount", f"number {pick}"),
+        Mapped("LastMileTripOStationTimeAvg", time + pick),
+        Mapped("LastMileTripIStationCount", f"number {replenish}"),
+        Mapped("LastMileTripIStationTimeAvg", time + replenish),
         Mapped(
             "OverallAssignedTasks",
             "`tasks_pick` + `tasks_replenish` + `tasks_park` + `tasks_reposition` + `tasks_rest`",
@@ -149,20 +159,26 @@ def _visits() -> list[Mapped]:
         ),
         Mapped("RepositioningMoves", "`tasks_reposition`"),
         Mapped("PodsHandledPerIStationAvg", "mean of `stations.visits`, replenishment stations"),
-        Mapped("PodsHandledPerIStationVar", "its population variance"),
+        Mapped(
+            "PodsHandledPerIStationVar",
+            "population variance of `stations.visits`, replenishment stations",
+        ),
         Mapped(
             "PodsHandledPerOStationAvg",
-            "mean of `stations.visits`, pick stations (theirs averages the other kind)",
+            "mean of `stations.visits`, pick stations (RAWSim-O averages replenishment stations)",
         ),
-        Mapped("PodsHandledPerOStationVar", "its population variance"),
+        Mapped(
+            "PodsHandledPerOStationVar",
+            "population variance of `stations.visits`, pick stations",
+        ),
     ]
 
 
 def _stock() -> list[Mapped]:
-    ranks = "none: how well pods are sorted by rank is not measured; see `pods.pick_visits` with "
-    ranks += "`pods.waypoint_end`"
+    ranks = "none: how well pods are sorted is not measured; `pods.pick_visits` and "
+    ranks += "`pods.waypoint_end` show which pods were used how often and where they ended"
     kinds = [f"Inv{s}{e}" for s in ("Combined", "Speed", "Utility") for e in _INVERSIONS]
-    stops = "none: see the pauses in `series.orders_created` and `series.bundles_created`"
+    stops = "none: pauses show in `series.orders_created` and `series.bundles_created`"
     return [
         Mapped("InventoryLevelAvg", "`inventory_share_mean`, exact over time"),
         Mapped("InventoryLevelLQ", "first quartile of `series.inventory_share`"),
@@ -185,7 +201,7 @@ def _rates() -> list[Mapped]:
         Mapped("ItemThroughputRate", "`units_per_h`"),
         Mapped(
             "ItemThroughputRateUB",
-            "`units_per_h_at_pile_on`, which is no bound",
+            "`units_per_h_at_pile_on`, which is not an upper bound",
         ),
         Mapped("ItemThroughputRateScore", "`units_per_h` / `units_per_h_at_pile_on`"),
         Mapped("LineThroughputRate", "`lines_per_h`"),
@@ -210,12 +226,12 @@ def _times() -> list[Mapped]:
 
 
 def _stations() -> list[Mapped]:
-    ours = "`late_bound_units_per_visit` is that of all visits"
+    ours = "over all visits, `late_bound_units_per_visit`"
     late = "`stations.late_bound_units` / `stations.visits`"
     words = {"Avg": "mean", "Med": "median", "LQ": "first quartile", "UQ": "third quartile"}
-    bundled = "none: bundles added to a task on its way are not distinguished"
+    bundled = "none: bundles added to a task in progress are not counted separately"
     pick, replenish = ", pick stations", ", replenishment stations"
-    down = " (any time without work: there is no threshold)"
+    down = " (all time without work; RAWSim-O counts only periods above a threshold)"
     return [
         *_over_stations("ItemPileOne", "units_per_visit", "units_per_visit"),
         *(
@@ -252,8 +268,8 @@ def _tasks() -> list[Mapped]:
         for t, o in kinds.items()
     ]
     return [
-        Mapped("TaskCountNone", "none: only tasks are counted"),
-        Mapped("TaskTimeNone", "`robots` * `duration_s` less the times of all tasks"),
+        Mapped("TaskCountNone", "none: having no task is not counted as a task"),
+        Mapped("TaskTimeNone", "`robots` * `duration_s` - the sum of the times of all tasks"),
         *(one for pair in pairs for one in pair),
         Mapped("TaskTimeBusyAvg", "`robot_busy_share` * `duration_s`"),
         Mapped("TaskTimeBusyAvgFractional", "`robot_busy_share`"),
@@ -261,16 +277,19 @@ def _tasks() -> list[Mapped]:
 
 
 def _states() -> list[Mapped]:
-    transfer = "sum of `robots.transfer_s`, lifting and setting down together"
-    served = "visits' length: `visits.end_s` - `visits.begin_s` at {} stations"
+    transfer = "sum of `robots.transfer_s`, which covers lifting and setting down"
+    served = "sum of `visits.end_s` - `visits.begin_s` at {} stations"
     return [
         Mapped("StateCountPickup", "`pods_lifted`"),
         Mapped("StateTimePickup", transfer),
-        Mapped("StateCountSetdown", "`tasks_park` + `tasks_reposition`, but for those under way"),
+        Mapped(
+            "StateCountSetdown",
+            "`tasks_park` + `tasks_reposition`, without tasks still in progress",
+        ),
         Mapped("StateTimeSetdown", transfer),
-        Mapped("StateCountGet", "`bundles_stored` in `replenishment_visits`"),
+        Mapped("StateCountGet", "`replenishment_visits`, in which `bundles_stored` were stored"),
         Mapped("StateTimeGet", served.format("replenishment")),
-        Mapped("StateCountPut", "`units_picked` in `pick_visits`"),
+        Mapped("StateCountPut", "`pick_visits`, in which `units_picked` were picked"),
         Mapped("StateTimePut", served.format("pick")),
         Mapped("StateCountRest", "`tasks_rest`"),
         Mapped("StateTimeRest", "sum of `robots.idle_s`"),
@@ -278,8 +297,8 @@ def _states() -> list[Mapped]:
         Mapped(
             "StateTimeMove", "sum of `robots.moving_s` + `robots.turning_s` + `robots.waiting_s`"
         ),
-        Mapped("StateCountEvade", "none: no robot evades another"),
-        Mapped("StateTimeEvade", "none, likewise"),
+        Mapped("StateCountEvade", "none: no robot has to evade another"),
+        Mapped("StateTimeEvade", "none, as above"),
         Mapped("StateCountElevator", "sum of `edges.passages` where `edges.ride`"),
         Mapped("StateTimeElevator", "sum of `robots.riding_s`"),
     ]
@@ -290,7 +309,7 @@ def _timings() -> list[Mapped]:
         "TaskAllocation": "ta",
         "ItemStorage": "rps",
         "PodStorage": "psa",
-        "Repositioning": "repositioning (theirs repeats pod storage)",
+        "Repositioning": "repositioning (RAWSim-O repeats the figures of pod storage)",
         "ReplenishmentBatching": "roa",
         "OrderBatching": "poa",
     }
@@ -311,9 +330,9 @@ def _timings() -> list[Mapped]:
 
 
 def _free() -> list[Mapped]:
-    own = "none: a controller or an observer keeps its own figures (rmfs.measure.Observer)"
+    own = "none: a controller or an observer can record figures of its own (rmfs.measure.Observer)"
     problems = ("PP", "TA", "PC", "SA", "IS", "PS", "RP", "OB", "RB", "MM")
-    tags = "none: name and description of the file are in run.json"
+    tags = "none: the names and descriptions of the input files are in run.json"
     return [
         *(Mapped(f"CustomLog{p}{end}", own) for p in problems for end in ("String", *"1234")),
         *(Mapped(f"Tag{part}{n}", tags) for part in ("Setting", "Control") for n in (1, 2, 3)),
@@ -342,48 +361,55 @@ FILES: tuple[Mapped, ...] = (
     Mapped("setting.txt", "run.json: scenario"),
     Mapped("controller.txt", "run.json: controllers"),
     Mapped("footprint.csv", "footprint.csv with a header, footprint.parquet"),
-    Mapped("statistics.txt", "report.html (rmfs report); tables robots, pods, stations"),
-    Mapped("stationstatistics.csv", "stations; the spread of visit times from visits"),
-    Mapped("itemdescriptionstatistics.csv", "skus (`skus.popularity`, `skus.lines_picked`)"),
-    Mapped("itemprogression.csv", "picks, with order and SKU"),
-    Mapped("bundleprogression.csv", "bundles"),
-    Mapped("orderprogression.csv", "orders"),
+    Mapped("statistics.txt", "report.html (rmfs report); tables robots, pods and stations"),
+    Mapped("stationstatistics.csv", "table stations; distribution of visit times: table visits"),
+    Mapped("itemdescriptionstatistics.csv", "table skus (`skus.popularity`, `skus.lines_picked`)"),
+    Mapped("itemprogression.csv", "table picks, with order and SKU"),
+    Mapped("bundleprogression.csv", "table bundles"),
+    Mapped("orderprogression.csv", "table orders"),
     Mapped("bundleplacementprogression.csv", "`bundles.created_s`"),
     Mapped("orderplacementprogression.csv", "`orders.created_s`"),
-    Mapped("collisionprogression.csv", "rmfs run --check: there are none; `collisions`"),
-    Mapped("tripscompleted.csv", "trips, all kinds, with distance; `trips.station`"),
+    Mapped(
+        "collisionprogression.csv",
+        "none: rmfs run --check proves that there are no collisions; `collisions`",
+    ),
+    Mapped("tripscompleted.csv", "table trips, with distance and `trips.station`"),
     Mapped("traveleddistanceprogression.csv", "`series.distance_m`"),
     Mapped(
-        "inventorylevel.csv", "`series.inventory_share`; SKUs in stock and inversions: not kept"
+        "inventorylevel.csv",
+        "`series.inventory_share`; SKUs in stock and inversions are not recorded",
     ),
     Mapped(
         "performance.csv",
-        "`peak_rss_mb`, `wall_s`, `decisions.wall_s`; memory over time: not kept",
+        "`peak_rss_mb`, `wall_s`, `decisions.wall_s`; memory over time is not recorded",
     ),
     Mapped(
         "bundleordersituations.csv",
         "`series.backlog_orders`, `series.backlog_bundles`; ages from `orders.created_s` and "
-        "`orders.assigned_s` (theirs mixes relative and absolute times)",
+        "`orders.assigned_s` (RAWSim-O mixes relative and absolute times)",
     ),
     Mapped(
         "stationprogression.csv",
-        "by grouping picks, bundles and visits by station and time; the sums in series",
+        "group the tables picks, bundles and visits by station and time; totals are in series",
     ),
     Mapped(
         "botinfoprogression.csv", "`series.robots_queueing`, `series.robots_task_pick` and so on"
     ),
     Mapped("wellsortedness.csv", "none: how well pods are sorted is not measured"),
-    Mapped("connectionstatistics.csv", "connections; traffic on each edge in edges"),
-    Mapped("pathfinding.csv", "`planning_wall_s`, `plans` of the run; not kept per call"),
+    Mapped("connectionstatistics.csv", "table connections; traffic on each edge: table edges"),
     Mapped(
-        "locationspolled.heat", "heat by task, exact counts and not samples: `heat.pick_visits`"
+        "pathfinding.csv", "`planning_wall_s`, `plans` of the run; single calls are not recorded"
     ),
-    Mapped("trips.heat", "connections, grouped by waypoint and `connections.to_kind`"),
-    Mapped("storagelocationinfopolled.heat", "none: pods have no scores here; see pods"),
+    Mapped(
+        "locationspolled.heat",
+        "table heat, by task; exact counts instead of samples, such as `heat.pick_visits`",
+    ),
+    Mapped("trips.heat", "table connections, grouped by waypoint and `connections.to_kind`"),
+    Mapped("storagelocationinfopolled.heat", "none: pods have no scores in rmfs; see table pods"),
     Mapped("output.log", "the error stream of the command"),
     Mapped("tags.csv", "none, as for Tag"),
     Mapped("exception.txt", "the error stream and the exit code"),
-    Mapped("debug.xinst", "none: overlaps do not happen; the checker would report the first"),
+    Mapped("debug.xinst", "none: robots never overlap, and the checker would report it"),
 )
 """RAWSim-O's output files."""
 
@@ -393,10 +419,11 @@ def markdown() -> str:
     lines = [
         "## Measures",
         "",
-        "The tables show where to find each column of its footprint and each of its files.",
-        "Names in backticks are columns of `footprint`, or `table.column`; all are explained in",
-        "the [data dictionary](data-dictionary.md). RAWSim-O's quartiles are elements of the",
-        "sorted list; ours are interpolated. Generated by `python -m tests.tools.pages`.",
+        "The tables show where to find the figures of each column of RAWSim-O's footprint and of",
+        "each file that it writes. Names in backticks are columns of `footprint`, or",
+        "`table.column`; all are explained in the [data dictionary](data-dictionary.md).",
+        "RAWSim-O takes quartiles from the sorted list; ours are interpolated. This part is",
+        "generated by `python -m tests.tools.pages`.",
         "",
         "### Footprint",
         "",
@@ -410,7 +437,7 @@ def markdown() -> str:
         "|---|---|",
         *(f"| {one.theirs} | {one.ours} |" for one in FILES),
         "",
-        "Two further names of an asynchronous order manager are declared there and never written.",
+        "RAWSim-O also declares two files of an asynchronous order manager, but never writes them.",
         "",
     ]
     return "\n".join(lines)

@@ -36,12 +36,12 @@ HEAD = """\
 
 <!-- written by python -m tests.tools.claims -->
 
-Every number that we publish, with what is needed to reproduce it. The *number* is the mean over
-seeds, with the half width of its 95 % interval if there is one; it is read from the *file* (a
-table in `results/published`). The *input hash* is that of the design, which covers its arms,
-seeds and the content of all inputs. The provenance file beside the table holds the full hash, the
-runs and the code that produced them. If a file name contains `-reference`, the layout is
-RAWSim-O's own ([papers](papers.md)).
+The numbers that we claim, each with the command that reproduces it. The *number* is the mean over
+seeds, with the half width of its 95 % confidence interval if there is one; it is read from the
+*file*, a table in `results/published`. The *input hash* identifies the design: its arms, its seeds
+and the content of all inputs. The provenance file beside the table holds the full hash, the runs
+and the version of the code. If a file name contains `-reference`, the layout is RAWSim-O's own
+([papers](papers.md)). The [glossary](glossary.md) explains the terms.
 
 | claim | number | command | input hash | file |
 |---|---|---|---|---|
