@@ -108,16 +108,16 @@ def _robots(data: Plain) -> int:
 
 
 _WEIGHTS = """
-weights.travel     | real |     | per unit of travel of a called pod and of a robot to it
-weights.visit      | real |     | per called pod besides
-weights.empty_slot | real |     | per slot that stays empty
+weights.travel     | real |     | cost per unit of `travel` and `fetch`
+weights.visit      | real |     | further cost per called pod
+weights.empty_slot | real |     | cost per slot that stays empty
 weights.complete   | real |     | reward per order covered in full
-weights.unit       | real |     | reward per unit of such an order
-weights.prospects  | flag |     | whether orders without a slot that could be filled count, too
-weights.open_unit  | real |     | per unit of open demand that no pod covers
-weights.open_line  | real |     | per open line of an order placed now (variant `later`)
+weights.unit       | real |     | reward per unit of an order covered in full
+weights.prospects  | flag |     | whether prospects earn `complete` and `unit`, too
+weights.open_unit  | real |     | cost per unit of open demand that no pod covers
+weights.open_line  | real |     | cost per line left open of an order placed now (variant `later`)
 weights.line       | real |     | reward per line covered
-weights.part       | real |     | per slot that an order takes beyond its first
+weights.part       | real |     | cost per slot that an order takes beyond its first
 """
 
 _VARIANTS = "whole/later/split-stations/split-time/split-both"
@@ -128,13 +128,13 @@ SCHEMAS: Mapping[str, Schema] = {
             f"""
 slots        | whole | S   | free order slots
 line_order   | whole | L   | order of each line, sorted, from 0 without gaps
-line_sku     | whole | L   | its SKU, increasing within an order
-line_units   | whole | L   | its units
+line_sku     | whole | L   | SKU of each line, increasing within an order
+line_units   | whole | L   | units of each line
 stock        | whole | P K | unreserved units per pod and SKU
 travel       | real  | P S | cost of bringing a pod to a station
 available    | flag  | P   | whether a pod may be called
 inbound      | whole | P   | station that a pod is on its way to, or -1
-open_units   | whole | S K | units that orders already there still need
+open_units   | whole | S K | units that orders at a station still need, per SKU
 fetch?       | real  | R P | cost for a robot to reach a pod; absent: robots are not decided
 robot_pod?   | whole | R   | pod that a robot is bound to, or -1
 worth?       | real  | O   | extra reward for giving an order its first slot
@@ -148,7 +148,7 @@ variant      | text {_VARIANTS} | | how orders may be covered
 slot         | flag  | O S | whether an order takes a slot at a station
 line_station | whole | L   | station whose pods cover a line now, or -1
 pod_station  | whole | P   | station that a pod is called to, or -1
-pod_robot    | whole | P   | robot that fetches it, or -1
+pod_robot    | whole | P   | robot that fetches a pod, or -1
 prospect     | whole | O   | station whose pods could fill an order without a slot, or -1
 """
         ),
@@ -158,26 +158,26 @@ prospect     | whole | O   | station whose pods could fill an order without a sl
         fields_of(
             """
 slots         | whole | S   | order slots, 1 or more
-coming        | whole | F   | pods under way; those of a station in the order in which they come
-coming_to     | whole | F   | station of each
+coming        | whole | F   | pods under way; those of a station in order of arrival
+coming_to     | whole | F   | station of each pod under way
 order_station | whole | O   | station at which an order is open, or -1 if it waits
 order_until   | whole | O   | last visit under way with units bound for an open order, or -1
-order_worth   | real  | O   | worth of closing an order, s
+order_worth   | real  | O   | worth of completing an order, s of robot time
 line_order    | whole | L   | order of each line
-line_sku      | whole | L   | its SKU
-line_units    | whole | L   | its units
-line_worth    | real  | L   | worth of serving it, s
-stock         | whole | P K | units to spare per pod and SKU
-cost          | cost  | P S | cost of a new visit of a pod, s
-visits        | whole |     | new visits per station at most
-decay         | real  |     | factor from one visit to the next, in (0, 1]
+line_sku      | whole | L   | SKU of each line
+line_units    | whole | L   | units of each line
+line_worth    | real  | L   | worth of serving a line, s of robot time
+stock         | whole | P K | unreserved units per pod and SKU
+cost          | cost  | P S | cost of a new visit of a pod, s of robot time
+visits        | whole |     | maximum number of new visits per station
+decay         | real  |     | discount factor from one visit to the next, in (0, 1]
 """
         ),
         fields_of(
             """
-pods          | lists | S   | pods of the new visits of each station, in their order
-order_station | whole | O   | station of each order, -1 if it goes on waiting
-line_visit    | whole | L   | visit that serves a line, those under way counted, or -1
+pods          | lists | S   | pods of the new visits of each station, in order
+order_station | whole | O   | station of each order, or -1 if it keeps waiting
+line_visit    | whole | L   | visit that serves a line, pods under way counted first, or -1
 """
         ),
         {},
@@ -186,15 +186,15 @@ line_visit    | whole | L   | visit that serves a line, those under way counted,
         fields_of(
             """
 needs    | flag  | O K | whether an order needs a SKU
-holds    | flag  | P K | whether a pod holds it
-capacity | whole |     | orders open at a time
+holds    | flag  | P K | whether a pod holds a SKU
+capacity | whole |     | maximum number of open orders at any time
 opened   | flag  | O   | whether an order is open before the first visit
 """
         ),
         fields_of(
             """
-pods  | whole | T | the visiting pods in turn
-start | whole | O | visit during which an order is opened; -1 for those open before
+pods  | whole | T | pods of the visits, in order
+start | whole | O | visit in which an order is opened; -1 if it was open before
 """
         ),
         {},
@@ -202,9 +202,9 @@ start | whole | O | visit during which an order is opened; -1 for those open bef
     "rack_allocation": Schema(
         fields_of(
             """
-units | whole | O K | units of a SKU that an order asks for
-stock | whole | P K | units of a SKU on a pod
-slots | whole | S   | orders that a station takes
+units | whole | O K | units that an order wants of a SKU
+stock | whole | P K | units that a pod holds of a SKU
+slots | whole | S   | order slots of a station; all are filled
 """
         ),
         fields_of(
@@ -218,12 +218,12 @@ pod_station   | whole | P | station of a pod, or -1
     "placement": Schema(
         fields_of(
             """
-travel_s | cost | P L | time from where a pod is to a place, s
-access_s | real | L   | travel time of a later visit to that place, there and back, s
+travel_s | cost | P L | travel time of a pod to a location, s
+access_s | real | L   | travel time of a later visit from a location, there and back, s
 visits   | real | P   | expected visits of a pod before it is moved again
 """
         ),
-        fields_of("place | whole | P | place of each pod"),
+        fields_of("place | whole | P | location of each pod"),
         {},
     ),
     "stays": Schema(
@@ -232,7 +232,7 @@ visits   | real | P   | expected visits of a pod before it is moved again
 begin_s  | real  | N   | when a stay begins, s
 end_s    | real  | N   | when it ends, s
 cost_s   | cost  | N Z | robot time of a stay in a zone, s
-capacity | whole | Z   | places of a zone
+capacity | whole | Z   | storage locations of a zone
 """
         ),
         fields_of("zone | whole | N | zone of each stay"),
@@ -241,17 +241,17 @@ capacity | whole | Z   | places of a zone
     "zones": Schema(
         fields_of(
             """
-visit_s        | real | I J | robot time of a visit to a pod of a class from a zone, s
-rate_per_h     | real | I   | visits of a pod of a class, 1/h
-pods           | real | I   | pods of a class
-places         | real | J   | places of a zone
-congestion_s_h | real | J   | delay of a visit per visit per hour to the same zone, s h
+visit_s        | real | I J | robot time of a visit to a pod of a class in a zone, s
+rate_per_h     | real | I   | visits per pod of a class, 1/h
+pods           | real | I   | number of pods of a class
+places         | real | J   | storage locations of a zone
+congestion_s_h | real | J   | delay of each visit per hourly visit to the same zone, s h
 """
         ),
         fields_of(
             """
 standing    | real | I J | pods of a class in a zone
-price_per_h | real | J   | robot time that one more place would save, s/h; not checked
+price_per_h | real | J   | robot time that one more location would save, s/h; not checked
 """
         ),
         {},
@@ -259,32 +259,32 @@ price_per_h | real | J   | robot time that one more place would save, s/h; not c
     "charging": Schema(
         fields_of(
             """
-level      | real  | R   | level of a battery now, as a share of its capacity
-drain      | real  | R   | what a robot draws in a slot of work, as such a share
+level      | real  | R   | current level of a battery, as a share of its capacity
+drain      | real  | R   | consumption of a robot in a slot of work, as a share of the capacity
 ready      | whole | R   | first slot in which a robot may leave its work
-waits      | flag  | R   | whether a robot is bound for a place: away until its stay is over
-here       | whole | R   | group of the place where a robot is charged, or -1
-way_s      | cost  | R G | time from a robot to a place of a group, s
-places     | whole | G T | robots that may be at a group in a slot
-gain       | real  | G   | share of a capacity that a place gives in a slot at constant power
-swapped    | real  | G   | level after a swap, which takes a slot; 0: places that charge
-wanted     | whole | Q T | robots that work has use for in a slot, in each case
+waits      | flag  | R   | whether a robot is already on its way to a charger, and so away
+here       | whole | R   | group of the charger at which a robot is now, or -1
+way_s      | cost  | R G | travel time of a robot to a charger of a group, s
+places     | whole | G T | maximum number of robots at a group in a slot
+gain       | real  | G   | share of the capacity charged per slot at constant power
+swapped    | real  | G   | level after a swap, which takes a slot; 0: the group charges instead
+wanted     | whole | Q T | robots needed for work in a slot, in each of Q equally likely cases
 slot_s     | real  |     | length of a slot, s
-worth_s    | real  |     | robot time that a full battery is worth at the end, s
-longest    | whole |     | slots of a stay, at most
+worth_s    | real  |     | worth of a full battery at the end, s of robot time
+longest    | whole |     | maximum number of slots of a stay
 taper_from | real  |     | level from which charging slows down; 1: never
 full       | real  |     | level that counts as full
-least      | real  |     | level below which no robot should be
-short_s    | real  |     | cost of being below, s per share
-idle       | real  |     | cost of time away that work does not miss, relative to other time
-curve      | real  |     | how much the first energy is worth more than the last
+least      | real  |     | level below which no robot should fall
+short_s    | real  |     | cost of falling below `least`, s per share of the capacity
+idle       | real  |     | cost of time away when not needed for work, as a share of the usual cost
+curve      | real  |     | additional worth of energy in an empty battery against a full one
 """
         ),
         fields_of(
             """
 group  | whole | R | group of the stay of each robot, or -1
-begin  | whole | R | its first slot, 0 for none
-length | whole | R | its slots, 0 for none
+begin  | whole | R | first slot of the stay, 0 if there is none
+length | whole | R | number of slots of the stay, 0 if there is none
 """
         ),
         {},
@@ -292,8 +292,8 @@ length | whole | R | its slots, 0 for none
     "matching": Schema(
         fields_of(
             """
-travel_s | cost | R T | time a robot needs to a task, s
-leave_s  | cost | T   | cost of leaving a task, s; "inf" where it must be done
+travel_s | cost | R T | travel time of a robot to a task, s
+leave_s  | cost | T   | cost of leaving a task undone, s; "inf" if it must be done
 """
         ),
         fields_of("robot | whole | T | robot of each task, or -1"),
@@ -303,12 +303,12 @@ leave_s  | cost | T   | cost of leaving a task, s; "inf" where it must be done
         fields_of(
             """
 arrive_s    | cost  | R T | time until a robot is at the station with the pod of a task, s
-leave_s     | cost  | T   | cost of leaving a task, s; "inf" where it must be done
-due_s       | cost  | T   | when a task should be there, s; "inf" without a due time
+leave_s     | cost  | T   | cost of leaving a task undone, s; "inf" if it must be done
+due_s       | cost  | T   | due time of a task's pod at the station, s; "inf" if there is none
 station     | whole | T   | station of a task
 queue       | whole | S   | pods at a station or on their way to it
-service_s   | real  | S   | time for which a pod occupies it, s
-room        | whole | S   | robots that may be sent to it now
+service_s   | real  | S   | time for which a pod occupies a station, s
+room        | whole | S   | maximum number of robots that may be sent to a station now
 late_weight | real  |     | seconds of travel that a second of lateness is worth
 """
         ),
@@ -319,25 +319,25 @@ late_weight | real  |     | seconds of travel that a second of lateness is worth
         fields_of(
             """
 ready_s     | ms      | R   | when a robot can begin, s
-carrying    | flag    | R   | whether it carries a pod
+carrying    | flag    | R   | whether a robot carries a pod
 reach_s     | cost_ms | R T | empty drive to the pod of a task, s
-stow_s      | cost_ms | R L | drive with its pod to a place, s
-fetch_s     | cost_ms | L T | empty drive from a place to the pod of a task, s
+stow_s      | cost_ms | R L | drive of a robot with its pod to a location, s
+fetch_s     | cost_ms | L T | empty drive from a location to the pod of a task, s
 bring_s     | ms      | T   | lift and drive to the station, s
 service_s   | ms      | T   | time at the station, s
-store_s     | cost_ms | T L | drive from the station to a place, s
+store_s     | cost_ms | T L | drive from the station to a location, s
 earliest_s  | ms      | T   | earliest time at the station, s
-latest_s    | cost_ms | T   | latest, s
-due_s       | cost_ms | T   | when it should be there, s
-skip_s      | cost_ms | T   | cost of leaving a task, s; "inf" where it must be done
+latest_s    | cost_ms | T   | latest time at the station, s
+due_s       | cost_ms | T   | due time of the pod at the station, s
+skip_s      | cost_ms | T   | cost of leaving a task undone, s; "inf" if it must be done
 late_weight | whole   |     | seconds of driving that a second of lateness is worth
 """
         ),
         fields_of(
             """
-tasks       | lists | R | tasks of a robot, in their order
-place       | whole | T | place where the pod of a task is stored, or -1 if it is left
-robot_place | whole | R | place where the pod that a robot carries is stored first, or -1
+tasks       | lists | R | tasks of a robot, in order
+place       | whole | T | location where a task's pod is stored, or -1 if the task is left undone
+robot_place | whole | R | location where the pod that a robot carries is stored first, or -1
 """
         ),
         {},
@@ -346,7 +346,7 @@ robot_place | whole | R | place where the pod that a robot carries is stored fir
         fields_of(
             """
 worth_s       | worth | B P | robot time saved by storing a bundle in a pod, s
-leave_s       | cost  | B   | cost of leaving a bundle, s; "inf" where it must be stored
+leave_s       | cost  | B   | cost of not storing a bundle, s; "inf" if it must be stored
 space         | space | B   | space of a bundle
 pod_space     | space | P   | free space of a pod
 trip_s        | cost  | P S | robot time of bringing a pod to a station, s
@@ -368,30 +368,30 @@ duration_s                 | real  |   | length of the window, s
 robots                     | whole |   | robots
 picking.unit_transfer_s    | real  | S | time for which a unit occupies the station, s
 picking.unit_pick_s        | real  | S | time for which a unit occupies the robot, s
-picking.changeover_s       | real  | S | least time from one robot to the next, s
-picking.inbound_s          | real  | S | shortest way in, s
-picking.outbound_s         | real  | S | shortest way out, s
+picking.changeover_s       | real  | S | least time between service of two robots, s
+picking.inbound_s          | real  | S | shortest drive to the station, s
+picking.outbound_s         | real  | S | shortest drive from the station, s
 picking.order_slots        | whole | S | order slots
 refill.bundle_transfer_s   | real  | Q | time for which a bundle occupies station and robot, s
-refill.inbound_s           | real  | Q | shortest way in, s
-refill.outbound_s          | real  | Q | shortest way out, s
-refill.bundle_units        | whole |   | most units in a bundle
-refill.bundles_per_visit   | whole |   | most bundles in a visit
-stock.pod_units            | whole | P | most units of a pod at the beginning
-stock.largest_pod_units    | whole |   | most units of a pod at any time
-orders.units               | cost  |   | most units asked for
-orders.largest_order_units | cost  |   | most units in an order
-orders.lone_units          | cost  |   | most units of orders served whole from one visit
-orders.join_visits         | flag  |   | whether orders may join a running visit
+refill.inbound_s           | real  | Q | shortest drive to the station, s
+refill.outbound_s          | real  | Q | shortest drive from the station, s
+refill.bundle_units        | whole |   | maximum number of units in a bundle
+refill.bundles_per_visit   | whole |   | maximum number of bundles in a visit
+stock.pod_units            | whole | P | maximum number of units in a pod at the beginning
+stock.largest_pod_units    | whole |   | maximum number of units in any pod at any time
+orders.units               | cost  |   | maximum number of units ordered
+orders.largest_order_units | cost  |   | maximum number of units in an order
+orders.lone_units          | cost  |   | maximum units of orders that one visit serves completely
+orders.join_visits         | flag  |   | whether orders may join a visit in progress
 """
         ),
         fields_of(
             """
 units         | real | S | units picked
-visits        | real | S | visits
-lone_units    | real | S | units of orders served whole from one visit
+visits        | real | S | visits to pick stations
+lone_units    | real | S | units of orders that a single visit serves completely
 bundles       | real | Q | bundles stored
-refill_visits | real | Q | visits
+refill_visits | real | Q | visits to replenishment stations
 """
         ),
         {},

@@ -38,15 +38,18 @@ LIMIT_MS = 1.0
 HEAD = """\
 # How long decisions take
 
-Milliseconds of wall time in runs of a large warehouse: 1,965 pods, 128 robots, 12 pick and 20
-replenishment stations, 1,000 SKUs, a constant backlog of 200 orders and 200 bundles. Each rule is
-measured in a run of its own, with the default rules for all other problems. A call may result in
-several decisions or in none. The median refers to calls that resulted in decisions; their time is
-divided by the number of decisions. Time spent in other controllers is attributed to these.
-Written by `python -m tests.tools.decision_times`.
+Times are milliseconds of wall time in runs of a large warehouse: 1,965 pods, 128 robots, 12 pick
+and 20 replenishment stations, 1,000 SKUs, a constant backlog of 200 orders and 200 bundles. Each
+rule is measured in a run of its own, with the default rules for all other problems.
 
-For every rule, the median should stay below one millisecond. The benchmarks require the same
-(`pytest -m benchmark tests/control`); they time a single decision repeatedly.
+A *call* asks a controller once and may result in several decisions or in none. The column *median,
+decision* covers only calls that resulted in decisions, and divides the time of each by the number
+of its decisions. The other columns are times per call. If a controller consults others, their time
+is not counted for it. Rows such as *only age* are PPS `lexicographic` with that criterion first,
+ties broken at random. This page is written by `python -m tests.tools.decision_times`.
+
+For every rule, the median should stay below one millisecond. The benchmarks
+(`pytest -m benchmark tests/control`), which time a single decision repeatedly, require the same.
 """
 
 
@@ -101,8 +104,14 @@ def cases() -> list[Case]:
                 for criterion in SCORERS
             ]
             queue = {"poa": {"name": "queue"}}
-            made.append(Case(problem, "lexicographic, beside POA queue", queue))
-            made.append(Case(problem, "the same, all of the pool", {**queue, "pps": ANY_QUEUED}))
+            made.append(Case(problem, "lexicographic, with POA queue", queue))
+            made.append(
+                Case(
+                    problem,
+                    "lexicographic, with POA queue, all pooled orders count",
+                    {**queue, "pps": ANY_QUEUED},
+                )
+            )
     return made
 
 
@@ -185,8 +194,9 @@ def page(frame: pd.DataFrame, share: Mapping[str, float]) -> str:
     rest = 1 - share["decisions"] - share["planning"]
     lines = [
         HEAD,
-        f"With the default rules, decisions take {share['decisions']:.0%} of the time of such a "
-        f"run (an hour), path planning {share['planning']:.0%}, and everything else {rest:.0%}.\n",
+        f"With the default rules, decisions take {share['decisions']:.0%} of the wall time of such "
+        f"a run (one simulated hour), path planning {share['planning']:.0%}, and everything else "
+        f"{rest:.0%}.\n",
         "| problem | rule | calls | decisions | median, decision | mean, call | 95 % | max |",
         "|---|---|---:|---:|---:|---:|---:|---:|",
     ]

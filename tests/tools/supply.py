@@ -261,12 +261,12 @@ def known_weaknesses() -> str:
         sum(row["ecosystem"] == kind for row in mended) for kind in ("cargo", "pypi")
     )
     paragraph = f"""Known vulnerabilities: no advisory applies. PyPI was queried on {days} and
-listed none for the locked versions of {len(clear)} of the {len(rows)} Python packages. It only
+listed none for the locked versions of {len(clear)} of the {len(rows)} Python packages. PyPI only
 answers for the newest version of a package, so there is no answer for {", ".join(untold)}. The
-locked versions were also compared with a stored list of advisories and the versions that fix them:
-{crates} on the crates, from a copy of the RustSec database of June 2026, and {packages} from the
-PyPA database, the newest ones of some packages, from 2021 to 2023.
-`python -m tests.tools.supply --ask` queries PyPI again."""
+locked versions were also compared with stored advisories: {crates} on the crates, from a copy of
+the RustSec database of June 2026, and {packages} from the PyPA database, which are the most recent
+ones for some packages, from 2021 to 2023. `python -m tests.tools.supply --ask` queries PyPI
+again."""
     return textwrap.fill(paragraph, 100, break_long_words=False, break_on_hyphens=False)
 
 
@@ -277,19 +277,20 @@ def page(parts: list[Part]) -> str:
     )
     return f"""# Dependencies
 
-All packages that rmfs uses, in the versions of the lock files, with the licence that each one
-states. A test checks that all licences are compatible with rmfs's own, the MIT licence. The file
-`docs/sbom.cdx.json` contains the same list as a bill of materials (CycloneDX 1.5).
-`python -m tests.tools.supply` writes both and checks stored lists of advisories, without a network.
+This page lists all packages that rmfs uses, in the versions of the lock files, with the licence
+that each package states. A test checks that all licences are compatible with rmfs's own, the MIT
+licence. The file `docs/sbom.cdx.json` contains the same list as a bill of materials (CycloneDX
+1.5). `python -m tests.tools.supply` writes both and checks stored lists of advisories, without a
+network.
 
 Packages are installed separately, with two exceptions. The compiled core is linked with the Rust
-crates below. The page of the viewer contains three.js and uPlot: their licences are in
-`rmfs/view/static/notices.txt`, which is part of the wheel, and at the head of the page's script,
-so exported pages contain them as well.
+crates below. The page of the viewer contains three.js and uPlot. Their licences are in
+`rmfs/view/static/notices.txt`, which is part of the wheel, and at the top of the page's script, so
+exported pages contain them as well.
 
 {known_weaknesses()}
 
-| package | version | licence | what for |
+| package | version | licence | used for |
 |---|---|---|---|
 {rows}
 """
