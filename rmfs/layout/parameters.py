@@ -18,12 +18,12 @@ from rmfs.layout.values import Amount, Metres, Radius, Rate, Seconds, Some, Spac
 
 
 class PerSide(Strict):
-    """Numbers of stations or elevators on each side of a tier."""
+    """Number of stations or elevators on each side of a tier."""
 
-    west: Amount = Field(0, description="on the side of least x")
-    east: Amount = Field(0, description="on the side of greatest x")
-    south: Amount = Field(0, description="on the side of least y")
-    north: Amount = Field(0, description="on the side of greatest y")
+    west: Amount = Field(0, description="on the side with the smallest x")
+    east: Amount = Field(0, description="on the side with the largest x")
+    south: Amount = Field(0, description="on the side with the smallest y")
+    north: Amount = Field(0, description="on the side with the largest y")
 
     @property
     def total(self) -> int:
@@ -59,10 +59,10 @@ class LayoutParameters(Strict):
     tier_height_m: Metres = Field(4.0, description="height of a tier in m, for drawing only")
 
     robots: Some = Field(16, description="robots per tier")
-    robot_radius_m: Radius = Field(0.35, description="m")
-    acceleration_m_s2: Rate = Field(1.0, description="m/s2")
-    deceleration_m_s2: Rate = Field(1.0, description="m/s2")
-    top_speed_m_s: Rate = Field(1.5, description="m/s")
+    robot_radius_m: Radius = Field(0.35, description="radius of a robot, m")
+    acceleration_m_s2: Rate = Field(1.0, description="acceleration of robots, m/s2")
+    deceleration_m_s2: Rate = Field(1.0, description="deceleration of robots, m/s2")
+    top_speed_m_s: Rate = Field(1.5, description="top speed of robots, m/s")
     full_turn_s: Seconds = Field(
         2.5, description="duration of a turn of 360 degrees on the spot, s"
     )
@@ -71,10 +71,10 @@ class LayoutParameters(Strict):
     pod_share: float = Field(
         0.85, gt=0, lt=1, description="pods per storage place (rounded down per tier)"
     )
-    pod_radius_m: Radius = Field(0.45, description="m")
+    pod_radius_m: Radius = Field(0.45, description="radius of a pod, m")
     pod_capacity: Space = Field(500.0, description="space units per pod")
 
-    station_radius_m: Radius = Field(0.45, description="m")
+    station_radius_m: Radius = Field(0.45, description="radius of a station, m")
     unit_transfer_s: Seconds = Field(
         10.0, description="time in s for which a unit occupies the pick station"
     )
@@ -118,14 +118,15 @@ class LayoutParameters(Strict):
         3, ge=1, le=1000, description="distance from a queue's entrance to its exit, in tiles; odd"
     )
     counter_clockwise_ring: bool = Field(
-        True, description="direction of the ring road, seen with x to the right and y upwards"
+        True,
+        description="whether the ring road is counter-clockwise, with x to the right and y up",
     )
 
     pick_stations: PerSide = Field(PerSide(east=4), description="pick stations per tier")
     replenishment_stations: PerSide = Field(
         PerSide(west=4), description="replenishment stations per tier"
     )
-    elevators: PerSide = Field(PerSide(), description="elevators")
+    elevators: PerSide = Field(PerSide(), description="elevators, which connect all tiers")
     other_stations: dict[str, OtherStations] = Field(
         default_factory=dict, description="stations of other kinds, per tier, by name of the kind"
     )

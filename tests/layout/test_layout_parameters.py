@@ -122,7 +122,7 @@ def test_written_parameters_are_read_back():
     )
     text = to_toml(parameters)
     assert validate(LayoutParameters, tomllib.loads(text), "file.toml") == parameters
-    assert "# m/s2" in text
+    assert "# acceleration of robots, m/s2" in text
 
 
 def test_default_file_is_the_default():

@@ -55,7 +55,7 @@ def rows():
     """What each file handled, as rows of a table."""
     told: list[tuple[str, ...]] = []
     yield told
-    head = [("file", "orders", "units", "bundles", "or refused"), ("---",) * 5]
+    head = [("file", "orders", "units", "bundles", "refused because"), ("---",) * 5]
     table = "".join(f"| {' | '.join(row)} |\n" for row in [*head, *told])
     print(f"\n{table}")
     write_text(Path("results/files-of-rawsimo.md"), table)

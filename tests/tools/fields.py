@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import TYPE_CHECKING, Any
 
 from rmfs.layout.drawn.parameters import Equipment, MapStations, PictureHead
@@ -66,7 +67,7 @@ def _table(schema: dict[str, Any]) -> Iterator[str]:
     yield "|---|---|---|---|"
     needed = schema.get("required", [])
     for key, field in schema["properties"].items():
-        default = "needed" if key in needed else _default(field)
+        default = "required" if key in needed else _default(field)
         meaning = field.get("description", "").replace("|", "\\|")
         yield f"| `{key}` | {_value(field)} | {default} | {meaning} |"
 
@@ -89,10 +90,12 @@ def _value(field: dict[str, Any]) -> str:
     if "$ref" in field:
         return "table"
     if field["type"] == "array":
-        least = f", {field['minItems']} at least" if field.get("minItems") else ""
+        least = f" (length ≥ {field['minItems']})" if field.get("minItems") else ""
         if least and field["minItems"] == field.get("maxItems"):
-            least = f", {field['minItems']} of them"
-        return f"list of: {_value(field['items'])}{least}"
+            least = f" (length {field['minItems']})"
+        item = _value(field["items"])
+        many = re.sub(r"^(whole number|table|list|number)", r"\1s", item)
+        return f"list{least} of {many}"
     further = field.get("additionalProperties")
     if field["type"] == "object" and isinstance(further, dict):
         return "table of tables"

@@ -75,9 +75,9 @@ class MapStations(Equipment):
     )
     pick_stations: list[StationPlaces] = Field(
         default_factory=list,
-        description="stations, each as a list of cells [row, column], from 0 at the top "
-        "left: the station and its queue up to the entrance",
+        description="pick stations, each as a list of cells [row, column], counted from 0 at the "
+        "top left: the cell of the station, then the cells of its queue up to the entrance",
     )
     replenishment_stations: list[StationPlaces] = Field(
-        default_factory=list, description="as pick_stations"
+        default_factory=list, description="replenishment stations, in the form of `pick_stations`"
     )

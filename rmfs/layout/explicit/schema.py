@@ -27,15 +27,15 @@ class ExplicitWaypoint(Strict):
 
     x_m: float = Field(description="position in m, to the right")
     y_m: float = Field(description="position in m, upwards")
-    tier: Index = Field(0, description="its tier")
+    tier: Index = Field(0, description="tier of the waypoint")
     to: list[Index] = Field(
         default_factory=list, description="waypoints to which directed edges lead"
     )
     storage: bool = Field(False, description="whether a pod may be stored there")
     queue: bool = Field(
         False,
-        description="whether it belongs to a queue zone without being a place, as an exit "
-        "does; queue places need not be marked",
+        description="whether it belongs to a queue zone although it is not a place of the "
+        "queue, such as an exit; queue places need not be marked",
     )
 
 
@@ -45,7 +45,7 @@ class ExplicitPickStation(Strict):
     queue: list[Index] = Field(
         min_length=1, description="waypoints from the station to the entrance of its queue"
     )
-    radius_m: Positive = Field(description="m")
+    radius_m: Positive = Field(description="radius of the station, m")
     order_slots: Some = Field(description="maximum number of open orders")
     unit_transfer_s: Seconds = Field(description="time in s for which a unit occupies the station")
     unit_pick_s: Seconds = Field(description="time in s for which a unit occupies the robot")
@@ -58,7 +58,7 @@ class ExplicitReplenishmentStation(Strict):
     queue: list[Index] = Field(
         min_length=1, description="waypoints from the station to the entrance of its queue"
     )
-    radius_m: Positive = Field(description="m")
+    radius_m: Positive = Field(description="radius of the station, m")
     capacity: Space = Field(description="maximum space units of assigned bundles")
     bundle_transfer_s: Seconds = Field(
         description="time in s for which a bundle occupies robot and station"
@@ -72,7 +72,7 @@ class ExplicitOtherStation(Strict):
     queue: list[Index] = Field(
         min_length=1, description="waypoints from the station to the entrance of its queue"
     )
-    radius_m: Positive = Field(description="m")
+    radius_m: Positive = Field(description="radius of the station, m")
 
 
 class ExplicitOtherStations(Strict):
@@ -90,14 +90,15 @@ class ExplicitRide(Strict):
 
     origin: Index = Field(description="boarding waypoint")
     destination: Index = Field(description="boarding waypoint on another tier")
-    travel_s: Seconds = Field(description="duration in s")
+    travel_s: Seconds = Field(description="duration of the ride in s")
 
 
 class ExplicitElevator(Strict):
     """An elevator; one queue per tier, each beginning with its boarding waypoint."""
 
     queues: list[Annotated[list[Index], Field(min_length=1)]] = Field(
-        min_length=2, description="per tier, waypoints from the boarding one to the entrance"
+        min_length=2,
+        description="for each tier, waypoints from the boarding waypoint to the queue's entrance",
     )
     rides: list[ExplicitRide] = Field(description="durations of the rides")
 
@@ -105,10 +106,10 @@ class ExplicitElevator(Strict):
 class ExplicitRobotKind(Strict):
     """Size and dynamics of robots."""
 
-    radius_m: Positive = Field(description="m")
-    acceleration_m_s2: Rate = Field(description="m/s2")
-    deceleration_m_s2: Rate = Field(description="m/s2")
-    top_speed_m_s: Rate = Field(description="m/s")
+    radius_m: Positive = Field(description="radius of a robot, m")
+    acceleration_m_s2: Rate = Field(description="acceleration, m/s2")
+    deceleration_m_s2: Rate = Field(description="deceleration, m/s2")
+    top_speed_m_s: Rate = Field(description="top speed, m/s")
     full_turn_s: Seconds = Field(description="duration of a turn of 360 degrees on the spot, s")
     pod_transfer_s: Seconds = Field(description="duration of lifting or setting down a pod, s")
 
@@ -116,8 +117,8 @@ class ExplicitRobotKind(Strict):
 class ExplicitPod(Strict):
     """A pod and where it stands at the start."""
 
-    waypoint: Index = Field(description="a storage place")
-    capacity: Space = Field(description="space units")
+    waypoint: Index = Field(description="storage location where it stands")
+    capacity: Space = Field(description="capacity in space units")
 
 
 class ExplicitRobot(Strict):
@@ -125,7 +126,8 @@ class ExplicitRobot(Strict):
 
     waypoint: Index = Field(description="where it stands")
     heading_rad: float = Field(
-        0.0, description="heading: 0 is the +x direction, growing towards +y"
+        0.0,
+        description="heading in rad: 0 is the +x direction, and positive angles turn towards +y",
     )
     kind: Index = Field(0, description="index of its robot kind")
 
@@ -148,10 +150,10 @@ class ExplicitLayout(Strict):
         default_factory=dict, description="stations of further kinds, by name of the kind"
     )
     elevators: list[ExplicitElevator] = Field(
-        default_factory=list, description="lifts between tiers"
+        default_factory=list, description="elevators between tiers"
     )
     robots: list[ExplicitRobot] = Field(default_factory=list, description="robots at the start")
     pods: list[ExplicitPod] = Field(default_factory=list, description="pods at the start")
     waypoints: list[ExplicitWaypoint] = Field(
-        min_length=1, description="all places, numbered from 0 in this order"
+        min_length=1, description="all waypoints, numbered from 0 in this order"
     )
