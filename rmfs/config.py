@@ -31,8 +31,8 @@ LARGEST_SEED = 2**63 - 1
 class Model(pydantic.BaseModel):
     """Base class of all configuration blocks: unknown keys are errors, and values are immutable.
 
-    A number is 0, or its absolute value is between `SMALLEST` and `LARGEST`; a field may be
-    narrower. Booleans must be written as `true` or `false`.
+    A number is 0, or its absolute value is between `SMALLEST` and `LARGEST`; a field may have a
+    narrower range. Booleans must be written as `true` or `false`.
     """
 
     model_config = pydantic.ConfigDict(extra="forbid", frozen=True, validate_default=True)

@@ -8,7 +8,7 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 
 OMITTED = "omitted"
-"""Marks, in a field's metadata, a field left out if empty: adding it changes no older hash."""
+"""Metadata of a field that is not hashed while it is empty, so adding it changes no older hash."""
 
 
 def digest(value: object) -> str:

@@ -143,7 +143,7 @@ class Observer:
         """Report that an order is picked and has left its station (`order.completed_s`)."""
 
     def slot_freed(self, order: Order) -> None:
-        """Report that a pick station passed on an order, or its part of one, and freed the slot."""
+        """Report that a pick station released an order, or its part of one, and freed the slot."""
 
     def tote_held(self, station: int, from_s: float, to_s: float) -> None:
         """Report that an order, or a part, could not leave a pick station during [from_s, to_s)."""

@@ -59,7 +59,7 @@ def units_per_h_keeping_stock(
     duration_s: float,
     fleets: Collection[int],
 ) -> dict[int, float]:
-    """Return, per fleet, an upper bound on units per hour for runs that store what they pick.
+    """Return an upper bound on units per hour for each fleet, for runs that store what they pick.
 
     Not even a controller that knew all future orders could exceed it: the bound holds for any
     choice of orders, pods and places. Each bundle has the number of units given by its SKU.

@@ -1,4 +1,4 @@
-"""Quality checks: every n-th pod that was at a pick station is looked at before it is stored."""
+"""Quality checks: every n-th pod that was at a pick station is inspected before it is stored."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class CheckParameters(Model):
-    """What a layout file can say of checks."""
+    """Parameters of checks in a layout file."""
 
     every: Annotated[int, Field(ge=1)] = 5
     check_s: Annotated[float, Field(gt=0)] = 20.0
@@ -56,7 +56,7 @@ class CheckService(VisitService):
 
 
 class EveryNth(VisitController[CheckStation]):
-    """Sends every n-th pod that came to a pick station to the check with the fewest pods."""
+    """Sends every n-th pod that arrives at a pick station to the check with the fewest pods."""
 
     def __init__(self, *given: Any) -> None:
         super().__init__(*given)
@@ -71,7 +71,7 @@ class EveryNth(VisitController[CheckStation]):
                 self._due.add(pod)
 
     def visit_for(self, robot: Robot) -> Visit | None:
-        """Send a pod that is due, as soon as its robot is done at the pick station."""
+        """Send a pod that is due for a check when its robot has finished at the pick station."""
         if robot.pod not in self._due:
             return None
         self._due.remove(robot.pod)
@@ -80,11 +80,11 @@ class EveryNth(VisitController[CheckStation]):
 
 
 class Checks(Measure):
-    """What the footprint says of checks."""
+    """Columns of the footprint about checks."""
 
     columns = (
         Column("pods_checked", INTEGER, "pods", "Pods that were at a check"),
-        Column("check_idle_share", REAL, "share", "1 - time in which checks look at a pod / all"),
+        Column("check_idle_share", REAL, "share", "Share of time in which checks have no pod"),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:

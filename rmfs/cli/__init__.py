@@ -98,7 +98,9 @@ for command in (run, check, plot, report, view, compare):
 
 @app.command()
 def bench(
-    runs: Annotated[int, typer.Option(min=1, help="Runs per case; the median counts.")] = 5,
+    runs: Annotated[
+        int, typer.Option(min=1, help="Runs per case, of which the median is reported.")
+    ] = 5,
     out: Annotated[Path, typer.Option(help="Folder for the tables.")] = Path("results/bench"),
 ) -> None:
     """Measure the speed of runs and where their time is spent."""

@@ -1,4 +1,4 @@
-"""`rmfs check`: whether a run would be refused, before it; what its files prove, after it."""
+"""`rmfs check`: checks the inputs before a run, and audits the files of a run after it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def check(
     set_: SetOption = None,
     allow_not_well_formed: NotWellFormedOption = False,
 ) -> None:
-    """Audit runs, or check whether one would be refused and its fleet gets the energy it needs."""
+    """Audit finished runs, or check the inputs of a run and the energy balance of its fleet."""
     if runs:
         audited(runs)
         return

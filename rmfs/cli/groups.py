@@ -66,7 +66,7 @@ class LazyGroup(TyperGroup):
 
 
 def tell_defaults(command: Any) -> Any:
-    """Make the help of every option show its default, even if there is none."""
+    """Make the help of every option show its default, or that there is none."""
     for one in getattr(command, "commands", {}).values():
         tell_defaults(one)
     for parameter in command.params:

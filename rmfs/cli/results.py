@@ -109,7 +109,9 @@ def compare(
     everything: Annotated[
         bool, typer.Option("--all", help="Show every column that differs.")
     ] = False,
-    confidence: Annotated[float, typer.Option(min=0.5, max=0.999, help="Of the intervals.")] = 0.95,
+    confidence: Annotated[
+        float, typer.Option(min=0.5, max=0.999, help="Level of the intervals.")
+    ] = 0.95,
     allow_incomplete: Annotated[
         bool,
         typer.Option(

@@ -20,7 +20,7 @@ def step(text: str) -> None:
 
 @contextmanager
 def progress(text: str, *, wordy: bool = True) -> Iterator[Callable[[float, float], None]]:
-    """Yield a function of (done, total) that reports progress: a bar on a terminal, else one line.
+    """Yield a function of (done, total) that shows progress by a bar on a terminal, else by a line.
 
     The line is printed at the first call, so that input errors are reported before it.
 

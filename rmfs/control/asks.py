@@ -17,7 +17,7 @@ Q = TypeVar("Q")
 D = TypeVar("D")
 
 BOUND_TOLERANCE = 1e-6
-"""Tolerance, relative to the objective, by which rounding may put a bound beyond it."""
+"""Amount by which a bound may exceed the objective due to rounding, relative to the objective."""
 
 Plain = NDArray[Any] | int | float | str | bool | Sequence["Plain"]
 """Values allowed in a solution, which is sent between processes, recorded and replayed."""
@@ -94,7 +94,7 @@ class Answer:
 
     @property
     def gap(self) -> float:
-        """`gap_abs` relative to `scale`; nan if it is missing, or if only the scale is 0."""
+        """`gap_abs` relative to `scale`; 0 if `gap_abs` is 0, else nan if `scale` is 0."""
         scale = abs(self.objective) if isnan(self.scale) else self.scale
         if self.gap_abs == 0.0:
             return 0.0
@@ -251,8 +251,8 @@ class By(NamedTuple, Generic[D]):
 
     The call is None if the controller's own rule decided.
 
-    A bare decision is attributed to the controller if it comes from `decide`, and to the answer if
-    it comes from `answered`.
+    A decision without `By` is attributed to the controller's own rule if it comes from `decide`,
+    and to the answer if it comes from `answered`.
     """
 
     decision: D

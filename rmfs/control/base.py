@@ -118,11 +118,11 @@ class Controller(Generic[P]):
         self.rng = rng
 
     def next_event_s(self) -> float:
-        """Time by which it needs to be asked; read after each time it was asked."""
+        """Simulated time in s by which it must be asked next; read after each call."""
         return inf
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Process an event listed in `hears`; the subject is described at the trigger."""
+        """Process an event listed in `hears`; `Trigger` describes the subject of each event."""
 
     def answered(self, call: Call) -> Iterator[Any]:
         """Yield the decisions of a solution that are still valid, in the same way as `decide`.
@@ -134,7 +134,7 @@ class Controller(Generic[P]):
         return iter(())
 
     def is_modelled(self, decision: Any) -> bool:
-        """Whether a decision is of a kind that its optimisers make: only those are counted.
+        """Return whether its optimisers make decisions of this kind; only these are counted.
 
         A prepared task counts when it is carried out.
         """

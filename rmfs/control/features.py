@@ -40,7 +40,7 @@ KINDS: dict[Problem, tuple[str, ...]] = {
     Problem.REPOSITIONING: ("move",),
     Problem.CA: ("ca",),
 }
-"""The kinds of question of each problem; problems decided in turns have one of the same name."""
+"""The kinds of question of each problem; a problem decided in turns has one, named like itself."""
 
 COLUMNS: dict[str, tuple[str, ...]] = {
     "poa": (
@@ -115,7 +115,7 @@ RANKINGS: dict[str, dict[str, float]] = {
     "place": {"away_s": -1.0, "back_s": -1.0},
     "move": {"distance_m": -1.0, "reach_s": -1.0},
 }
-"""Weights of the unscaled columns whose sum ranks candidates to find the k best."""
+"""Weights of the unscaled columns; the weighted sum ranks candidates to find the k best."""
 
 
 class Feature(NamedTuple):

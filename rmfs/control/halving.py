@@ -29,7 +29,7 @@ class Comparison:
     instants
         Budget: no further round starts once this many instants have been simulated.
     certainty
-        A decision replaces the first only if its mean advantage is this many standard errors.
+        A decision replaces the first only if its mean advantage exceeds this many standard errors.
     state
         Identifies the question for hashing.
     """
@@ -49,9 +49,10 @@ class Comparison:
 def solve(question: Comparison) -> Answer:
     """Find the decision with the greatest value.
 
-    All decisions are tried in one future, then in as many again, and after each round the worse
-    half is dropped. The base rule's decision stays, so that the others are compared with it in the
-    same futures (Karnin, Koren and Somekh 2013, "Almost optimal exploration in multi-armed
+    All decisions are tried in one future. Each further round doubles the number of futures, and
+    after each round the worse half of the decisions is dropped. The base rule's decision stays, so
+    that the others are compared with it in the same futures (Karnin, Koren and Somekh 2013, "Almost
+    optimal exploration in multi-armed
     bandits"). Work is counted in instants.
     """
     values: dict[int, list[float]] = {row: [] for row in range(question.count)}

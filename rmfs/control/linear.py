@@ -31,7 +31,7 @@ STARTS: dict[str, Weights] = {
         **{"away_s": -1.0, "units": 1.0, "robots": -5.0},
     },
 }
-"""Initial weights of scaled features, for questions whose ranking weights are no rule."""
+"""Initial weights of scaled features, for questions whose ranking weights do not make a rule."""
 
 
 def default_weights(kind: str) -> Weights:

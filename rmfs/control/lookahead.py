@@ -30,7 +30,7 @@ class Goal(Parameters):
     orders: float = 0.0
     """Value of an order completed, discounted in the same way."""
     units_stored: float = 0.0
-    """Value of a unit stored, discounted in the same way: units that are picked must be stored at
+    """Value of a unit stored, discounted in the same way; units that are picked must be replaced at
     some time."""
     overdue_s: float = pydantic.Field(default=0.0, ge=0)
     """Cost of each second by which an order is overdue within the horizon."""

@@ -130,7 +130,7 @@ class Trigger(IntEnum):
     UNIT_PICKED = 3
     """A unit left a pod [pod, SKU]."""
     ORDER_COMPLETED = 4
-    """A pick station passed on an order [Order]."""
+    """A pick station finished an order and freed its slot [Order]."""
     NEW_BUNDLE = 5
     """A bundle joined the backlog [Bundle]."""
     BUNDLE_PROMISED = 6

@@ -66,7 +66,6 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Override a parameter; may be repeated."),
 ]
-Share = Annotated[float, typer.Option(min=0.0, max=0.5)]
 
 
 @app.command()
@@ -75,8 +74,8 @@ def demonstrate(
         str,
         typer.Option(
             metavar="URL",
-            help="Where robots come to: tcp://HOST:PORT; room://HOST:PORT for an emulated room "
-            "that keeps the clock; `emulated` starts such a room along with it.",
+            help="Address to which robots connect: tcp://HOST:PORT; room://HOST:PORT for an "
+            "emulated room that keeps the clock; `emulated` starts such a room along with it.",
         ),
     ],
     layout: Layout = "demonstrator",
@@ -100,7 +99,7 @@ def demonstrate(
         bool,
         typer.Option(
             "--past-failure",
-            help="Resume a journal whose last tick failed, without what robots said then.",
+            help="Resume a journal whose last tick failed, without the messages of that tick.",
         ),
     ] = False,
     set_: Settings = None,
@@ -175,32 +174,46 @@ def emulate(
         str,
         typer.Option(
             metavar="URL",
-            help="Of the server: room://HOST:PORT to keep the clock for it, faster than real time; "
-            "tcp://HOST:PORT in real time.",
+            help="Address of the server: room://HOST:PORT to keep the clock for it, faster than "
+            "real time; tcp://HOST:PORT in real time.",
         ),
     ],
     layout: Layout = "demonstrator",
     real: Real = None,
     tags: Tags = None,
     secret: Secret = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of all that goes wrong.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all imperfections.")] = 0,
     set_: Settings = None,
-    speed_error: Share = 0.05,
-    slip: Share = 0.01,
-    missed_tags: Share = 0.02,
-    lost_messages: Share = 0.01,
-    delay_s: Annotated[float, typer.Option(min=0.0, max=1.0)] = 0.04,
+    speed_error: Annotated[
+        float,
+        typer.Option(min=0.0, max=0.5, help="Largest relative error of the speed of a wheel."),
+    ] = 0.05,
+    slip: Annotated[
+        float,
+        typer.Option(min=0.0, max=0.5, help="Largest share of a wheel's travel lost to slip."),
+    ] = 0.01,
+    missed_tags: Annotated[
+        float, typer.Option(min=0.0, max=0.5, help="Share of passages in which a tag is missed.")
+    ] = 0.02,
+    lost_messages: Annotated[
+        float, typer.Option(min=0.0, max=0.5, help="Share of messages lost in each direction.")
+    ] = 0.01,
+    delay_s: Annotated[
+        float, typer.Option(min=0.0, max=1.0, help="Largest delay of a message.")
+    ] = 0.04,
     memory: Annotated[
         Path | None,
-        typer.Option(help="Folder where robots remember their orders.", show_default=False),
+        typer.Option(help="Folder in which robots store their orders.", show_default=False),
     ] = None,
     duration_s: Annotated[
         float | None,
-        typer.Option(min=0.0, help="Ends then. [default: with the server]", show_default=False),
+        typer.Option(
+            min=0.0, help="End after this time. [default: with the server]", show_default=False
+        ),
     ] = None,
     report: Annotated[
         Path | None,
-        typer.Option(help="JSON file of what really happened.", show_default=False),
+        typer.Option(help="JSON file for measurements of the true motion.", show_default=False),
     ] = None,
 ) -> None:
     """Emulate a room whose robots have the imperfections of physical ones."""

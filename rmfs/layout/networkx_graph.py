@@ -54,9 +54,9 @@ class GraphMeasures:
     Attributes
     ----------
     to_station_mean_m, to_station_max_m
-        Shortest way from a storage place to the nearest pick station, in m, through any waypoint
-        and by elevators free of length: mean and maximum over the places. None without pick
-        stations or reachable places.
+        Length in m of the shortest way from a storage place to the nearest pick station, mean and
+        maximum over the places. Ways may lead through any waypoint; elevator rides count as 0 m.
+        None without pick stations or reachable places.
     bottlenecks
         Waypoints outside of queues whose closure would cut the floor apart: the articulation points
         of the graph without directions and queues.

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 KINDS_OF_MOTION = 7
 AFTER_US = 86_400_000_000
-"""Robots complete trips that are under way at the end of the run; none takes a day."""
+"""Margin after the end of a run (us), in which robots complete trips; none takes a day."""
 LARGEST_SPEED_M_S = 1000.0
 LARGEST_ANGLE_RAD = 100.0
 """Largest heading: a few full turns."""

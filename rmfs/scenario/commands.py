@@ -186,7 +186,9 @@ def export(
     ] = "orders",
     seed: Annotated[int, typer.Option(min=0, help="Seed of all random streams.")] = 0,
     pick_stations: Annotated[int, typer.Option(min=1, help="Number, for rates per station.")] = 4,
-    replenishment_stations: Annotated[int, typer.Option(min=1, help="For rates per station.")] = 4,
+    replenishment_stations: Annotated[
+        int, typer.Option(min=1, help="Number, for rates per station.")
+    ] = 4,
     settings: Settings = None,
     force: Force = False,
 ) -> None:

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 def bundles_to_cover(scenario: Scenario, skus: SkuSet) -> list[int]:
     """Return the SKUs of the bundles to stock initially for a scenario's file of orders.
 
-    For each SKU, as many whole bundles as contain `stock.order_cover` times the units ordered
-    before the end of the run. The largest bundles come first, because small ones fit into the
+    The bundles of each SKU contain at least `stock.order_cover` times the units ordered before the
+    end of the run. The largest bundles come first, because small ones fit into the
     remaining space.
 
     Raises

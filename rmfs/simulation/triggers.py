@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Triggers(Observer):
-    """Creates triggers from events; the subject of each is described at the trigger.
+    """Creates triggers from events; `Trigger` describes the subject of each.
 
     Parameters
     ----------

@@ -110,12 +110,12 @@ class Traffic(Readings):
         return traffic
 
     def __getstate__(self) -> tuple[Layout, bytes, dict[str, Any]]:
-        """For pickles: the layout, the bytes, and what a subclass has added."""
+        """Return the state for pickling: the layout, the bytes, and what a subclass has added."""
         own = {name: self.__dict__[name] for name in self.__dict__.keys() - _OWN}
         return self._layout, self.to_bytes(), own
 
     def __setstate__(self, state: tuple[Layout, bytes, dict[str, Any]]) -> None:
-        """Go on from a pickle."""
+        """Restore a pickled state."""
         self._layout, saved, added = state
         self.__dict__.update({**_of(*from_bytes(self._layout, saved)), **added})
 

@@ -50,7 +50,7 @@ class TripStream(Protocol):
         """Return the commands that follow an event of traffic."""
 
     def given(self, command: Command) -> Iterable[Command]:
-        """Return the further commands that a command which another robot received leads to."""
+        """Return the commands to other robots that follow from a command to one robot."""
 
 
 class PodTrips:
@@ -169,7 +169,7 @@ class PointTrips:
             yield from self._next(time_us, robot)
 
     def given(self, _command: Command) -> Iterator[Command]:
-        """No command depends on another robot."""
+        """Return no commands, since none depends on another robot."""
         return iter(())
 
     def _next(self, time_us: int, robot: int) -> Iterator[Command]:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 class PodFaces(PodParts):
     """The face on which every unit of a pod lies.
 
-    A bundle goes to the face with most room, and the rest of it to the next one.
+    A bundle goes to the face with most room; what does not fit there goes to the next face.
 
     Parameters
     ----------

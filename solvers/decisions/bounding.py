@@ -29,7 +29,7 @@ _LARGEST = 4_000_000
 """Nonzeros of the largest programme whose relaxation is solved."""
 
 _LARGE = 50_000
-"""Nonzeros beyond which that is done by an interior point, not by the simplex method."""
+"""Nonzeros beyond which the relaxation is solved by an interior-point method."""
 
 
 def bounds(

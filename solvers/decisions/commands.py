@@ -44,8 +44,9 @@ def solve(
         typer.Option(
             "--with",
             metavar="SOLVER",
-            help="Instead: highs, scip, gurobi, cplex or cbc, given the exact programme as MPS; or "
-            "a command with {program}, {solution} and {seconds}. [default: our own methods]",
+            help="External solver instead: highs, scip, gurobi, cplex or cbc, given the exact "
+            "programme as MPS; or a command with {program}, {solution} and {seconds}. "
+            "[default: our own methods]",
             show_default=False,
         ),
     ] = "",
@@ -225,13 +226,14 @@ LIBRARY = Path("instances/decisions")
 
 LibraryFolder = Annotated[Path, typer.Option("--library", help="Folder of the library.")]
 Family = Annotated[list[str] | None, typer.Option(help="Only this family; may be repeated.")]
+Size = Annotated[list[str] | None, typer.Option(help="Only this size; may be repeated.")]
 
 
 @app.command()
 def draw(
     out: Annotated[Path, typer.Option(help="Folder of the library.")] = LIBRARY,
     family: Family = None,
-    size: Family = None,
+    size: Size = None,
 ) -> None:
     """Redraw the questions of the library from runs, by the documented procedure."""
     from rmfs.solvers.decisions.files import write
@@ -268,11 +270,13 @@ def import_(
 def improve(
     library: LibraryFolder = LIBRARY,
     family: Family = None,
-    size: Family = None,
+    size: Size = None,
     work: Annotated[
         float, typer.Option(min=0.01, help="Deterministic seconds per search in the first round.")
     ] = 1.0,
-    rounds: Annotated[int, typer.Option(min=1, help="Each with four times the work.")] = 1,
+    rounds: Annotated[
+        int, typer.Option(min=1, help="Rounds, each with four times the work of the last.")
+    ] = 1,
     seconds: Annotated[float, typer.Option(min=1.0, help="Total wall time.")] = math.inf,
     load: Annotated[
         float, typer.Option(min=0.0, help="Machine load above which the search pauses.")

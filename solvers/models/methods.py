@@ -68,17 +68,17 @@ class Methods(Generic[D, V]):
         data
             The problem.
         method
-            Who solves it. Default: the family's default.
+            Name of the method. Default: the family's default.
         limits
-            When to stop, in counted work; each method says which limits it knows. Default: none,
-            which for an exact method means to optimality.
+            Limits in counted work; each method documents those that apply. Default: none, so that
+            exact methods run to optimality.
         seed
-            Seed of what is drawn, if anything is. Default 0.
+            Seed of random choices, if the method makes any. Default 0.
         start
             Feasible values to start from; the result is never worse. Methods that need none ignore
             them. Default: none.
         options
-            Further ones of the method.
+            Further options of the method.
 
         Returns
         -------

@@ -83,7 +83,7 @@ EXPECTED = {
     ),
 }
 LEFT_OUT = {
-    "instacart": {"lines of orders that are not taken": 1, "orders without a line": 1},
+    "instacart": {"lines of orders that are not used": 1, "orders without a line": 1},
     "online-retail": {
         "lines that are no products (postage, fees)": 1,
         "lines of cancelled or corrected invoices": 1,
@@ -92,7 +92,7 @@ LEFT_OUT = {
     "jd": {},
     "olist": {
         "orders cancelled or not available": 1,
-        "lines of orders that are not taken": 1,
+        "lines of orders that are not used": 1,
     },
 }
 

@@ -33,5 +33,5 @@ class ChargeAssignment(Controller[P]):
         """Yield the robots to be sent to charge, and those that must leave a plug-in place."""
 
     def target_share(self) -> float:
-        """Level up to which a robot charges if it was sent in any case."""
+        """Level (share of capacity) up to which a robot charges that was sent in any case."""
         return 0.8

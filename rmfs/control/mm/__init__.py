@@ -43,5 +43,5 @@ class MethodManagement(Controller[P]):
         Raises
         ------
         InputError
-            If they cannot; the message names the rules.
+            If the rules cannot be combined; the message names them.
         """

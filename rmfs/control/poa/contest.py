@@ -70,7 +70,10 @@ class Contest:
         return [at_row[row] for row in self.rows.tolist()]
 
     def claimed(self) -> NDArray[np.int32]:
-        """Units needed here by other orders, shape (K,): those with a slot come first."""
+        """Units needed here by orders that come first, shape (K,).
+
+        These are orders with a slot and, if orders compete for the pool, those in the pool.
+        """
         claimed: NDArray[np.int32] = self.view.need[self.station.index]
         if self.for_pool:
             claimed = claimed + self.view.queued_need[self.station.index]

@@ -19,8 +19,8 @@ class PickerLoadParameters(Parameters):
     """Parameters of POA picker-load."""
 
     fatigue_weight: Annotated[float, pydantic.Field(ge=0, le=100)] = 0.0
-    """Share by which fatigue 1 increases the weight of a picker's work, in proportion below. 0:
-    only time counts; 100: tired pickers get no orders while others have free slots."""
+    """Relative increase of a picker's work at full fatigue (1), in proportion to fatigue. With 0,
+    only time counts; with 100, tired pickers get no orders while others have free slots."""
 
 
 class PickerLoad(Filling[PickerLoadParameters]):

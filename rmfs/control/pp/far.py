@@ -16,7 +16,7 @@ class FarParameters(Parameters):
     runs_granted: int = pydantic.Field(1, ge=1)
     """Maximum number of hops of its path granted to a robot at once."""
     reroute: bool = True
-    """Whether a robot evades by an alternative path; otherwise to a random neighbouring
+    """Whether a robot evades by an alternative path; otherwise it evades to a random neighbouring
     waypoint."""
     patience_s: float = pydantic.Field(30.0, ge=0)
     """Time for which a robot stands still before it evades in any case."""

@@ -15,7 +15,7 @@ class PasParameters(RollingParameters):
     wait_s: float = pydantic.Field(2.0, gt=0)
     """Duration of a wait."""
     priorities: int = pydantic.Field(2, ge=0)
-    """Highest priority of a robot with no options left; after that it restarts at 0."""
+    """Highest priority to which a robot without options can rise; after that it restarts at 0."""
     steps_per_robot: int = pydantic.Field(40, ge=1)
     """Maximum number of decisions per call for each robot, on average."""
 

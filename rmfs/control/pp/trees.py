@@ -24,7 +24,7 @@ class PbsParameters(TreeParameters):
 
 
 class Cbs(PathPlanning[TreeParameters]):
-    """CBS: of two conflicting robots, one avoids the other; the best such choices, no horizon."""
+    """CBS: one of two conflicting robots avoids the other; finds the best choices, no horizon."""
 
     parameters_model = TreeParameters
     planner = "cbs"

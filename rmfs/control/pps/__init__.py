@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 Requests = Literal["assigned", "assigned-and-completable", "assigned-and-queued"]
-"""Requests that count: of assigned orders; also of queued orders that the pod completes; of all."""
+"""Orders whose requests count: assigned ones; also queued ones that the pod completes; or all."""
 
 _REACH: dict[Requests, int] = {
     "assigned": 0,

@@ -51,7 +51,7 @@ class Candidates:
         return self.view.storage.pod_waypoint[self.pods]
 
     def other_tiers(self) -> NDArray[np.int64] | int:
-        """Number (0 to 2) of robot and station on another tier than the pod, shape (C,), or 0."""
+        """How many of robot and station are on another tier than each pod, (C,), or 0 for all."""
         travel = self.view.travel
         if travel.tiers == 1:
             return 0
@@ -145,7 +145,7 @@ class PickCandidates(Candidates):
         return units
 
     def queued_units(self) -> NDArray[np.int64]:
-        """Number of open requests of queued orders that would be bound after those, shape (C,)."""
+        """Open requests of queued orders that each pod can serve in addition, shape (C,)."""
         if self.requests == "assigned-and-completable":
             done = self.completed()
             units = [float(order.open_units) for order in done.orders]

@@ -54,7 +54,7 @@ class Pauses(Parameters):
     robot_pause_s: Seconds = 15.0
     """Seconds after a move before the robot may get another one."""
     search_pause_s: Seconds = 15.0
-    """Seconds after an unsuccessful search before moves are searched again."""
+    """Seconds after an unsuccessful search before the next one."""
 
 
 P = TypeVar("P", bound=Parameters)
@@ -86,7 +86,7 @@ Q = TypeVar("Q", bound=Pauses)
 class Pausing(Repositioning[Q]):
     """A rule that pauses after a move (per robot) and after an unsuccessful search (all robots).
 
-    When a pause ends in which a robot asked in vain, TA is asked again.
+    If a robot asked in vain during a pause, TA is asked again when the pause ends.
     """
 
     def __init__(self, parameters: Q, view: View, rng: np.random.Generator) -> None:
@@ -119,7 +119,7 @@ class Pausing(Repositioning[Q]):
         return False
 
     def next_event_s(self) -> float:
-        """Time at which the first pause ends in which a robot asked in vain."""
+        """Simulated time in s of the first end of a pause during which a robot asked in vain."""
         if self._again_s <= self.view.now_s:
             self._again_s = inf
         return self._again_s

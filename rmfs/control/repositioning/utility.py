@@ -21,7 +21,7 @@ class UtilityParameters(RankParameters, Pauses):
     """Parameters of repositioning utility."""
 
     search_pause_s: Seconds = 120.0
-    """Seconds after an unsuccessful search before moves are searched again."""
+    """Seconds after an unsuccessful search before the next one."""
 
 
 class Utility(Pausing[UtilityParameters]):

@@ -1,4 +1,4 @@
-"""Replenishment pod selection (RPS): which pod a bundle goes into, and when this is released."""
+"""Replenishment pod selection (RPS): the pod of each bundle, and when the choice is released."""
 
 from __future__ import annotations
 

@@ -44,8 +44,9 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
 
     All stations are on at the start. After each pause, each kind is considered separately. If more
     work waits than the threshold, and the used share of the active stations is not below the limit,
-    the first station that is off is switched on. If both are the other way round, the last one that
-    is on is switched off. Otherwise nothing changes. The last active station of a kind stays on.
+    the first station that is off is switched on. If no more work waits than the threshold, and the
+    used share is below the limit, the last one that is on is switched off. Otherwise nothing
+    changes. The last active station of a kind stays on.
     First and last refer to the activation number, ties by number. Bundles held back by RPS count as
     waiting.
     """

@@ -36,7 +36,7 @@ class BalancedParameters(TeamParameters):
     other_stations: bool = False
     """Whether a pod that has been served may continue to another station nearby."""
     search_radius_m: NotNegative = 8.0
-    """Maximum distance to that station in m (Euclidean)."""
+    """Maximum distance of `other_stations` in m (Euclidean)."""
     reposition_before_rest: bool = True
     """Whether robots without work move idle pods, if repositioning finds a move."""
 
@@ -52,8 +52,9 @@ class Balanced(StationTeams[BalancedParameters]):
 
     Every `period_s`, if the set of stations with work has changed, the robots are redistributed:
     among the kinds of station by weight times the share of stations with work, and within a kind in
-    turn, stations far from the middle of the tier first; robots in excess of the limit go to any
-    station below it. Then robots are moved, nearest first. If no station had work, robots are
+    turn, stations far from the middle of the tier first. Robots in excess of the limit go to any
+    station below it. Robots change to their new stations nearest first. If no station had work,
+    robots are
     redistributed as soon as there is new work. The share of robots given by the weight of
     repositioning, rounded down, gets no station. The robot that is asked about does not count
     towards its station's limit.

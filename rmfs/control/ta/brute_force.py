@@ -42,11 +42,13 @@ class _Job(NamedTuple):
 class BruteForce(Solo[BruteForceParameters]):
     """Compares every available pod, and the carried pod, at every station with work for it.
 
-    The estimated time is the straight path from robot to pod at top speed, the time to lift the pod
-    (and first to set down another one), and the longer of the unhindered time to the station and
-    the expected wait there. All robots together look for picks until there are none, then for
+    The estimated time is a sum of three: the straight path from robot to pod at top speed; the time
+    to lift the pod (and first to set down another one); and the longer of the unhindered time to
+    the station and the expected wait there. All robots together look for picks until there are
+    none, then for
     bundles until there are none. If the best pod is not the carried one, the carried pod is parked
-    on the way, at the place with the least time there plus the straight path to the other pod.
+    on the way, where the drive to the place plus the straight path to the other pod takes least
+    time.
     Without work, pods are parked at the nearest place. Ties: the carried pod, then the station,
     then the pod with the lowest number.
 

@@ -35,7 +35,7 @@ class SwarmParameters(SoloParameters):
     work_limit: Annotated[int, pydantic.Field(ge=1)] = 6
     """Maximum number of orders, or bundles, of a station that count, and of robots it attracts."""
     threshold_weight: NotNegative = 1.0
-    """Weight (alpha) of half that limit, squared: how hard it is to attract any robot."""
+    """Weight (alpha) of the square of half `work_limit`: how hard it is to attract any robot."""
     distance_weight: NotNegative = 1.0
     """Weight (beta) of the squared Manhattan distance in m."""
     growth: Annotated[float, pydantic.Field(ge=1, allow_inf_nan=False)] = 1.2
@@ -47,7 +47,7 @@ class SwarmParameters(SoloParameters):
     other_stations: bool = False
     """Whether a pod that has been served may continue to another station nearby."""
     search_radius_m: NotNegative = 5.0
-    """Maximum distance to that station in m (Euclidean)."""
+    """Maximum distance of `other_stations` in m (Euclidean)."""
 
 
 class Swarm(Solo[SwarmParameters]):

@@ -29,7 +29,7 @@ class Tracker:
         self.view = view
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Process an event listed in `hears`; the subject is described at the trigger."""
+        """Process an event listed in `hears`; `Trigger` describes the subject of each event."""
 
 
 T = TypeVar("T", bound=Tracker)

@@ -21,7 +21,7 @@ from .tags import SerialTagReader
 STEP_S = 0.05
 BAUD, TAG_BAUD = 115_200, 9_600
 ANSWER_S = 0.1
-"""The base answers within so long, or does not at all."""
+"""Maximum time in s for an answer of the base."""
 
 _log = logging.getLogger("rmfs.robot")
 
@@ -32,9 +32,9 @@ def main(arguments: list[str] | None = None, camera: Callable[[], Camera] | None
     Parameters
     ----------
     arguments
-        Of the command line.
+        Command-line arguments.
     camera
-        Opens the camera, if it is not one that OpenCV knows by its number.
+        Function that opens the camera. Default: OpenCV opens the camera with the given number.
 
     Returns
     -------

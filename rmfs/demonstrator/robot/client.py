@@ -11,8 +11,8 @@
 Nothing blocks except opening a connection. At the beginning of a session, each side proves that it
 knows the secret, and both derive a key.
 
-    server -> robot   welcome: version, nonce robot -> server   hello: version, name of the robot,
-    nonce      (valid for this welcome only)
+    server -> robot   welcome: version, nonce
+    robot -> server   hello: version, name of the robot, nonce (valid for this welcome only)
 """
 
 from __future__ import annotations

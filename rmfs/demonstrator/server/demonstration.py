@@ -40,7 +40,7 @@ class Demonstration:
     is_emulated
         Whether the robots are in an emulated room, which keeps the clock.
     past_failure
-        Whether to leave out what was heard at the tick at which the journal failed.
+        Whether to leave out the messages of the tick at which the server failed.
     """
 
     hub: Hub

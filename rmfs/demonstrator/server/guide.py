@@ -108,7 +108,7 @@ class Guide:
         return outbox
 
     def forget_strayed(self) -> None:
-        """Forget where robots have strayed to; they report it again when told their orders."""
+        """Forget where robots have strayed to; they report it again on receiving their orders."""
         for robot in self.robots.values():
             robot.astray = None
 

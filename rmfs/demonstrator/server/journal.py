@@ -46,9 +46,9 @@ class Journal:
         past = _Past(path, head)
         left_out = _to_leave_out(path, past) if past_failure else None
         self.left_out = past.left_out | ({left_out} if left_out is not None else set())
-        """Times (us) of ticks that failed, at which nothing is to be heard."""
+        """Times (us) of failed ticks, whose messages are left out."""
         self.begins_us = max([*past.heard, *self.left_out], default=-1)
-        """Up to this time everything has been heard already."""
+        """Up to this time (us), messages come from the journal."""
         self._by_time = past.heard
         if not path.exists():
             path.write_text(head + "\n", encoding="utf-8")

@@ -1,7 +1,7 @@
 """The audit of a run: whether the contents of its files are possible and consistent.
 
 It reads only the run folder and is independent of the simulation: motion is verified by the trace
-checker, and the events are audited like the books of a firm. `rmfs check RUN` prints the findings.
+checker, and the events are checked against each other. `rmfs check RUN` prints the findings.
 """
 
 from __future__ import annotations

@@ -144,17 +144,18 @@ def minimum(power: Floats) -> tuple[Floats, Floats]:
 
 
 def meets(one: Pieces, other: Pieces, limit: Floats) -> tuple[Mask, Floats, Floats]:
-    """Find pairs of pieces that come closer than a limit; of a guided robot, that could.
+    """Find pairs of pieces that come closer than a limit or, for guided robots, may do so.
 
     Parameters
     ----------
     limit
-        Of the squared distance, m², shape (K,).
+        Limit of the squared distance, in m², shape (K,).
 
     Returns
     -------
     tuple
-        Which do, and of each pair the time and the squared distance when it is closest.
+        Which pairs do, shape (K,), and the time in s and squared distance in m² of closest
+        approach.
     """
     begin, end, power = squared_distance(one, other)
     hit = below(power, limit)
@@ -168,9 +169,10 @@ def meets(one: Pieces, other: Pieces, limit: Floats) -> tuple[Mask, Floats, Floa
 
 
 def squared_between_ways(one: Pieces, other: Pieces) -> Floats:
-    """Return the least squared distance of what pairs of pieces cover in their common time, (K,).
+    """Return the least squared distance of the lines that pairs of pieces cover, in m², shape (K,).
 
-    What a piece covers is a straight line: all of its way if the robot may be anywhere on it.
+    A piece covers a straight line during the common time of the pair; if the robot may be anywhere
+    on its way, the line is the whole way.
     """
     begin = np.maximum(one.t0_s, other.t0_s)
     end = np.minimum(one.t1_s, other.t1_s)

@@ -24,7 +24,7 @@ class Decisions(Measure):
     """Decisions of all controllers."""
 
     columns = (
-        Column("decisions", INTEGER, "decisions", "Decisions given by all controllers"),
+        Column("decisions", INTEGER, "decisions", "Decisions made by all controllers"),
         Column(
             "decision_wall_s",
             REAL,
@@ -38,7 +38,8 @@ class Decisions(Measure):
                 f"{source}_decision_share",
                 REAL,
                 "share",
-                f"Decisions {what} / all of these four kinds; empty without optimisers",
+                f"Decisions {what} / decisions in all four of these columns; empty without "
+                "optimisers",
                 better=LESS if source in ("stale", "failed") else NEITHER,
             )
             for source, what in SOURCES.items()
@@ -67,7 +68,7 @@ class Optimisers(Measure):
             REAL,
             "share",
             "Mean gap between value and bound of the optimisers' solutions, relative to the cost "
-            "of the pods called where that is known, else to the value; empty without",
+            "of the pods called where that is known, else to the value; empty without any",
             better=LESS,
         ),
         Column(

@@ -23,8 +23,9 @@ class Delays(Measure):
             f"{part}_share",
             REAL,
             "share",
-            f"Of the turnover of all completed orders, the share {what}; of an order's lines the "
-            "mean, each followed by its last unit; empty if no order was completed",
+            f"Share of the turnover of all completed orders: {what}. Lines are followed by "
+            "their last unit, and orders count with the mean of their lines; empty if no order "
+            "was completed",
             better=LESS if part in _LESS else NEITHER,
         )
         for part, what in PARTS.items()

@@ -26,7 +26,7 @@ class Disturbances(Measure):
             "disturbed_s",
             REAL,
             "s",
-            "Total duration of these disturbances within the measured time",
+            "Total duration of disturbances within the measured time",
         ),
         Column(
             "late_motions",
@@ -34,7 +34,7 @@ class Disturbances(Measure):
             "motions",
             "Motions that started late, in scenarios with late motions",
         ),
-        Column("lateness_s", REAL, "s", "Total delay of these motions"),
+        Column("lateness_s", REAL, "s", "Total delay of the late motions"),
         Column(
             "plans_repaired",
             INTEGER,

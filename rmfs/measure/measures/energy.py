@@ -24,7 +24,8 @@ class Energy(Measure):
             "energy_kwh",
             REAL,
             "kWh",
-            "Drawn by all robots, less recovered braking energy; empty if energy is not modelled",
+            "Energy drawn by all robots, less recovered braking energy; empty if energy is not "
+            "modelled",
             better=LESS,
         ),
         Column("energy_wh_per_unit", REAL, "Wh", "energy_kwh / units_picked", better=LESS),
@@ -35,11 +36,11 @@ class Energy(Measure):
             "energy_kwh per 1,000 picked units",
             better=LESS,
         ),
-        Column("energy_drive_kwh", REAL, "kWh", "Drawn for driving"),
-        Column("energy_turn_kwh", REAL, "kWh", "Drawn for turning on the spot"),
-        Column("energy_lift_kwh", REAL, "kWh", "Drawn for lifting pods"),
-        Column("energy_standby_kwh", REAL, "kWh", "Drawn by electronics at all times"),
-        Column("energy_recuperated_kwh", REAL, "kWh", "Recovered by braking"),
+        Column("energy_drive_kwh", REAL, "kWh", "Energy drawn for driving"),
+        Column("energy_turn_kwh", REAL, "kWh", "Energy drawn for turning on the spot"),
+        Column("energy_lift_kwh", REAL, "kWh", "Energy drawn for lifting pods"),
+        Column("energy_standby_kwh", REAL, "kWh", "Energy drawn by electronics at all times"),
+        Column("energy_recuperated_kwh", REAL, "kWh", "Energy recovered by braking"),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
@@ -67,8 +68,8 @@ class Batteries(Measure):
             "energy_charged_kwh",
             REAL,
             "kWh",
-            "Charged at chargers and by swaps; empty without batteries, as are the following "
-            "columns",
+            "Energy charged at chargers and by swaps; empty without batteries, as are the "
+            "following columns",
         ),
         Column("charging_share", REAL, "share", "Robot time spent at charging waypoints"),
         Column(
@@ -78,7 +79,7 @@ class Batteries(Measure):
             "Robot time with a task charge: the way, waiting, and charging or swapping",
             better=LESS,
         ),
-        Column("charges", COUNT_OR_EMPTY, "tasks", "Tasks charge started"),
+        Column("charges", COUNT_OR_EMPTY, "tasks", "Number of charge tasks started"),
         Column(
             "robots_stranded",
             COUNT_OR_EMPTY,
@@ -93,10 +94,10 @@ class Batteries(Measure):
             "Equivalent full cycles: energy drawn / capacity, mean over batteries",
             better=LESS,
         ),
-        Column("battery_level_mean_share", REAL, "share", "Mean level, of samples every minute"),
         Column(
-            "battery_level_least_share", REAL, "share", "Least level of any robot, sampled alike"
+            "battery_level_mean_share", REAL, "share", "Mean battery level, sampled every minute"
         ),
+        Column("battery_level_least_share", REAL, "share", "Least battery level in these samples"),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:

@@ -99,7 +99,10 @@ class RobotTime(Measure):
         Column("robot_transfer_share", REAL, "share", "Robot time lifting or setting down a pod"),
         Column("robot_riding_share", REAL, "share", "Robot time in an elevator"),
         Column("robot_idle_share", REAL, "share", "Robot time standing idle"),
-        *(Column(f"tasks_{task}", INTEGER, "tasks", f"Tasks {task} started") for task in TASKS),
+        *(
+            Column(f"tasks_{task}", INTEGER, "tasks", f"Number of {task} tasks started")
+            for task in TASKS
+        ),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:

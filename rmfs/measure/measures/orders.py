@@ -25,7 +25,13 @@ class OrderTimes(Measure):
             "Mean time from arrival to completion of an order",
             better=LESS,
         ),
-        Column("order_turnover_median_s", REAL, "s", "Median of the same", better=LESS),
+        Column(
+            "order_turnover_median_s",
+            REAL,
+            "s",
+            "Median time from arrival to completion of an order",
+            better=LESS,
+        ),
         Column(
             "order_turnover_lower_quartile_s",
             REAL,

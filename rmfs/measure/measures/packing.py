@@ -28,8 +28,19 @@ class Packing(Measure):
             "Orders packed; empty without packing in the scenario, as are the following columns",
             better=MORE,
         ),
-        Column("orders_packed_split_share", REAL, "share", "Of these, orders in several totes"),
-        Column("totes_per_order", REAL, "totes", "Totes of the packed orders, mean", better=LESS),
+        Column(
+            "orders_packed_split_share",
+            REAL,
+            "share",
+            "Share of the packed orders that came in several totes",
+        ),
+        Column(
+            "totes_per_order",
+            REAL,
+            "totes",
+            "Mean number of totes of the packed orders",
+            better=LESS,
+        ),
         Column(
             "order_cycle_mean_s",
             REAL,
@@ -37,7 +48,7 @@ class Packing(Measure):
             "Mean time from the arrival of an order until it is packed",
             better=LESS,
         ),
-        Column("order_cycle_p95_s", REAL, "s", "95th percentile of the same", better=LESS),
+        Column("order_cycle_p95_s", REAL, "s", "95th percentile of this time", better=LESS),
         Column(
             "consolidation_time_mean_s",
             REAL,

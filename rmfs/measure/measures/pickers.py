@@ -54,7 +54,7 @@ class Pickers(Measure):
             "pick_errors_unnoticed",
             COUNT_OR_EMPTY,
             "units",
-            "Of these, units that were not noticed",
+            "Wrongly picked units that were not noticed",
             better=LESS,
         ),
         Column(

@@ -35,16 +35,22 @@ class Service(Measure):
             "on_time_urgent_share",
             REAL,
             "share",
-            'The same for urgent orders: those of the first class (orders.due.mode = "priority" or '
-            '"classes"); empty without classes, as is the next column',
+            "on_time_share of urgent orders: those of the first class (orders.due.mode = "
+            '"priority" or "classes"); empty without classes, as is the next column',
             better=MORE,
         ),
-        Column("on_time_ordinary_share", REAL, "share", "The same for all others", better=MORE),
+        Column(
+            "on_time_ordinary_share",
+            REAL,
+            "share",
+            "on_time_share of all other orders",
+            better=MORE,
+        ),
         Column(
             "on_time_weighted_share",
             REAL,
             "share",
-            'The same for all orders, weighted by class (orders.due.mode = "classes")',
+            'on_time_share of all orders, weighted by class (orders.due.mode = "classes")',
             better=MORE,
         ),
         Column(
@@ -54,7 +60,7 @@ class Service(Measure):
             "95th percentile of completion less due time of the orders done, negative if early",
             better=LESS,
         ),
-        Column("lateness_max_s", REAL, "s", "Greatest of the same", better=LESS),
+        Column("lateness_max_s", REAL, "s", "Maximum of this lateness", better=LESS),
         Column(
             "orders_overdue_end",
             INTEGER,

@@ -35,7 +35,7 @@ EDGES = (
     Column("to_waypoint", INTEGER, "", "End of the edge"),
     Column("ride", FLAG, "", "Whether it is an elevator ride to another tier"),
     Column("passages", INTEGER, "passages", "Robots that drove it"),
-    Column("loaded_passages", INTEGER, "passages", "Of these, with a pod"),
+    Column("loaded_passages", INTEGER, "passages", "Robots that drove it with a pod"),
 )
 
 

@@ -72,7 +72,9 @@ DECISIONS = (
         "to abs(objective)",
     ),
     Column("work", REAL, "", "Deterministic work, in the unit of the back end"),
-    Column("built", REAL, "", "Entries of the solver's model that were built in addition"),
+    Column(
+        "built", REAL, "", "Entries of the solver's model that were built, not included in work"
+    ),
     Column("build_s", REAL, "s", "Wall time of building the solver's model", measured=True),
     Column("solve_s", REAL, "s", "Wall time of the solver without building", measured=True),
     Column("applied", COUNT_OR_EMPTY, "decisions", "Decisions of the solution that were applied"),
@@ -100,7 +102,9 @@ ANSWERS = (
     Column("objective", REAL, "", "Value of the solution"),
     Column("bound", REAL, "", "Proven bound on the best value"),
     Column("work", REAL, "", "Deterministic work, in the unit of the back end"),
-    Column("built", REAL, "", "Entries built in addition"),
+    Column(
+        "built", REAL, "", "Entries of the solver's model that were built, not included in work"
+    ),
     Column("scale", REAL, "", "Reference of the relative gap; empty: the objective"),
     Column("wall_s", REAL, "s", "Wall time of solver and building", measured=True),
     Column("build_s", REAL, "s", "Wall time of building", measured=True),
@@ -110,7 +114,7 @@ ANSWERS = (
 CONTROLLERS = (
     Column("problem", TEXT, "", "Decision problem"),
     Column("calls", INTEGER, "calls", "Number of calls of its controller"),
-    Column("decisions", INTEGER, "decisions", "Decisions given"),
+    Column("decisions", INTEGER, "decisions", "Decisions made"),
     Column("wall_s", REAL, "s", "Wall time of all calls", measured=True),
     Column("wall_mean_s", REAL, "s", "Mean wall time of a call", measured=True),
     Column("optimiser_calls", INTEGER, "calls", "Questions to optimisers"),

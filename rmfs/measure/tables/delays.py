@@ -32,11 +32,11 @@ PARTS = {
     "wait_assignment": "waiting for POA to assign the order to a station",
     "wait_pod": "waiting for a pod to be chosen while some robot was at rest",
     "wait_robot": "waiting for a pod to be chosen while all robots had work",
-    "drive_free": "the robot driving to the pod and with it to the queue zone, as long as that "
-    "takes without other robots; lifting included",
+    "drive_free": "driving to the pod and with it to the queue zone, lifting included, in the "
+    "time that this takes without other robots",
     "drive_hindered": "additional time of these drives because of other robots",
-    "queue": "in the queue zone",
-    "service": "at the station, until the last unit of the line was handled",
+    "queue": "waiting in the queue zone",
+    "service": "service at the station, until the last unit of the line was handled",
     "wait_order": "waiting at the slot for the other lines of the order",
 }
 """The parts of the time of an order line, in chronological order."""
@@ -48,7 +48,10 @@ DELAYS = (
     Column("robot", INTEGER, "", "Robot that brought the pod of the line's last unit"),
     Column("completed_s", REAL, "s", "Completion of the order"),
     Column("turnover_s", REAL, "s", "Time from the order's arrival to its completion"),
-    *(Column(f"{part}_s", REAL, "s", f"Of this, {what}") for part, what in PARTS.items()),
+    *(
+        Column(f"{part}_s", REAL, "s", f"Part of turnover_s: {what}")
+        for part, what in PARTS.items()
+    ),
 )
 
 _TO_POD, _TO_STATION = 0, 1

@@ -25,7 +25,7 @@ TRIPS = (
     Column("kind", TEXT, "", "to_pod, to_station, to_storage or to_rest"),
     Column("from_waypoint", INTEGER, "", "Start of the trip"),
     Column("to_waypoint", INTEGER, "", "End of the trip"),
-    Column("start_s", REAL, "s", "When the robot got the order to drive"),
+    Column("start_s", REAL, "s", "When the robot got the command to drive"),
     Column("end_s", REAL, "s", "Arrival (for a station: at its queue zone)"),
     Column("station", INTEGER, "", "Destination station, -1 for another kind"),
     Column("loaded", FLAG, "", "Whether the robot carried a pod"),
@@ -43,13 +43,13 @@ TRIPS = (
         "end_s - start_s - unhindered_s: delay by other robots; slightly negative for some trips "
         "to stations, since robots do not stop at the border of the queue zone",
     ),
-    Column("energy_wh", REAL, "Wh", "Drawn on the trip; empty if energy is not modelled"),
+    Column("energy_wh", REAL, "Wh", "Energy drawn on the trip; empty if energy is not modelled"),
 )
 
 _PURPOSES = {
     "pick": "bound for a pick station (fetching its pod included), or at one",
     "replenish": "bound for a replenishment station (fetching its pod included), or at one",
-    "store": "otherwise carrying a pod or fetching one",
+    "store": "carrying or fetching a pod for another purpose",
     "rest": "without a pod or a task for one",
 }
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 ORDERS = (
     Column("order", INTEGER, "", "Ordinal of arrival, from the start of the run"),
     Column("name", TEXT, "", "Its name in the file of orders; empty if it was drawn"),
-    Column("priority", TEXT, "", "Its class; empty where orders have none (mode classes)"),
+    Column("priority", TEXT, "", 'Its class; empty unless orders.due.mode = "classes"'),
     Column("station", INTEGER, "", "Pick station, -1 while waiting for one"),
     Column("lines", INTEGER, "lines", "Order lines, without those cut to zero units"),
     Column("units", INTEGER, "units", "Units ordered"),
@@ -39,7 +39,8 @@ ORDERS = (
         "energy_wh",
         REAL,
         "Wh",
-        "Drawn by robots for its units so far (docs/energy.md); empty if energy is not modelled",
+        "Energy drawn by robots for its units so far (docs/energy.md); empty if energy is not "
+        "modelled",
     ),
 )
 

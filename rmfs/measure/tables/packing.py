@@ -19,8 +19,13 @@ PARCELS = (
     Column("created_s", REAL, "s", "Arrival of the order"),
     Column("due_s", REAL, "s", "Its due time"),
     Column("picked_s", REAL, "s", "When its last tote left its pick station; empty if not yet"),
-    Column("arrived_s", REAL, "s", "When its first tote reached the wall; empty if none does"),
-    Column("consolidated_s", REAL, "s", "When its last tote reached the wall; empty likewise"),
+    Column("arrived_s", REAL, "s", "When its first tote reached the wall; empty if none did"),
+    Column(
+        "consolidated_s",
+        REAL,
+        "s",
+        "When its last tote reached the wall; empty if not yet, or never",
+    ),
     Column("packing_s", REAL, "s", "When a packer started with it; empty if not yet"),
     Column("packed_s", REAL, "s", "When it was packed; empty if not yet"),
     Column("cycle_s", REAL, "s", "packed_s - created_s"),
@@ -31,7 +36,12 @@ TOTES = (
     Column("station", INTEGER, "", "Pick station"),
     Column("released_s", REAL, "s", "When it left the pick station"),
     Column("arrived_s", REAL, "s", "When it reached the wall; empty if not yet, or never"),
-    Column("consolidated_s", REAL, "s", "When all totes of the order had arrived; empty likewise"),
+    Column(
+        "consolidated_s",
+        REAL,
+        "s",
+        "When all totes of the order had arrived; empty if not yet, or never",
+    ),
     Column("by_hand", FLAG, "", "Carried by hand after its station had waited too long"),
 )
 

@@ -23,14 +23,14 @@ PICKERS = (
     Column("station", INTEGER, "", "Pick station"),
     Column("speed", REAL, "share", "Relative speed; 1: the station's times"),
     Column("present_s", REAL, "s", "Time at the station"),
-    Column("work_s", REAL, "s", "Of this, time with a unit"),
+    Column("work_s", REAL, "s", "Part of present_s spent on units"),
     Column("busy_share", REAL, "share", "work_s / present_s; empty for pickers never present"),
     Column("units_picked", INTEGER, "units", "Units picked"),
     Column("unit_mean_s", REAL, "s", "Mean time of a unit, rework included; empty without any"),
-    Column("fatigue_mean", REAL, "share", "Fatigue when picks began, mean; empty likewise"),
-    Column("fatigue_max", REAL, "share", "Greatest fatigue when picks started"),
+    Column("fatigue_mean", REAL, "share", "Mean fatigue at the start of picks; empty without any"),
+    Column("fatigue_max", REAL, "share", "Greatest fatigue at the start of a pick"),
     Column("errors", INTEGER, "units", "Units picked wrongly"),
-    Column("errors_unnoticed", INTEGER, "units", "Of these, not noticed"),
+    Column("errors_unnoticed", INTEGER, "units", "Wrongly picked units that were not noticed"),
 )
 
 

@@ -29,16 +29,21 @@ PRIORITIES = (
         "two; else all",
     ),
     Column("weight", REAL, "", "Weight of the class's lateness"),
-    Column("orders", INTEGER, "orders", "Done or cancelled, or overdue at the end"),
-    Column("orders_done", INTEGER, "orders", "Done: packed or, without packing, picked"),
-    Column("orders_overdue_end", INTEGER, "orders", "Past their due time and not done at the end"),
+    Column("orders", INTEGER, "orders", "Orders done, cancelled, or overdue at the end"),
+    Column("orders_done", INTEGER, "orders", "Orders done: packed or, without packing, picked"),
+    Column(
+        "orders_overdue_end",
+        INTEGER,
+        "orders",
+        "Orders past their due time and not done at the end",
+    ),
     Column("on_time_share", REAL, "share", "Orders done by their due time, of `orders`"),
-    Column("lateness_mean_s", REAL, "s", "Done less due time, negative if early, of those done"),
-    Column("lateness_p95_s", REAL, "s", "95th percentile of the same"),
-    Column("lateness_max_s", REAL, "s", "Greatest of the same"),
+    Column("lateness_mean_s", REAL, "s", "Mean lateness of the orders done; negative if early"),
+    Column("lateness_p95_s", REAL, "s", "95th percentile of this lateness"),
+    Column("lateness_max_s", REAL, "s", "Maximum of this lateness"),
     Column("late_by_mean_s", REAL, "s", "Mean of lateness, with 0 for orders done on time"),
     Column("cycle_mean_s", REAL, "s", "From arrival until done, mean of the orders done"),
-    Column("cycle_p95_s", REAL, "s", "95th percentile of the same"),
+    Column("cycle_p95_s", REAL, "s", "95th percentile of this time"),
 )
 
 

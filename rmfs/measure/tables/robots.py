@@ -43,8 +43,8 @@ ROBOTS = (
         column
         for task in ("pick", "replenish", "park", "reposition", "rest")
         for column in (
-            Column(f"tasks_{task}", INTEGER, "tasks", f"Tasks {task} started"),
-            Column(f"task_{task}_s", REAL, "s", f"Time with a task {task}"),
+            Column(f"tasks_{task}", INTEGER, "tasks", f"Number of {task} tasks started"),
+            Column(f"task_{task}_s", REAL, "s", f"Time with a {task} task"),
         )
     ),
     Column("pods_lifted", INTEGER, "lifts", "Pods lifted"),
@@ -53,10 +53,10 @@ ROBOTS = (
     *(
         Column(name, REAL, unit, f"{meaning}; empty if energy is not modelled")
         for name, unit, meaning in (
-            ("energy_wh", "Wh", "Drawn, less recovered braking energy"),
-            ("charged_wh", "Wh", "Charged at chargers"),
+            ("energy_wh", "Wh", "Energy drawn, less recovered braking energy"),
+            ("charged_wh", "Wh", "Energy charged at chargers"),
             ("charging_s", "s", "Time at chargers"),
-            ("level_wh", "Wh", "In its battery at the end"),
+            ("level_wh", "Wh", "Energy in the battery at the end"),
         )
     ),
 )

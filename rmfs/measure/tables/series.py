@@ -33,10 +33,25 @@ SERIES = (
     Column("bundles_created", INTEGER, "bundles", "Bundles that arrived in the interval"),
     Column("bundles_stored", INTEGER, "bundles", "Bundles stored in the interval"),
     Column("distance_m", REAL, "m", "Distance driven in the interval"),
-    Column("backlog_orders", INTEGER, "orders", "Orders waiting for a station, at the end"),
-    Column("open_orders", INTEGER, "orders", "Open orders at stations, at the end"),
-    Column("backlog_bundles", INTEGER, "bundles", "Bundles without a pod or station, at the end"),
-    Column("inventory_share", REAL, "share", "Space used / capacity of all pods, at the end"),
+    Column(
+        "backlog_orders",
+        INTEGER,
+        "orders",
+        "Orders waiting for a station at the end of the interval",
+    ),
+    Column("open_orders", INTEGER, "orders", "Open orders at stations at the end of the interval"),
+    Column(
+        "backlog_bundles",
+        INTEGER,
+        "bundles",
+        "Bundles without a pod or station at the end of the interval",
+    ),
+    Column(
+        "inventory_share",
+        REAL,
+        "share",
+        "Space used / capacity of all pods, at the end of the interval",
+    ),
     Column("pick_station_busy_share", REAL, "share", "Pick stations' time spent handling units"),
     Column(
         "replenishment_station_busy_share",
@@ -45,7 +60,12 @@ SERIES = (
         "Replenishment stations' time spent handling bundles",
     ),
     *(
-        Column(f"robots_task_{task}", INTEGER, "robots", f"Robots with the task {task}, at the end")
+        Column(
+            f"robots_task_{task}",
+            INTEGER,
+            "robots",
+            f"Robots with a {task} task at the end of the interval",
+        )
         for task in ("pick", "replenish", "park", "reposition", "rest")
     ),
     *(
@@ -61,19 +81,23 @@ SERIES = (
             "queueing": "in queue zones (overlaps with the others)",
         }.items()
     ),
-    Column("energy_wh", REAL, "Wh", "Drawn in the interval; empty if energy is not modelled"),
-    Column("charged_wh", REAL, "Wh", "Charged in the interval; empty if energy is not modelled"),
+    Column(
+        "energy_wh", REAL, "Wh", "Energy drawn in the interval; empty if energy is not modelled"
+    ),
+    Column(
+        "charged_wh", REAL, "Wh", "Energy charged in the interval; empty if energy is not modelled"
+    ),
     Column(
         "level_mean_wh",
         REAL,
         "Wh",
-        "Mean level of the batteries at the end; empty without batteries",
+        "Mean energy in the batteries at the end of the interval; empty without batteries",
     ),
     Column(
         "level_least_wh",
         REAL,
         "Wh",
-        "Least level of the batteries at the end; empty without batteries",
+        "Least energy in a battery at the end of the interval; empty without batteries",
     ),
 )
 

@@ -39,7 +39,12 @@ STATIONS = (
     ),
     Column("visit_time_mean_s", REAL, "s", "Mean length of the visits that ended"),
     Column("units_picked", INTEGER, "units", "Units picked"),
-    Column("late_bound_units", INTEGER, "units", "Of these, bound after the robot got its task"),
+    Column(
+        "late_bound_units",
+        INTEGER,
+        "units",
+        "Units picked that were bound after the robot got its task",
+    ),
     Column("lines_picked", INTEGER, "lines", "Lines finished"),
     Column("orders_completed", INTEGER, "orders", "Orders completed"),
     Column("bundles_stored", INTEGER, "bundles", "Bundles stored"),

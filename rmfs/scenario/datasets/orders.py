@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from datetime import datetime
 
 NO_LINE = "orders without a line"
-NOT_TAKEN = "lines of orders that are not taken"
+NOT_TAKEN = "lines of orders that are not used"
 
 
 @dataclass(slots=True)
@@ -44,7 +44,7 @@ class Orders:
     Attributes
     ----------
     takes
-        Returns whether to use an order with a given time; called once per order.
+        Function that returns whether to use an order with a given time; called once per order.
     by_name
         Orders by name; None for those not used.
     left_out

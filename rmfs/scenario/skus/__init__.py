@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def __getattr__(name: str) -> Any:
-    """Import what draws when it is asked for: runs do without matplotlib."""
+    """Import the drawing functions on first use, so that runs need no matplotlib."""
     if name == "draw_popularity":
         from rmfs.scenario.skus import picture
 

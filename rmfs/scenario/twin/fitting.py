@@ -70,7 +70,7 @@ def fit_twin(
     Parameters
     ----------
     path
-        File of orders, as for `demand.file`; days count as whole.
+        File of orders, as for `demand.file`; the first and the last day count as whole days.
     name
         Name of the scenario.
     weekly

@@ -80,7 +80,7 @@ def refuse(layout: Layout, energy: Energy) -> None:
     Raises
     ------
     InputError
-        If so; the message states the deficit.
+        If the batteries cannot be charged sufficiently; the message states the deficit.
     """
     found = balance(layout, energy)
     if not found.given_w:

@@ -32,7 +32,7 @@ class JointParameters(SearchParameters):
     later: bool = False
     """Whether a whole order may take a slot while pods for some of its lines are still to come."""
     open_line_s: NotNegative = 100.0
-    """Cost of each such line, in seconds of a robot."""
+    """With `later`, cost of each line still to come, in seconds of a robot."""
     when_needed: bool = True
     """Whether pods are called only for stations that run out of work within the horizon; otherwise
     whenever a slot can be filled, as in M1G and HADGS."""
@@ -49,7 +49,7 @@ class JointParameters(SearchParameters):
     """Value of each additional order (if orders are split: line) of a visit, in seconds of a
     robot."""
     unit_s: NotNegative = 0.0
-    """Additional value of each unit of such an order, in seconds of a robot."""
+    """Additional value of each unit of an order rewarded by `reward_s`, in seconds of a robot."""
     visit_s: NotNegative = 60.0
     """Cost of a visit in addition to the trip to the station, in seconds of a robot."""
     balance: NotNegative = 0.0

@@ -64,7 +64,7 @@ class PileOnTasksParameters(JointParameters):
     other_stations: bool = False
     """Whether a pod that has been served may continue to another station nearby."""
     search_radius_m: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 8.0
-    """Maximum distance to that station in m (Euclidean)."""
+    """Maximum distance of `other_stations` in m (Euclidean)."""
     rest: RestRule = "nearest"
     """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
     `random`."""

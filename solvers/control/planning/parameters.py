@@ -51,7 +51,8 @@ class PlanningParameters(SearchParameters):
     visits count less (`decay`), this is the price of tardiness (apparent tardiness cost,
     Vepsalainen and Morton 1987). 0: due times do not count."""
     late_within_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 300.0
-    """See `late_s`; about the time from a plan to its last visit."""
+    """Time in seconds within which the value `late_s` falls by the factor e; about the time from a
+    plan to its last visit."""
     open_s: NotNegative = 60.0
     """Additional value of a line whose order already has a slot, which keeps plans stable and frees
     slots."""

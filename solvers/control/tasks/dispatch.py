@@ -74,7 +74,7 @@ class DispatchParameters(TaskParameters):
     """Value of bringing a pod to a pick station, in seconds of a robot's time: the trip and the
     wait in the queue may take this long."""
     bundle_value_s: NotNegative = 300.0
-    """The same for a pod at a replenishment station."""
+    """Value of bringing a pod to a replenishment station, in seconds of a robot's time."""
     service_s: NotNegative = 60.0
     """Estimated service time of each pod at, or on its way to, a station; the next pod waits as
     long."""

@@ -57,7 +57,7 @@ SITES: Mapping[str, Site] = {
         (1,),
     ),
 }
-"""The sizes: 10 robots and 100 pods; 32 and 428; 45 and 1,200 with 12 pick stations; 90 and
+"""The sizes, by robots and pods: 10 and 100; 32 and 428; 45 and 1,200 with 12 pick stations; 90 and
 2,307 with 24."""
 
 TWICE: Mapping[str, Mapping[str, Any]] = {

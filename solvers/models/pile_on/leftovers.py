@@ -1,4 +1,4 @@
-"""Use leftover slots and stock in variants that allow orders in part.
+"""Use leftover slots and stock in variants that allow partly covered orders.
 
 Heuristics place whole orders. If slots stay empty, `Variant.LATER` may fill them with orders that
 are covered later, and the split variants with lines that the remaining stock covers.

@@ -38,17 +38,17 @@ def solve(
     data
         The problem.
     limits
-        `iterations` of the relaxation; where they do not suffice, the rule is alone and its bound
-        is that of nothing known.
+        `iterations` limits the relaxation. If it does not suffice, the greedy rule decides alone,
+        with a weak bound.
     seed
         Seed of the solver. Default 0.
     start
-        Not needed.
+        Not used.
 
     Returns
     -------
-    Where bundles and pods go; ties go to the lowest index. Status LIMIT if a bundle is left that
-    must be stored. Work in simplex iterations.
+    Where bundles and pods go; ties go to the lowest index. The status is LIMIT if a bundle that
+    must be stored is left. Work is counted in simplex iterations.
     """
     begin = perf_counter()
     columns = Columns.of(data)

@@ -26,7 +26,7 @@ def solve(
 ) -> Solution[VisitSequence]:
     """Find a plan with the fewest visits; `deterministic_s` and `gap` apply.
 
-    It starts from the plan of the beam search unless another start is given.
+    The search starts from the plan of the beam search unless another start is given.
     """
     began = time.perf_counter()
     if not data.feasible:

@@ -49,7 +49,7 @@ def solve(
 
     Returns
     -------
-    The plan; status LIMIT without values if the limit is reached and there is no start.
+    The plan; its status is LIMIT, without values, if the limit is reached and there is no start.
     """
     began = time.perf_counter()
     if not data.feasible:

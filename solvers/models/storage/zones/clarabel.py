@@ -156,8 +156,8 @@ class _Programme:
 
         Returns
         -------
-        Pods of each class in each zone and the price of a place in each, about right, and the
-        number of iterations. Where the solver gave up: zeros.
+        Approximate number of pods of each class in each zone, shape (I, J); approximate price of a
+        place in each zone, shape (J,); and the number of iterations. Zeros if the solver failed.
         """
         options = {} if limits.iterations is None else {"max_iter": limits.iterations}
         with warnings.catch_warnings():

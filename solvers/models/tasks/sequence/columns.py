@@ -7,9 +7,10 @@ cheap under its prices (`pricing`). Whatever the prices :math:`v, w \ge 0`, no p
 
     \sum_t \min(v_t, skip_t) - \sum_l w_l + \sum_r \min_{p \in r} cost_p(v, w)
 
-(Lagrange; Desaulniers, Desrosiers, Solomon 2005, Column Generation, chapter 1). Prices are
-rounded to parts of a tick, with which the pricing counts exactly. So the bound holds to the last
-digit, even if the search for a cheapest route is given up. All costs are whole ticks, so the bound
+(Lagrange; Desaulniers, Desrosiers, Solomon 2005, Column Generation, chapter 1). Prices are rounded
+to parts of a tick, and the pricing calculates with these in exact integers. The bound therefore
+holds to the last digit, even if the search for a cheapest route ends early. All costs are whole
+ticks, so the bound
 is rounded up to a tick.
 
 At the end HiGHS chooses whole routes among those known. If a gap remains, every route that costs
@@ -41,22 +42,22 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 ENTRY_S = 4e-8
-"""Deterministic seconds of an entry that the pricing looks at."""
+"""Deterministic seconds per entry examined by the pricing."""
 
 ITERATION_S = 8e-5
-"""Deterministic seconds of an iteration of the simplex method."""
+"""Deterministic seconds per simplex iteration."""
 
 NODE_S = 0.05
-"""Deterministic seconds of a node of HiGHS, for the limit of their number."""
+"""Deterministic seconds per node of HiGHS, to convert a limit to a number of nodes."""
 
 ROUTES = 10
-"""Most routes that a robot gets in a round."""
+"""Maximum number of routes added per robot in a round."""
 
 LABELS = 2_000
-"""Partial routes of a robot in a round; four times as many whenever that was not enough."""
+"""Limit of partial routes per robot in a round; quadrupled whenever it is too small."""
 
 LISTED = 20_000
-"""Partial routes of a robot in the list of all routes within the gap."""
+"""Limit of partial routes per robot when all routes within the gap are listed."""
 
 
 def solve(
@@ -73,8 +74,8 @@ def solve(
     data
         The problem.
     limits
-        `deterministic_s` and `gap`. Default: to optimality, unless too many routes are within the
-        last gap.
+        `deterministic_s` and `gap` apply. Default: to optimality, unless too many routes are within
+        the last gap.
     seed
         Seed of HiGHS. Default 0.
     start
@@ -82,7 +83,7 @@ def solve(
 
     Returns
     -------
-    The routes, never worse than the start, and the bound. Work in deterministic seconds.
+    The routes, never worse than the start, and the bound. Work is counted in deterministic seconds.
 
     Raises
     ------

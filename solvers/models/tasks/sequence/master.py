@@ -37,7 +37,7 @@ class Relaxed(NamedTuple):
     robot, task, place
         Duals of the rows, in ticks.
     used
-        How far each route is driven.
+        Value of each route in the relaxation, from 0 to 1.
     iterations
         Of the simplex method.
     """
@@ -50,14 +50,14 @@ class Relaxed(NamedTuple):
 
 
 class Chosen(NamedTuple):
-    """Routes chosen whole.
+    """A choice of whole routes.
 
     Attributes
     ----------
     routes
         One per robot; None if none were found.
     bound
-        No choice among the known routes costs less, in ticks.
+        Lower bound on the cost of every choice among the known routes, in ticks.
     iterations
         Of the simplex method.
     """
@@ -78,7 +78,7 @@ class Master:
     Attributes
     ----------
     routes
-        What has been added.
+        The routes added so far.
     """
 
     def __init__(self, ticks: Ticks) -> None:
@@ -98,7 +98,7 @@ class Master:
         self._first = once
 
     def add(self, route: Route) -> bool:
-        """Add a route, and return true, unless it is known."""
+        """Add a route unless it is known already; return whether it was added."""
         if route in self._known:
             return False
         self._known.add(route)
@@ -141,14 +141,14 @@ class Master:
         )
 
     def whole(self, start: list[Route], limits: Limits, seed: int) -> Chosen:
-        """Choose routes by HiGHS among those that can be driven.
+        """Choose feasible routes among the known ones by HiGHS.
 
         Parameters
         ----------
         start
-            Routes to start from, known ones.
+            Known routes to start from.
         limits
-            In nodes.
+            Limit in nodes.
         seed
             Seed of the solver.
         """

@@ -1,20 +1,20 @@
-r"""Cheapest routes of each robot under prices of tasks and places, in exact whole numbers.
+r"""Cheapest routes of each robot, given prices of tasks and places, in exact integers.
 
 With prices :math:`v_t` earned by doing task t and :math:`w_l \ge 0` paid for using place l, a route
 costs
 
 .. math:: driving + lateness - \sum_{t \in route} v_t + \sum_{l \in route} w_l
 
-The search extends routes task by task, the most promising first (A*). The estimate of what is
-still to come lets tasks be done again, and rounds times down to steps; it never exceeds the truth.
-A partial route is dropped if another one to the same task is no later, costs no more, and has used
-no task (nor remembered place) that this one has not: whatever completes the one completes the
-other at no more cost. Between two tasks, only those places matter for which no other is both nearer
-and cheaper.
+The search extends routes task by task, the most promising first (A*). The estimate of the remaining
+cost allows tasks to be repeated and rounds times down to steps, so it is never too high. A partial
+route is dropped if another one to the same task is no later, costs no more, and has used only tasks
+(and remembered places) that this one has used as well: every completion of the dropped route also
+completes the other, at no higher cost. Between two tasks, a place is ignored if another one is both
+nearer and cheaper.
 
 Places may repeat within a route unless they are *remembered*. This is a relaxation: the cheapest
-route found may cost less than any that can be driven, never more. Numbers are whole parts of
-a tick, so that nothing is rounded.
+route found never costs more than the cheapest feasible one. All numbers are integers, in parts of a
+tick, so nothing is rounded.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ from rmfs.solvers.models.tasks.sequence.data import NONE, TICKS_PER_S
 from rmfs.solvers.models.tasks.sequence.ticks import NEVER, Route, Ticks
 
 PARTS = 1024
-"""Prices and costs are in parts of a tick."""
+"""Number of parts per tick, the unit of prices and costs."""
 
 LABEL_ENTRIES = 2000
-"""What a partial route counts among the entries looked at, besides the ways from its end."""
+"""Entries counted per partial route, in addition to the ways that continue it."""
 
 _NEVER = NEVER * PARTS
 _STEPS = 100
@@ -48,9 +48,9 @@ class Prices(NamedTuple):
     Attributes
     ----------
     task
-        What is earned by doing each task, shape (T,).
+        Reward for doing each task, shape (T,).
     place
-        What is paid for using each place, shape (L,), not negative.
+        Price of using each place, shape (L,), not negative.
     """
 
     task: NDArray[np.int64]
@@ -58,16 +58,16 @@ class Prices(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What a search found.
+    """Result of a search.
 
     Attributes
     ----------
     bound
-        No route of the robot costs less, in parts.
+        Lower bound on the cost of every route of the robot, in parts.
     routes
-        Routes that cost less than asked, the cheapest first.
+        Routes below the requested cost, the cheapest first.
     complete
-        Whether the search came to its end.
+        Whether the search was exhaustive, not ended by a limit.
     """
 
     bound: int
@@ -115,7 +115,7 @@ class _Next(NamedTuple):
 
 
 class Pricing:
-    """The search under given prices.
+    """Search for cheapest routes at given prices.
 
     Parameters
     ----------
@@ -124,15 +124,15 @@ class Pricing:
     prices
         The prices.
     remembered
-        Places that a route may use once only, as a mask of shape (L,).
+        Mask of the places that a route may use only once, shape (L,).
     every
-        Whether to find every route below a cost, and not only those that no other one makes
-        superfluous under these prices; all places are remembered then. Default: no.
+        Whether to find every route below a cost, including those dominated by others at these
+        prices; all places are then remembered. Default: no.
 
     Attributes
     ----------
     entries
-        Entries of tables looked at so far: the deterministic work.
+        Number of table entries examined so far, as deterministic work.
     """
 
     def __init__(
@@ -266,18 +266,18 @@ class Pricing:
     # --- search ---------------------------------------------------------------------------------
 
     def cheapest(self, robot: int, below: int, most: int, labels: int) -> Found:
-        """Search the cheapest routes of a robot.
+        """Find the cheapest routes of a robot.
 
         Parameters
         ----------
         robot
-            Who drives.
+            Index of the robot.
         below
-            Cost that routes must stay below, in parts.
+            Upper limit of the cost of a route, in parts.
         most
             Number of routes after which the search ends.
         labels
-            Number of partial routes after which it is given up.
+            Number of partial routes after which the search is given up.
 
         Returns
         -------

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 NEVER = 2**46
-"""Ticks that stand for a trip that is not allowed, or a time that never comes."""
+"""Value of a trip that is not allowed, and of a time that never comes, in ticks."""
 
 
 class Route(NamedTuple):
@@ -22,9 +22,9 @@ class Route(NamedTuple):
     Attributes
     ----------
     robot
-        Who drives.
+        Index of the robot.
     tasks
-        In their order.
+        Its tasks, in sequence.
     places
         Where pods are stored, in order: first the one the robot carries, if any, then those of the
         tasks.
@@ -100,7 +100,7 @@ def split(data: TaskSequence, routes: Routes) -> Iterator[Route]:
 
 
 def joined(data: TaskSequence, driven: Iterable[Route]) -> Routes:
-    """Return what the robots do if they drive these routes; robots without one do nothing."""
+    """Combine routes of single robots; robots without a route do nothing."""
     tasks: list[tuple[int, ...]] = [()] * data.robots
     place, robot_place = np.full(data.tasks, NONE), np.full(data.robots, NONE)
     for route in driven:
