@@ -243,6 +243,10 @@ impl Backward {
     /// The robot is at rest with any heading, turns and starts a run of known cost.
     fn start_here(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
         let first = network.index(node, 0);
+        let same = first + heading as usize;
+        if self.queue.best(same * ENTRIES + STRAIGHT) <= cost {
+            return; // a run like this with a lower cost, after which none of the times below is new
+        }
         let back = network.opposite(heading).map(usize::from);
         let bound = self.bound_at_rest(network, node);
         for (before, &turn) in model.turns_to(heading).iter().enumerate() {
