@@ -199,28 +199,28 @@ PAGE = """\
 
 <!-- written by python -m tests.tools.coverage --page docs/coverage.md -->
 
-Instead of the warehouse, a synthetic simulator with known means is used. The result of a run is
-the mean of its arm, plus an effect of the seed that all arms share (common random numbers), plus
-independent noise. The standard deviation of their sum is 5 % of the mean. *normal*: both are
-normally distributed; *skewed*: both are exponential. Each figure comes from {experiments:,}
-experiments.
+This page tests the statistics of rmfs on a synthetic simulator whose true means are known. The
+result of a run is the mean of its arm, plus an effect of the seed that all arms share (common
+random numbers), plus independent noise. The standard deviation of effect and noise together is 5 %
+of the mean. In the rows *normal*, both are normally distributed; in the rows *skewed*, both are
+exponential. Each figure comes from {experiments:,} experiments.
 
 - **t**, **bootstrap**: how often a 95 % interval of a fixed number of seeds covers the true mean.
-- **sequential**: the same for an interval to which seeds are added, starting from this number,
-  until its half width is below 2 % of the mean; the next column is the mean number of seeds this
-  took.
+- **sequential**: how often an interval covers the true mean if seeds are added, starting from this
+  number, until its half width is below 2 % of the mean; the next column is the mean number of seeds
+  that were needed.
 - **false alarms**: how often at least one arm is found to differ from the baseline at the 5 %
-  level although all are equal; paired t tests, corrected by Holm for five arms.
+  level although all arms are equal (paired t tests, for five arms with Holm's correction).
 
 {table}
 
-With few seeds, bootstrap intervals (BCa) are too narrow, for normal and for skewed runs alike:
-use them with at least 30 seeds. A sequential procedure stops when the sample happens to vary
+With few seeds, bootstrap intervals (BCa) are too narrow, for normal and for skewed runs alike. Use
+them only with at least 30 seeds. A sequential procedure stops when the sample happens to vary
 little, so its interval covers slightly less than stated; begin with ten seeds rather than five.
 
-Selection of the best of five arms (procedure KN) in its hardest case, where the best arm is
-better by just the smallest difference worth detecting: correct in {right:.3f} of the experiments
-(nominal: 0.95), with {taken:.0f} runs of all arms on average.
+The selection of the best of five arms (procedure KN) was tested in its hardest case, in which the
+best arm is better by exactly the smallest difference worth detecting. It was correct in {right:.3f} of
+the experiments (nominal: 0.95), with {taken:.0f} runs of all arms on average.
 """
 
 

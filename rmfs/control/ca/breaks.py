@@ -40,7 +40,7 @@ class BreaksParameters(LevelParameters):
 
 
 class Breaks(ByLevel[BreaksParameters]):
-    """Sends all robots that become free during a break, and others when they run low.
+    """Sends robots to charge that become free during a break or whose level is low.
 
     This is known as interim charging. If there are more robots than places, they queue.
     """

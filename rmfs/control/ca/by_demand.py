@@ -42,7 +42,7 @@ class ByDemandParameters(LevelParameters):
 
 
 class ByDemand(ByLevel[ByDemandParameters]):
-    """Sends robots earlier while few orders arrive, so that they are available when many do."""
+    """Sends robots to charge earlier while few orders arrive, to have them when many arrive."""
 
     parameters_model = ByDemandParameters
     hears = frozenset({Trigger.NEW_ORDER})

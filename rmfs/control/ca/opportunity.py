@@ -36,7 +36,7 @@ class OpportunityParameters(LevelParameters):
 class Opportunity(ByLevel[OpportunityParameters]):
     """Lets robots charge whenever they are idle, and calls them back when there is work.
 
-    A robot at rest goes to a free place; a robot that is low goes in any case.
+    A robot at rest goes to a free place. A robot whose level is low charges in any case.
     """
 
     parameters_model = OpportunityParameters

@@ -23,7 +23,7 @@ class ConstantRatioParameters(Parameters):
     active_share: Share = 0.5
     """Share of all stations that are on."""
     pick_share: Share = 0.5
-    """Share of these that are pick stations."""
+    """Share of pick stations among the stations that are on."""
 
 
 class ConstantRatio(StationActivation[ConstantRatioParameters]):

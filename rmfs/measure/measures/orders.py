@@ -57,8 +57,10 @@ class OrderTimes(Measure):
         Column(
             "orders_late", INTEGER, "orders", "Orders completed after their due time", better=LESS
         ),
-        *spread_columns("order_lateness", "completion less due time, negative if early"),
-        *spread_columns("late_by", "completion less due time of the late orders"),
+        *spread_columns(
+            "order_lateness", "lateness (completion time minus due time; negative if early)"
+        ),
+        *spread_columns("late_by", "lateness of the late orders"),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:

@@ -53,7 +53,7 @@ class Safety(Measure):
             COUNT_OR_EMPTY,
             "events",
             "Overlaps of two bodies found by the independent trace checker, warm-up included; "
-            "empty where it did not run",
+            "empty if it did not run",
             better=LESS,
         ),
     )

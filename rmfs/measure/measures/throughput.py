@@ -67,7 +67,7 @@ class Potential(Measure):
             REAL,
             "1/h",
             "Proven upper bound for any run of this layout with these SKUs and this duration, "
-            "whatever the controllers, demand or seed (see bounds)",
+            "for all controllers, demands and seeds (see bounds)",
         ),
         Column(
             "units_score", REAL, "share", "units_per_h / units_per_h_bound; at most 1", better=MORE

@@ -26,7 +26,7 @@ BUNDLE_LINES = (
     Column("station", INTEGER, "", "Replenishment station, -1 while undecided"),
     Column("file_line", INTEGER, "", "Line (CSV) or row (Parquet) of the file of bundles"),
     Column("file_order", TEXT, "", "Order in the file; may be empty"),
-    Column("file_sku", TEXT, "", "The SKU's name, or its number where it has none"),
+    Column("file_sku", TEXT, "", "Name of the SKU, or its number if it has no name"),
 )
 """Columns of the table; further columns of the file follow, each as `file_NAME`."""
 

@@ -26,7 +26,7 @@ ORDER_LINES = (
     Column("picked_s", REAL, "s", "When its last unit was picked; empty if not yet"),
     Column("file_line", INTEGER, "", "Line (CSV) or row (Parquet) of the file of orders"),
     Column("file_order", TEXT, "", "The order's name in the file"),
-    Column("file_sku", TEXT, "", "The SKU's name, or its number where it has none"),
+    Column("file_sku", TEXT, "", "Name of the SKU, or its number if it has no name"),
 )
 """Columns of the table; further columns of the file follow, each as `file_NAME`."""
 

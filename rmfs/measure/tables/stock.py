@@ -31,7 +31,7 @@ PODS = (
 
 SKUS = (
     Column("sku", INTEGER, "", "SKU"),
-    Column("name", TEXT, "", "Its name in the file of SKUs, or its number where it has none"),
+    Column("name", TEXT, "", "Name in the file of SKUs, or the number if it has no name"),
     Column("popularity", REAL, "", "Weight in the scenario"),
     Column("space", REAL, "space units", "Space of one unit"),
     Column("lines_picked", INTEGER, "lines", "Order lines finished"),
