@@ -57,7 +57,7 @@ class Service(Measure):
             "lateness_p95_s",
             REAL,
             "s",
-            "95th percentile of completion less due time of the orders done, negative if early",
+            "95th percentile of the lateness of the orders done, negative if early",
             better=LESS,
         ),
         Column("lateness_max_s", REAL, "s", "Maximum of this lateness", better=LESS),

@@ -21,7 +21,7 @@ CONNECTIONS = (
     Column("from_waypoint", INTEGER, "", "Start of the trips"),
     Column("to_waypoint", INTEGER, "", "End of the trips"),
     Column("from_kind", TEXT, "", "pick, replenishment, storage, elevator, queue or road"),
-    Column("to_kind", TEXT, "", "Likewise"),
+    Column("to_kind", TEXT, "", "Kind of the end, with the values of from_kind"),
     Column("trips", INTEGER, "trips", "Trips between the two, in this direction"),
     Column("time_mean_s", REAL, "s", "Mean trip time"),
     Column("time_variance_s2", REAL, "s²", "Population variance of the trip time"),
