@@ -25,6 +25,25 @@ def test_runs_are_right(layout: str, mix: str, seed: int) -> None:
     row = disturbed.driven(layout, mix, seed)
     assert row["problem"] == ""
     assert row["distance_m"] > 1
+    assert all((row[kind] > 0) == (kind in mix.split("+")) for kind in disturbed.WRONG)
+
+
+def test_every_kind_strikes_or_the_run_is_not_right(monkeypatch) -> None:
+    monkeypatch.setitem(disturbed.WRONG, "closures", {"every_s": 1e6, "lasting_s": 20.0})
+    row = disturbed.driven("demonstrator", "closures+slow", 0)
+    assert row["problem"] == "closures never struck"
+
+
+def test_a_panic_is_a_problem_of_its_run(monkeypatch) -> None:
+    class PanicError(BaseException):
+        pass
+
+    def fall(self) -> None:
+        raise PanicError("planned to a place")
+
+    monkeypatch.setattr(disturbed.Checked, "run", fall)
+    row = disturbed.driven("demonstrator", "slow", 0)
+    assert row["problem"] == "PanicError: planned to a place"
 
 
 def test_it_goes_on_where_it_was(tmp_path: Path, monkeypatch) -> None:
