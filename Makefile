@@ -91,7 +91,7 @@ pictures: setup ## Draw the pictures of the documentation (needs LaTeX and Poppl
 
 .PHONY: viewer
 viewer: ## Build the page of `rmfs view` from its sources (needs Node; its users do not)
-	cd rmfs/view/web && npm install --no-save && npm run lint && npm run build
+	cd rmfs/view/web && npm ci && npm run lint && npm run build
 
 .PHONY: lock
 lock: $(VENV)/.installed ## Pin the newest packages that pyproject.toml allows: requirements.txt

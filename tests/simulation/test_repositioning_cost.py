@@ -1,0 +1,82 @@
+"""Repositioning in a crowd: the work per decision does not grow with the site."""
+
+from __future__ import annotations
+
+import pytest
+
+from rmfs.control.problems import Problem
+from rmfs.control.repositioning import utility
+from rmfs.simulation.run import Simulation
+
+LIGHT = {"scenario.skus.count": 100, "scenario.skus.space_per_unit.value": 5.0}
+
+
+def questions_and_labels(robots: int) -> tuple[int, float]:
+    """Three tiers, so many robots on each, for two minutes: moves, and labels per question.
+
+    The planner looks at labels; every leg, failed or not, is a question.
+    """
+    simulation = Simulation(
+        "study-tiers",
+        "pp-minimal",
+        set={
+            **LIGHT,
+            "layout.robots": robots,
+            "scenario.warmup_s": 0.0,
+            "scenario.duration_s": 120.0,
+            "controllers.repositioning.name": "utility",
+        },
+        measured=False,
+    )
+    simulation.run()
+    counted = simulation.traffic.counters()
+    questions = counted["plans"] + counted["replans"] + counted["plan_failures"]
+    moves = simulation.deciding.statistics[Problem.REPOSITIONING].calls
+    return moves, counted["expansions"] / questions
+
+
+def test_labels_per_question_do_not_grow_with_the_fleet() -> None:
+    """Robots that find no way in a crowd ask again after longer and longer pauses."""
+    moves, few = questions_and_labels(robots=40)
+    more_moves, many = questions_and_labels(robots=80)
+    assert moves >= 30 and more_moves > 1.5 * moves
+    assert many < 1.2 * few
+    assert few < 400
+
+
+@pytest.mark.parametrize(
+    ("layout", "robots"), [("small", 24), ("study-32", 64), ("study-tiers", 32)]
+)
+def test_few_pods_are_looked_at_per_decision(
+    layout: str, robots: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looked = {"pods": 0, "decisions": 0}
+    nearest, find = utility.nearest_place, utility.Utility.find
+
+    def counted_place(*given):
+        looked["pods"] += 1
+        return nearest(*given)
+
+    def counted_find(rule, robot):
+        looked["decisions"] += 1
+        before = looked["pods"]
+        found = find(rule, robot)
+        assert looked["pods"] - before <= 8
+        return found
+
+    monkeypatch.setattr(utility, "nearest_place", counted_place)
+    monkeypatch.setattr(utility.Utility, "find", counted_find)
+    simulation = Simulation(
+        layout,
+        "pp-minimal",
+        set={
+            **LIGHT,
+            "layout.robots": robots,
+            "scenario.warmup_s": 0.0,
+            "scenario.duration_s": 120.0,
+            "controllers.repositioning.name": "utility",
+        },
+        measured=False,
+    )
+    simulation.run()
+    assert looked["decisions"] > 0
