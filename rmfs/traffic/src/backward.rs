@@ -1,4 +1,4 @@
-//! Unhindered times to one goal, searched backwards and only as far as they are asked for.
+//! Unhindered times to one goal, searched backwards and only as far as needed.
 
 use crate::buckets::Buckets;
 use crate::costs::{Model, UNREACHABLE};
@@ -8,16 +8,17 @@ use crate::patience::look_up;
 /// Keeps the bound from the start below the sum of rounded edge times.
 const SAFETY: f64 = 0.999_99;
 
-/// States are counted twice: at rest (0) and rolling on (1).
+/// Each (waypoint, heading) has two states: at rest (0) and rolling (1).
 pub const ROLLING: usize = 1;
 
-/// Beside them stand times of states that nobody comes to, so that they are only values.
+/// Times of states that are not expanded; they are only values.
 const STRAIGHT: usize = 2;
 
-/// Entries of an index of (waypoint, heading): they are looked up together.
+/// Entries of an index of (waypoint, heading), which are looked up together.
 const ENTRIES: usize = 4;
 
-/// Least times to cover an extent along one axis: as runs, or as a part of one that is paid for.
+/// Least times to cover an extent along one axis: as whole runs, or as part of a run already
+/// counted.
 #[derive(Clone, Copy, Debug, Default)]
 struct Bound {
     at_rest: u32,
@@ -43,7 +44,7 @@ enum Arrival {
     OverElevator,
 }
 
-/// Resumable backward search from a goal, led towards a start if there is one.
+/// Resumable backward search from a goal, guided towards a start if there is one.
 #[derive(Clone, Debug)]
 pub struct Backward {
     queue: Buckets,
@@ -55,7 +56,7 @@ pub struct Backward {
     arrivals: Vec<Arrival>,
     columns: Vec<Bound>,
     rows: Vec<Bound>,
-    /// Lower bounds of the time to the goal by column and by row; empty: not used.
+    /// Lower bounds of the time to the goal by column and by row; empty if not used.
     columns_to_go: Vec<Bound>,
     rows_to_go: Vec<Bound>,
     walk: Vec<(u32, f64)>,
@@ -86,7 +87,7 @@ impl Backward {
         }
     }
 
-    /// Starts anew: times to `goal`, first where they matter on the way from `start`.
+    /// Starts a new search for times to `goal`, first those that matter on the way from `start`.
     pub fn begin(
         &mut self,
         network: &Network,
@@ -129,7 +130,7 @@ impl Backward {
         }
     }
 
-    /// Bounds times not known by straight lines to the goal, too. Returns whether that can be done.
+    /// Also bounds unknown times by straight lines to the goal. Returns whether that is possible.
     pub fn bound_to_goal(&mut self, network: &Network, model: &Model) -> bool {
         if network.axis_parallel {
             let (columns, rows) = (&mut self.columns_to_go, &mut self.rows_to_go);
@@ -148,7 +149,7 @@ impl Backward {
     }
 
     /// Lower bound of the time from rest at (waypoint, heading) to the goal; exact where the search
-    /// has been.
+    /// has been completed.
     pub fn to_go(&self, network: &Network, node: u32, heading: u8) -> u32 {
         let known = self.best(network.index(node, heading));
         let bound = self.bound_at_rest(network, node);
@@ -175,7 +176,7 @@ impl Backward {
         self.queue.settled()
     }
 
-    /// Searches on until every state with a total time below `limit` is known.
+    /// Continues the search until every state with a total time below `limit` is known.
     pub fn advance(&mut self, network: &Network, model: &Model, limit: u32) {
         while let Some((cost, state)) = self.queue.pop(limit) {
             look_up();
@@ -260,9 +261,9 @@ impl Backward {
         }
     }
 
-    /// Whether somebody on a quickest way may come to rest at a waypoint with the heading `before` to
-    /// drive on with another: nobody stops to go `straight` on or back where he came from, or arrives
-    /// in a direction that no edge has, but for those who come by elevator. `index` is that of
+    /// Whether a robot on a quickest way may come to rest at a waypoint with the heading `before`
+    /// and continue with another: unless it comes by elevator, a robot does not stop to go
+    /// `straight` on or back, nor arrive in a direction that no edge has. `index` is that of
     /// (waypoint, heading).
     #[inline]
     fn comes(
@@ -302,8 +303,8 @@ impl Backward {
     }
 }
 
-/// Prepares bounds of the times from a waypoint: a way covers its extent in x and in y, in a run each
-/// at least. Without a waypoint they are 0.
+/// Prepares bounds of the times from a waypoint: a way covers its extent in x and in y by at least
+/// one run each. Without a waypoint they are 0.
 fn bounds(
     network: &Network,
     model: &Model,

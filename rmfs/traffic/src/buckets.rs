@@ -8,7 +8,7 @@ const BUCKET: u32 = 1 << 18;
 /// A queue of states in buckets of their total time; improving a state again is allowed.
 #[derive(Clone, Debug)]
 pub struct Buckets {
-    /// Least cost of each state, and in which search that was.
+    /// Least cost of each state, and the number of the search that found it.
     best: Vec<(u32, u32)>,
     /// Number of the current search.
     stamp: u32,
@@ -29,7 +29,7 @@ impl Buckets {
         }
     }
 
-    /// Forgets everything.
+    /// Clears the queue.
     pub fn clear(&mut self) {
         self.stamp += 1;
         let first = self.at.min(self.buckets.len());
@@ -47,7 +47,7 @@ impl Buckets {
         if stamp == self.stamp { cost } else { UNREACHABLE }
     }
 
-    /// Keeps a cost for a state if it is less than the one known; the state never gets its turn.
+    /// Stores a cost for a state if it is less than the known one, without queueing the state.
     #[inline]
     pub fn note(&mut self, state: usize, cost: u32) {
         if cost < self.best(state) {
@@ -55,7 +55,8 @@ impl Buckets {
         }
     }
 
-    /// Offers a cost for a state; `total` (cost and bound of the rest) says when it is its turn.
+    /// Offers a cost for a state; `total` (cost plus bound of the rest) determines its place in the
+    /// queue.
     #[inline]
     pub fn improve(&mut self, state: usize, cost: u32, total: u32) {
         if cost >= self.best(state) {
@@ -89,7 +90,7 @@ impl Buckets {
         if self.waiting == 0 { UNREACHABLE } else { (self.at as u32).saturating_mul(BUCKET) }
     }
 
-    /// Whether no state is left to look at.
+    /// Whether the queue is empty.
     pub fn exhausted(&self) -> bool {
         self.waiting == 0
     }

@@ -1,4 +1,4 @@
-//! Unhindered travel times: the planner's heuristic and the distances that controllers ask for.
+//! Unhindered travel times: the planner's heuristic, and the distances that controllers use.
 //!
 //! Exact times of the best way without traffic, from rest to rest, over states (waypoint, heading).
 //! A run shorter than the way to top speed and back is one step of the search; a longer one rolls on
@@ -22,14 +22,14 @@ pub const UNREACHABLE: u32 = u32::MAX;
 /// Microseconds from rest at (waypoint, heading) to rest at the goal, indexed as in [`Network`].
 pub type Table = Arc<[u32]>;
 
-/// What is constant for one kind of robot on one network.
+/// Constants of one kind of robot on one network.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Microseconds per metre at top speed.
     pub pace: f64,
     /// Metres from which a run reaches top speed.
     pub full_speed: f64,
-    /// Microseconds a run that reaches top speed takes longer than at top speed throughout.
+    /// Additional microseconds of a run that reaches top speed, compared with top speed throughout.
     run_constant: f64,
     /// `2 (a + b) / (a b)`: a shorter run of `l` metres takes the root of `l` times this, in seconds.
     short_run: f64,
@@ -172,11 +172,11 @@ impl Model {
     }
 }
 
-/// Whom a table is for: goal, kind of robot, and whether it is loaded.
+/// Key of a table: goal, kind of robot, and whether it is loaded.
 type Key = (u32, u8, bool);
 
-/// The tables a cache has, by when they were last used, and its counts: what it takes to have the
-/// same ones again.
+/// The keys of a cache's tables in the order of last use, and its counts, from which the tables can
+/// be restored.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Known {
     keys: Vec<(u64, Key)>,
@@ -184,11 +184,11 @@ pub struct Known {
     computed: u64,
 }
 
-/// Models of all kinds, and full tables for the goals that are asked for again and again.
+/// Models of all kinds, and full tables for goals that are requested repeatedly.
 #[derive(Clone, Debug)]
 pub struct Cache {
     pub models: Vec<Model>,
-    /// With when they were last used; those not there are computed when they are asked for.
+    /// Tables with the time of last use; missing ones are computed on request.
     tables: HashMap<Key, (Option<Table>, u64)>,
     clock: u64,
     capacity: usize,
@@ -228,14 +228,14 @@ impl Cache {
         table
     }
 
-    /// What it takes to have the same tables again.
+    /// Returns the state from which the same tables can be restored.
     pub fn known(&self) -> Known {
         let mut keys: Vec<_> = self.tables.iter().map(|(key, (_, used))| (*used, *key)).collect();
         keys.sort_unstable();
         Known { keys, clock: self.clock, computed: self.computed }
     }
 
-    /// Has the tables that another cache had.
+    /// Restores the tables of another cache.
     pub fn remember(&mut self, known: Known) {
         self.tables = known.keys.into_iter().map(|(used, key)| (key, (None, used))).collect();
         (self.clock, self.computed) = (known.clock, known.computed);

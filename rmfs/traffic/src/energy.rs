@@ -1,9 +1,11 @@
-//! Energy: what each piece of motion draws from a robot's battery, and what it gets where it stands.
+//! Energy that each piece of motion draws from a robot's battery, and energy charged while it
+//! stands.
 //!
 //! Traction is work against rolling resistance and inertia, phase by phase of a run (accelerate,
-//! cruise, brake), so that force times distance is exact. A share of the work of braking comes back.
-//! Turning has a resistance and an inertia of its own; lifting is potential energy; electronics draw
-//! power all the time. Where a waypoint gives power, a robot that stands there is charged and its
+//! cruise, brake), so that force times distance is exact. A share of the work of braking is
+//! recovered.
+//! Turning has its own resistance and inertia; lifting is potential energy; electronics draw power
+//! all the time. If a waypoint supplies power, a robot that stands there is charged and its
 //! electronics are supplied.
 
 use serde::{Deserialize, Serialize};
@@ -14,7 +16,7 @@ use crate::units::{MicroTurn, TURN, Us};
 /// m/s².
 pub const GRAVITY: f64 = 9.806_65;
 
-/// What the motion of a robot draws.
+/// Parameters of the energy drawn by the motion of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Model {
     /// Mass of the robot, kg.
@@ -25,21 +27,21 @@ pub struct Model {
     pub inertia: f64,
     /// Share of the power drawn that reaches the wheels.
     pub efficiency: f64,
-    /// Share of the work of braking that comes back.
+    /// Share of the work of braking that is recovered.
     pub recuperation: f64,
     /// Torque against a turn on the spot per weight, m.
     pub turning: f64,
     /// Radius of gyration of robot and load, m.
     pub gyration: f64,
-    /// m a pod is lifted.
+    /// Height by which a pod is lifted, m.
     pub lift_height: f64,
-    /// Share of the power drawn that lifts.
+    /// Share of the power drawn that is used for lifting.
     pub lift_efficiency: f64,
     /// Power of the electronics, W: without and with a pod.
     pub standby: [f64; 2],
 }
 
-/// J drawn from the battery, and of braking given back to it.
+/// Energy drawn from the battery, and returned to it by braking, J.
 type Drawn = (f64, f64);
 
 impl Model {
@@ -101,14 +103,14 @@ impl Battery {
     }
 }
 
-/// What a robot has drawn and got since time zero.
+/// Energy drawn and charged by a robot since time zero.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spent {
     /// J drawn in runs, turns and lifts.
     pub drive: f64,
     pub turn: f64,
     pub lift: f64,
-    /// J given back by braking.
+    /// J returned by braking.
     pub recuperated: f64,
     /// Time without and with a pod: the electronics draw power all the time.
     pub standing_by: [Us; 2],
@@ -125,12 +127,12 @@ impl Spent {
         (model.standby[0] * empty as f64 + model.standby[1] * loaded as f64) / 1e6
     }
 
-    /// J drawn in all, less what braking gave back.
+    /// Total J drawn, less what braking returned.
     pub fn used(&self, model: &Model) -> f64 {
         self.drive + self.turn + self.lift - self.recuperated + self.standby(model)
     }
 
-    /// What came after `before`.
+    /// The difference from an earlier state, `before`.
     pub fn since(&self, before: &Self) -> Self {
         let [empty, loaded] = self.standing_by;
         Self {
@@ -161,7 +163,7 @@ pub enum Done<'a> {
     Turn(&'a Kind, MicroTurn, f64),
     /// A run, and the metres driven.
     Run(&'a Kind, &'a Profile, f64),
-    /// A ride in an elevator, or a pod set down: nothing but time.
+    /// A ride in an elevator, or a set-down: these only take time.
     Time,
     /// The share of a lift that is done.
     Lift(f64),
@@ -174,7 +176,7 @@ pub struct Energy {
     /// Mass of each pod with its stock, kg.
     pub pods: Vec<f64>,
     pub battery: Option<Battery>,
-    /// W that a waypoint gives; empty: none does.
+    /// Power supplied by each waypoint, W; empty if none supplies any.
     pub power: Vec<f64>,
     /// J in each battery at time zero.
     pub initial: Vec<f64>,
@@ -225,7 +227,7 @@ impl Energy {
         self.spent[robot as usize] = spent;
     }
 
-    /// Adds a piece of motion, or what is done of it, to what a robot has spent.
+    /// Adds a piece of motion, or the completed part of it, to the energy of a robot.
     pub fn add(&self, spent: &mut Spent, lasting: Us, pod: Option<u32>, done: Done<'_>) {
         spent.standing_by[usize::from(pod.is_some())] += lasting;
         let load = pod.map_or(0.0, |pod| self.pods[pod as usize]);
@@ -255,7 +257,7 @@ impl Energy {
         }
     }
 
-    /// What a robot has spent, if it has been recorded until `at`.
+    /// Energy of a robot whose motion has been recorded until `at`.
     pub fn spent_at(&self, robot: u32, at: Us) -> Spent {
         let mut spent = self.spent[robot as usize].clone();
         if let (Some(plugged), Some(battery)) = (&self.plugged[robot as usize], &self.battery) {
@@ -269,29 +271,29 @@ impl Energy {
         spent
     }
 
-    /// J drawn by a robot as far as recorded, less what braking gave back.
+    /// J drawn by a robot as far as recorded, less what braking returned.
     pub fn used(&self, robot: u32) -> f64 {
         self.spent[robot as usize].used(&self.model)
     }
 
-    /// J in the battery of a robot that has spent that much.
+    /// J in the battery of a robot with this balance.
     pub fn level_of(&self, robot: u32, spent: &Spent) -> f64 {
         self.initial[robot as usize] + spent.charged - spent.used(&self.model)
     }
 
-    /// Brings the level of a robot, recorded until `at`, to `level`: another battery.
+    /// Exchanges the battery of a robot, recorded until `at`, for one with `level` J.
     pub fn exchange(&mut self, robot: u32, at: Us, level: f64) {
         self.unplug(robot, at);
         let present = self.level_of(robot, &self.spent[robot as usize]);
         self.spent[robot as usize].charged += level - present;
     }
 
-    /// What a robot has spent since the statistics were reset.
+    /// Energy of a robot since the statistics were reset.
     pub fn since_reset(&self, robot: usize, spent: &Spent) -> Spent {
         spent.since(&self.before[robot])
     }
 
-    /// Starts the statistics anew; levels stay.
+    /// Resets the statistics; levels are kept.
     pub fn reset(&mut self, spent: Vec<Spent>) {
         self.before = spent;
     }

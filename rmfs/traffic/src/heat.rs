@@ -21,7 +21,7 @@ impl Passages {
     }
 }
 
-/// What robots of one purpose did at a waypoint.
+/// Counts of robots of one purpose at a waypoint.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stay {
     pub purpose: u32,
@@ -29,12 +29,12 @@ pub struct Stay {
     pub waiting: Us,
 }
 
-/// Counts since the last reset. What robots drive for is one of several *purposes*: the station
-/// they are bound for, storing a pod, or neither.
+/// Counts since the last reset. A robot's *purpose* is the station it is bound for, storing a pod,
+/// or neither.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Heat {
-    /// By waypoint, those purposes that were there, ascending: of hundreds of stations robots pass
-    /// a waypoint on their way to few.
+    /// By waypoint, the purposes that occurred, ascending: of hundreds of stations, robots pass a
+    /// waypoint on the way to only a few.
     stays: Vec<Vec<Stay>>,
     /// By waypoint.
     pub loaded_visits: Vec<u32>,
@@ -45,7 +45,7 @@ pub struct Heat {
 }
 
 impl Heat {
-    /// Nothing counted yet.
+    /// Empty counts.
     pub fn new(network: &Network) -> Self {
         Self {
             stays: vec![Vec::new(); network.nodes],
@@ -56,7 +56,7 @@ impl Heat {
         }
     }
 
-    /// Forgets everything.
+    /// Resets all counts.
     pub fn reset(&mut self) {
         self.stays.iter_mut().for_each(Vec::clear);
         self.loaded_visits.fill(0);
@@ -74,19 +74,19 @@ impl Heat {
         &mut stays[at]
     }
 
-    /// What has been counted, with its waypoint, by waypoint and purpose.
+    /// The counts with their waypoints, sorted by waypoint and purpose.
     pub fn stays(&self) -> impl Iterator<Item = (u32, &Stay)> {
         let rows = self.stays.iter().enumerate();
         rows.flat_map(|(node, stays)| stays.iter().map(move |stay| (node as u32, stay)))
     }
 
-    /// A robot passed a waypoint or stopped there.
+    /// Counts a robot that passed a waypoint or stopped there.
     pub fn visit(&mut self, node: u32, purpose: usize, loaded: bool) {
         self.stay(node, purpose).visits += 1;
         self.loaded_visits[node as usize] += u32::from(loaded);
     }
 
-    /// A robot stood at a waypoint.
+    /// Counts time for which a robot stood at a waypoint.
     pub fn wait(&mut self, node: u32, purpose: usize, loaded: bool, time: Us) {
         self.stay(node, purpose).waiting += time;
         if loaded {
@@ -94,12 +94,12 @@ impl Heat {
         }
     }
 
-    /// A robot drove the edge that leaves a waypoint in a direction.
+    /// Counts a robot that drove the edge that leaves a waypoint in a direction.
     pub fn pass(&mut self, network: &Network, from: u32, heading: u8, loaded: bool) {
         self.edges[network.index(from, heading)].add(loaded);
     }
 
-    /// A robot rode an elevator.
+    /// Counts a robot that rode an elevator.
     pub fn ride(&mut self, from: u32, to: u32, loaded: bool) {
         self.rides.entry((from, to)).or_default().add(loaded);
     }

@@ -37,8 +37,8 @@ impl Kind {
         (angle * self.full_turn + Us::from(TURN) - 1) / Us::from(TURN)
     }
 
-    /// Seconds until `distance` metres of a run from rest that will not brake are covered; to the
-    /// last bit what [`Profile::time_at`] says for runs long enough.
+    /// Seconds until `distance` metres of a run from rest that will not brake are covered; for runs
+    /// that are long enough, equal to [`Profile::time_at`] to the last bit.
     pub fn unbraked(&self, distance: f64) -> f64 {
         let run_up = self.run_up();
         if distance <= run_up {

@@ -1,4 +1,4 @@
-//! Traffic of a Robotic Mobile Fulfillment System: what moves, without knowing why.
+//! Traffic of a Robotic Mobile Fulfillment System: the motion of robots, regardless of its purpose.
 
 pub mod backward;
 pub mod buckets;

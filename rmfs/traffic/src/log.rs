@@ -1,13 +1,13 @@
-//! A list that only grows, of which copies share what is old.
+//! An append-only list, whose copies share old entries.
 
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-/// Entries that copies share at a time.
+/// Number of entries in a chunk, the unit shared by copies.
 const CHUNK: usize = 1 << 12;
 
-/// Entries in the order in which they came; a copy costs little however many there are.
+/// Entries in the order of insertion; copying is cheap, however many there are.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Log<T> {
     /// Full chunks.
@@ -30,17 +30,17 @@ impl<T> Log<T> {
         }
     }
 
-    /// How many entries there are.
+    /// Number of entries.
     pub fn len(&self) -> usize {
         self.old.len() * CHUNK + self.new.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no entries.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Forgets all entries.
+    /// Removes all entries.
     pub fn clear(&mut self) {
         *self = Self::default();
     }

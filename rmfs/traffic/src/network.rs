@@ -8,7 +8,7 @@ use crate::units::{MicroTurn, TURN, Us, heading_of};
 /// "No waypoint", "no zone".
 pub const NONE: u32 = u32::MAX;
 
-/// The zone of waypoints that are closed: nobody wants to go there.
+/// The zone of closed waypoints, which is no robot's destination.
 const CLOSED: u32 = u32::MAX - 1;
 
 /// One directed way between tiers.
@@ -19,7 +19,7 @@ pub struct Ride {
     pub travel: Us,
 }
 
-/// What is needed to build a [`Network`]: plain arrays, one entry per waypoint.
+/// The input for building a [`Network`]: plain arrays, one entry per waypoint.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
     pub x: Vec<f64>,
@@ -38,11 +38,11 @@ pub struct Plan {
     pub extra_headings: Vec<MicroTurn>,
 }
 
-/// Headings are counted in bytes.
+/// Maximum number of headings, which are indexed by bytes.
 const MOST_HEADINGS: usize = 256;
 
 impl Plan {
-    /// Whether all arrays belong together and name waypoints that exist.
+    /// Whether all arrays are consistent and refer to existing waypoints.
     fn check(&self) -> Result<(), String> {
         let nodes = self.x.len();
         let lengths = [self.y.len(), self.tier.len(), self.storage.len(), self.queue.len()];
@@ -73,7 +73,7 @@ pub struct Network {
     pub nodes: usize,
     /// Distinct headings, ascending.
     pub headings: Vec<MicroTurn>,
-    /// The heading back, by heading.
+    /// The opposite of each heading.
     opposite: Vec<Option<u8>>,
     /// Waypoint reached from `v` in direction `h`: `next[v * H + h]`.
     next: Vec<u32>,
@@ -85,13 +85,14 @@ pub struct Network {
     pub storage: Vec<bool>,
     /// Station whose private queue zone the waypoint belongs to, or `NONE`.
     pub zone: Vec<u32>,
-    /// The same, with what is closed as a zone of its own: who may enter a waypoint.
+    /// The same with closed waypoints as a separate zone, which determines who may enter a
+    /// waypoint.
     access: Vec<u32>,
     /// What a robot at the waypoint occupies: the waypoint, or the shaft of its elevator.
     pub resource: Vec<u32>,
     pub resources: usize,
     pub stations: Vec<Vec<u32>>,
-    /// Which part of the graph a waypoint belongs to that elevators alone connect with others.
+    /// Island of each waypoint: a part of the graph connected with others only by elevators.
     pub island: Vec<u32>,
     rides_from: Vec<Vec<Ride>>,
     rides_to: Vec<Vec<Ride>>,
@@ -197,7 +198,7 @@ impl Network {
         self.headings[heading as usize] % 500_000 == 0
     }
 
-    /// The heading back where a robot came from, if there is one.
+    /// The opposite heading, if there is one.
     pub fn opposite(&self, heading: u8) -> Option<u8> {
         self.opposite[heading as usize]
     }
@@ -250,9 +251,9 @@ impl Network {
         !self.is_closed(ride.to) || self.is_closed(ride.from)
     }
 
-    /// Whether a robot on its way to `goal` may drive from `from` onto `to`: queue zones are for
-    /// those who want to the station, storage places for empty robots and for the goal itself.
-    /// Closed waypoints are only for who is on one.
+    /// Whether a robot on its way to `goal` may drive from `from` onto `to`: queue zones only if
+    /// bound for their station; storage places only if empty or if it is the goal; closed waypoints
+    /// only from a closed one.
     pub fn may_enter(&self, from: u32, to: u32, goal: u32, loaded: bool) -> bool {
         let zone = self.access[to as usize];
         let private = zone != NONE
@@ -262,7 +263,7 @@ impl Network {
         !private && !blocked
     }
 
-    /// Whether nobody may enter a waypoint.
+    /// Whether a waypoint is closed.
     pub fn is_closed(&self, node: u32) -> bool {
         self.access[node as usize] == CLOSED
     }
@@ -277,8 +278,8 @@ impl Network {
         (0..self.nodes as u32).filter(|&node| self.is_closed(node)).collect()
     }
 
-    /// A number that tells networks, and the kinds of robots on them, from others; what is closed
-    /// does not count.
+    /// A hash that identifies a network and the kinds of robots on it; closed waypoints are
+    /// ignored.
     pub fn fingerprint(&self, kinds: &[Kind]) -> u32 {
         let numbers = |kind: &Kind| {
             let Kind { acceleration, deceleration, top_speed, full_turn, pod_transfer } = *kind;
@@ -341,7 +342,7 @@ fn csr<T: Copy>(lists: &[Vec<T>]) -> (Vec<u32>, Vec<T>) {
     (start, items)
 }
 
-/// Gives each queue waypoint to the station whose queue list it is nearest to, over queue edges.
+/// Assigns each queue waypoint to the station whose queue list is nearest over queue edges.
 fn zones(plan: &Plan, nodes: usize) -> Vec<u32> {
     let mut neighbours = vec![Vec::new(); nodes];
     for v in 0..nodes {

@@ -1,18 +1,18 @@
-//! Long work can be given up: what may take long looks up now and then.
+//! Interruption of long work by a callback that is called now and then.
 //!
-//! Whoever starts work may leave a question here that is asked every tenth of a second while it
-//! goes on; a question that is answered with the wish to stop unwinds the work.
+//! The caller of long work may register a callback here, which is called every tenth of a second
+//! while the work is in progress. If the callback asks to stop, the work is unwound.
 
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-/// How many steps of work lie between two looks at the clock.
+/// Number of steps of work between two readings of the clock.
 const STEPS: u32 = 1 << 10;
 
-/// Wall time between two questions.
+/// Wall time between two calls of the callback.
 const BETWEEN: Duration = Duration::from_millis(100);
 
-/// What is asked, and when it was asked last.
+/// The callback, and the time of its last call.
 type Question = (fn(), Instant);
 
 thread_local! {
@@ -20,7 +20,7 @@ thread_local! {
     static QUESTION: Cell<Option<Question>> = const { Cell::new(None) };
 }
 
-/// Tells that a step of work is done, which may be one of very many.
+/// Reports that a step of work is done; cheap, as there may be very many.
 #[inline]
 pub fn look_up() {
     LEFT.with(|left| match left.get() {
@@ -44,9 +44,9 @@ fn ask() {
     });
 }
 
-/// Does something, and asks the question while it goes on.
+/// Runs some work, and calls the callback while it is in progress.
 pub fn asking<T>(question: fn(), work: impl FnOnce() -> T) -> T {
-    /// Puts the former question back, also when the work unwinds.
+    /// Restores the previous callback, also when the work unwinds.
     struct Back(Option<Question>);
     impl Drop for Back {
         fn drop(&mut self) {

@@ -1,7 +1,7 @@
-//! Waiting where it hurts least: a plan's waits move from the aisles back to its start.
+//! Postponing departures: moves the waits of a plan from the aisles back to its start.
 //!
-//! The search reaches every stop as early as it can and waits there. With the arrival at the goal
-//! fixed, each run may as well start later, so that others find the aisles free.
+//! The search reaches every stop as early as possible and waits there. For a fixed arrival at the
+//! goal, each run may start later, which keeps the aisles free for others.
 
 use crate::kinematics::Kind;
 use crate::network::Network;
@@ -11,8 +11,8 @@ use crate::units::{Us, ceil_us, floor_us};
 
 /// Starts every move but the last as late as the next one and the reservations of others allow.
 ///
-/// The first move is left alone if the robot does not start from a storage place: whoever stands at
-/// a station or in an aisle should be gone soon.
+/// The first move is left alone if the robot does not start from a storage place: a robot at a
+/// station or in an aisle should leave soon.
 pub fn postpone(network: &Network, table: &Table, kind: &Kind, moves: &mut [Move]) {
     for i in (0..moves.len().saturating_sub(1)).rev() {
         if i == 0 && !network.storage[moves[0].from as usize] {

@@ -1,4 +1,4 @@
-//! A small seeded generator (SplitMix64), so that a run is the same everywhere.
+//! A small seeded generator (SplitMix64), so that a run is identical on every machine.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +25,7 @@ impl Random {
         self.next() % limit
     }
 
-    /// One of the items, or `None` of none.
+    /// Draws one of the items; `None` if there are none.
     pub fn choose<'a, T>(&mut self, items: &'a [T]) -> Option<&'a T> {
         if items.is_empty() {
             return None;

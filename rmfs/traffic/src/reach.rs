@@ -1,10 +1,11 @@
-//! Whereto, and from where, a pod can be carried at all, however long that takes.
+//! Where a pod can be carried to and from at all, however long that takes.
 
 use crate::network::Network;
 
-/// Which waypoints a loaded robot can drive to from `source`, whatever it wants there.
+/// The waypoints to which a loaded robot can drive from `source`.
 ///
-/// Queues are open to it, since any waypoint may be its goal; stored pods and what is closed are not.
+/// Queues are open to it, since any waypoint may be its goal; storage places and closed waypoints
+/// are not.
 pub fn carried_from(network: &Network, source: u32) -> Vec<bool> {
     let ends = |node: u32| network.storage[node as usize] && node != source;
     spread(network, source, ends, |node, next| {
@@ -16,7 +17,7 @@ pub fn carried_from(network: &Network, source: u32) -> Vec<bool> {
     })
 }
 
-/// From which waypoints a loaded robot can drive to `goal`.
+/// The waypoints from which a loaded robot can drive to `goal`.
 pub fn carried_to(network: &Network, goal: u32) -> Vec<bool> {
     let ends = |node: u32| network.storage[node as usize] && node != goal;
     spread(network, goal, ends, |node, next| {
@@ -28,7 +29,7 @@ pub fn carried_to(network: &Network, goal: u32) -> Vec<bool> {
     })
 }
 
-/// Goes from waypoint to waypoint, but on from none that `ends` it.
+/// Visits waypoints one after another, without continuing from those for which `ends` holds.
 fn spread(
     network: &Network,
     first: u32,

@@ -1,4 +1,4 @@
-//! What is remembered of the motion: totals per robot, heat, trips and the trace.
+//! The record of motion: totals per robot, heat, trips and the trace.
 
 mod moves;
 mod rows;
@@ -35,7 +35,7 @@ struct Late {
     start: Us,
     /// Waypoints of the run in use when the delay came.
     begun: u32,
-    /// By how much it is late since then in all.
+    /// Total delay since then.
     by: Us,
 }
 
@@ -86,12 +86,12 @@ pub struct Trip {
     pub loaded: bool,
     pub distance: f64,
     pub unhindered: Us,
-    /// J drawn, less what braking gave back, to a station as far as its head; 0 if energy is not
+    /// J drawn, less what braking returned; for a station, up to its head; 0 if energy is not
     /// counted.
     pub energy: f64,
 }
 
-/// What a trip is for.
+/// Purpose of a trip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[repr(i8)]
 pub enum TripKind {
@@ -108,14 +108,14 @@ pub struct Record {
     pub heat: Heat,
     pub trips: Log<Trip>,
     pub trace: Option<Log<Row>>,
-    /// What the motion draws, if that is counted.
+    /// The energy of the motion, if it is counted.
     pub energy: Option<Box<Energy>>,
-    /// When totals, heat and trips begin.
+    /// Start of the counting of totals, heat and trips.
     pub since: Us,
-    /// Until when each robot's motion is recorded.
+    /// Time up to which each robot's motion is recorded.
     recorded: Vec<Us>,
-    /// What each robot's run in progress has been held up. Only robots outside the simulation hold
-    /// up runs in progress, and what they do cannot be saved.
+    /// Delays of each robot's run in progress. Only robots outside the simulation delay runs in
+    /// progress, and these cannot be saved.
     #[serde(skip)]
     late: HashMap<u32, Vec<Late>>,
 }
@@ -135,8 +135,8 @@ impl Record {
         }
     }
 
-    /// Forgets totals, heat and trips at `now`; the trace stays. What each robot has done of the
-    /// motion it is in the middle of, which is recorded when it ends, is taken off in advance.
+    /// Resets totals, heat and trips at `now`; the trace is kept. Motion in progress is recorded
+    /// when it ends, so its part before `now` is subtracted in advance.
     pub fn reset(&mut self, now: Us, in_progress: &[Totals]) {
         self.since = now;
         for (totals, done) in self.totals.iter_mut().zip(in_progress) {
@@ -151,7 +151,7 @@ impl Record {
         self.energy.as_ref().map_or(0.0, |energy| energy.used(robot))
     }
 
-    /// Until when the robot's motion is recorded.
+    /// Time up to which the robot's motion is recorded.
     pub fn recorded(&self, robot: u32) -> Us {
         self.recorded[robot as usize]
     }
@@ -226,7 +226,7 @@ impl Record {
         });
     }
 
-    /// Takes note of how late a run in progress is by now.
+    /// Records the present delay of a run in progress.
     pub fn hold_up(&mut self, robot: u32, step: &Move) {
         let known = self.late.entry(robot).or_default();
         if known.last().is_none_or(|last| (last.start, last.by) != (step.start, step.late)) {
@@ -234,7 +234,7 @@ impl Record {
         }
     }
 
-    /// When the robot sets off on a run, and when it reaches each waypoint, late as it may be.
+    /// When the robot starts a run, and when it reaches each waypoint, delays included.
     fn reached(
         &self,
         network: &Network,
@@ -256,8 +256,8 @@ impl Record {
         (step.start + before, line.iter().enumerate().map(of).collect())
     }
 
-    /// A move as rows of the trace: the turn before it, if any, and the run or ride. A run that was
-    /// held up is told waypoint by waypoint.
+    /// A move as rows of the trace: the turn before it, if any, and the run or ride. A delayed run
+    /// is recorded waypoint by waypoint.
     pub fn rows(
         &self,
         network: &Network,
@@ -288,8 +288,8 @@ impl Record {
         rows
     }
 
-    /// Records that a robot gives up what it does, and is at rest as `later` has it: at the end of
-    /// the part of its run that it may still drive, or wherever it was put.
+    /// Records that a robot abandons its plan and is at rest as `later` states: at the end of the
+    /// part of its run that it may still drive, or wherever it was put.
     pub fn abandon(
         &mut self,
         network: &Network,

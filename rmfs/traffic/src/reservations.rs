@@ -1,4 +1,4 @@
-//! Who occupies what, when: sorted, disjoint time intervals per resource.
+//! Reservations of resources by robots: sorted, disjoint time intervals per resource.
 
 use serde::{Deserialize, Serialize};
 
@@ -38,7 +38,7 @@ impl Table {
         ends.filter(|&end| end < FOREVER).max().unwrap_or(0)
     }
 
-    /// Adds an occupation and forgets those that ended before `now`.
+    /// Adds an occupation and removes those that ended before `now`.
     ///
     /// # Panics
     /// If it overlaps another: plans are checked before they are inserted, so this is a defect.
@@ -52,7 +52,7 @@ impl Table {
         row.insert(at, new);
     }
 
-    /// Who occupies the resource first during `[start, end)`, if anybody.
+    /// The first robot that occupies the resource during `[start, end)`, if any.
     pub fn occupant(&self, resource: u32, start: Us, end: Us) -> Option<Interval> {
         let row = &self.rows[resource as usize];
         let at = row.partition_point(|old| old.end <= start);
@@ -74,12 +74,12 @@ impl Table {
         row.insert(at, new);
     }
 
-    /// Exchanges the row of a resource.
+    /// Replaces the row of a resource.
     pub fn replace(&mut self, resource: u32, row: Vec<Interval>) {
         self.rows[resource as usize] = row;
     }
 
-    /// Empties the table and gives it so many rows.
+    /// Empties the table and sets its number of rows.
     pub fn reset(&mut self, resources: usize) {
         self.rows.iter_mut().for_each(Vec::clear);
         self.rows.resize_with(resources, Vec::new);
@@ -90,7 +90,7 @@ impl Table {
         self.rows[resource as usize].retain(|old| old.robot != robot);
     }
 
-    /// Who holds the resource without a planned end, if anybody.
+    /// The robot that holds the resource without a planned end, if any.
     pub fn final_holder(&self, resource: u32) -> Option<u32> {
         self.rows[resource as usize]
             .last()

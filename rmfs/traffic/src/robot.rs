@@ -1,4 +1,4 @@
-//! One robot: what it was told, where it is, and the plan it owns.
+//! One robot: its program, position and plan.
 
 use std::collections::VecDeque;
 
@@ -9,7 +9,7 @@ use crate::network::{NONE, Network};
 use crate::search::Move;
 use crate::units::{FOREVER, Us, ceil_us, floor_us};
 
-/// What a robot is told to do, one after another.
+/// The steps of a robot's program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Step {
     /// Drive to a waypoint and stop there.
@@ -28,14 +28,14 @@ impl Step {
     }
 }
 
-/// What a robot is doing with the first step of its program.
+/// Progress of a robot on the first step of its program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Phase {
     /// No program.
     Idle,
     /// On the way, or standing in a queue.
     Driving,
-    /// Wants to drive and has found no way yet.
+    /// Needs to drive and has found no way yet.
     Blocked,
     /// At rest until a lift or set-down ends.
     Transferring,
@@ -58,7 +58,7 @@ pub struct Robot {
     /// Where the robot rests, or where the first of `moves` began.
     pub anchor: u32,
     pub heading: u8,
-    /// Since when the anchor is occupied.
+    /// Time from which the anchor is occupied.
     pub anchored: Us,
     /// When the robot is (or was) at rest at the anchor.
     pub rested: Us,
@@ -67,11 +67,11 @@ pub struct Robot {
     pub pod: Option<u32>,
     pub program: VecDeque<Step>,
     pub phase: Phase,
-    /// The robot stays until then: it lifts, sets down or is broken down.
+    /// Time until which the robot stays: it lifts, sets down or has broken down.
     pub busy_until: Us,
     /// When the current lift or set-down ends.
     pub transfer_end: Us,
-    /// Station and place promised in its queue.
+    /// Station, and the place in its queue assigned to the robot.
     pub place: Option<(u32, usize)>,
     /// Changes whenever the plan changes, so that events of old plans are recognised.
     pub version: u32,
@@ -105,11 +105,11 @@ impl Robot {
         })
     }
 
-    /// Everything the robot occupies: anchor, the way, and the end of the plan without limit.
+    /// Everything the robot occupies: the anchor, the way, and the end of the plan indefinitely.
     pub fn occupation(&self, network: &Network, kind: &Kind) -> Vec<Held> {
         occupation(network, kind, self.anchor, self.anchored, &self.moves)
     }
-    /// How many of the moves can no longer be changed at `now`: those whose turn has begun.
+    /// Number of moves that can no longer be changed at `now`, because their turn has begun.
     pub fn committed(&self, network: &Network, kind: &Kind, now: Us) -> usize {
         self.moves
             .iter()
@@ -143,8 +143,9 @@ impl Robot {
         }
     }
 
-    /// What the robot drives or stands for, as counted by [`crate::heat::Heat`]: the station it is
-    /// bound for, or stands at; else `stations` with a pod or on the way to one; else one more.
+    /// Purpose of the robot, as counted by [`crate::heat::Heat`]: the station for which it is bound
+    /// or at which it stands; otherwise `stations` if it carries or fetches a pod, and `stations +
+    /// 1` if not.
     pub fn purpose(&self, stations: usize) -> usize {
         let bound = self.program.iter().find_map(|step| match step {
             Step::Station(station) => Some(*station as usize),
@@ -158,8 +159,8 @@ impl Robot {
     }
 }
 
-/// What a robot occupies that stands at `from` since a time and then makes the moves: the start,
-/// the way, and the end without limit.
+/// What a robot occupies if it stands at `from` from a given time on and then makes the moves: the
+/// start, the way, and the end indefinitely.
 pub fn occupation<'a>(
     network: &Network,
     kind: &Kind,

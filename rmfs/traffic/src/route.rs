@@ -1,7 +1,7 @@
-//! Ways through space alone: the quickest sequence of runs if nobody else were there.
+//! Ways in space alone: the quickest sequence of runs without other robots.
 //!
-//! An A* over rest states (waypoint, heading), led by exact unhindered times, so that without
-//! penalties it walks straight down the best way. Waypoints can be closed or made dearer.
+//! An A* over rest states (waypoint, heading), guided by exact unhindered times, so that without
+//! penalties it expands only the best way. Waypoints can be closed or made more expensive.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
@@ -35,8 +35,8 @@ struct Reached {
     ride: bool,
 }
 
-/// The quickest way without waits, where `penalty` says by how much time passing or stopping at a
-/// waypoint is dearer (`None`: it is closed). `None` if there is no way.
+/// The quickest way without waits, where `penalty` is the additional cost, in time, of passing a
+/// waypoint or stopping there (`None`: it is closed). `None` if there is no way.
 pub fn route(
     network: &Network,
     leg: &Leg,
@@ -86,7 +86,7 @@ pub fn route(
     None
 }
 
-/// Waypoints at which a run in one direction can end, with its length and what it is dearer by.
+/// Waypoints at which a run in one direction can end, with its length and additional cost.
 fn stops<'a>(
     network: &'a Network,
     leg: &'a Leg,

@@ -1,9 +1,10 @@
-//! Time in whole microseconds and angles in whole micro-turns, so that a run is the same everywhere.
+//! Time in whole microseconds and angles in whole micro-turns, so that runs are identical
+//! everywhere.
 
 /// A point in time or a duration in microseconds.
 pub type Us = i64;
 
-/// The end of a reservation that nobody has planned to end.
+/// The end of a reservation without a planned end.
 pub const FOREVER: Us = i64::MAX / 4;
 
 /// An angle in millionths of a full turn, `0..TURN`.

@@ -1,4 +1,4 @@
-//! Robots that want to drive and have found no way: they stay parked and try again.
+//! Robots that need to drive and have found no way: they stay where they are and try again.
 
 use std::cmp::Reverse;
 use std::time::Instant;
@@ -10,7 +10,7 @@ use crate::units::{FOREVER, Us};
 
 use super::{Due, Fleet};
 
-/// How often robots that found no way try again.
+/// Time between two attempts of a robot that found no way.
 const RETRY: Us = 1_000_000;
 
 impl Fleet {
@@ -22,7 +22,7 @@ impl Fleet {
         }
     }
 
-    /// Lets robots try again whose goal somebody has just planned to leave.
+    /// Lets robots try again if another robot has just planned to leave their goal.
     pub(super) fn retry_released(&mut self) {
         while !self.released.is_empty() {
             let released = std::mem::take(&mut self.released);
@@ -98,7 +98,7 @@ impl Fleet {
         }
     }
 
-    /// Robots that want to drive and have found no way.
+    /// Robots that need to drive and have found no way.
     pub fn blocked(&self) -> Vec<u32> {
         let waits = |&robot: &u32| self.robots[robot as usize].phase == Phase::Blocked;
         (0..self.robots.len() as u32).filter(waits).collect()

@@ -1,9 +1,10 @@
 //! Waypoints that are closed for a while, or for good: an elevator out of service, a spill.
 //!
-//! From then on nobody enters them. Whoever is on one, or can no longer stop before it, goes on and
-//! leaves; whose way leads there later is planned anew. Without another way it stops earlier, where
-//! that hinders nobody, and waits; if there is no such place either it still drives through, for a
-//! plan that others rely on is only given up for one that is as safe.
+//! From then on, no robot enters them. A robot that is on one, or can no longer stop before it,
+//! continues and leaves; a robot whose way leads there later is planned anew. If there is no other
+//! way, it stops earlier, where it hinders no other robot, and waits. If there is no such place
+//! either, it still drives through: a plan on which others rely is only replaced by one that is as
+//! safe.
 
 use std::sync::Arc;
 
@@ -17,9 +18,10 @@ use super::planning::Effort;
 /// Storage places and stations that cannot be served while waypoints are closed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CutOff {
-    /// Waypoints between which and some station that is not cut off no pod can be carried.
+    /// Storage places from which, or to which, a pod cannot be carried for one of the remaining
+    /// stations.
     pub storage: Vec<u32>,
-    /// Stations to which and from which no pod can be carried.
+    /// Stations that no pod can reach or leave.
     pub stations: Vec<u32>,
 }
 
@@ -45,7 +47,7 @@ impl Fleet {
         Ok(still)
     }
 
-    /// Opens waypoints again.
+    /// Reopens waypoints.
     ///
     /// # Errors
     /// If there is no such waypoint; nothing has changed then.
@@ -104,7 +106,7 @@ impl Fleet {
         true
     }
 
-    /// Whether a robot can stay for good where its first `kept` moves end.
+    /// Whether a robot can stay indefinitely where its first `kept` moves end.
     fn can_stay_after(&self, robot: u32, kept: usize) -> bool {
         let state = &self.robots[robot as usize];
         let (node, since) = match kept.checked_sub(1) {
@@ -116,7 +118,7 @@ impl Fleet {
         !self.network.is_elevator(node) && others.clone().all(|used| used.end <= since)
     }
 
-    /// Gives up what a robot has planned after its first moves; it stays there and tries again.
+    /// Drops a robot's plan after its first moves; the robot stays there and tries again.
     fn stop_after(&mut self, robot: u32, kept: usize) {
         self.forget(robot);
         let state = &self.robots[robot as usize];
@@ -141,7 +143,7 @@ impl Fleet {
         }
     }
 
-    /// What cannot be served with what is closed.
+    /// Storage places and stations that cannot be served because of closed waypoints.
     pub fn cut_off(&self) -> CutOff {
         let network = &*self.network;
         let storage: Vec<u32> =

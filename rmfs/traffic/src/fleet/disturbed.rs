@@ -1,7 +1,7 @@
-//! Robots that are disturbed: they stop for a while, or drive slower than they should.
+//! Disturbances of robots, which stop for a while or drive more slowly than planned.
 //!
-//! Both only make plans late. The order in which waypoints are used stays (`late.rs`), so whoever
-//! had a plan keeps its way, nobody meets anybody, and no new deadlock can come about.
+//! Both only delay plans. The order in which robots use waypoints is kept (`late.rs`), so all
+//! robots keep their ways, and there can be no collision and no new deadlock.
 
 use crate::kinematics::Kind;
 use crate::network::Network;
@@ -15,8 +15,8 @@ use super::late::{Delays, Shift};
 impl Fleet {
     /// Lets a robot stand still for `by` where it next comes to rest.
     ///
-    /// Nothing changes, and the result is `None`, if somebody is already driving who would have to
-    /// wait for it. Otherwise the time at which it may go on.
+    /// Returns the time at which it continues. Returns `None` and changes nothing if a robot that
+    /// is already driving would have to wait for it.
     pub fn hold(&mut self, robot: u32, by: Us) -> Option<Us> {
         self.settle_all();
         let state = &self.robots[robot as usize];
@@ -36,10 +36,10 @@ impl Fleet {
         Some(until)
     }
 
-    /// Makes a robot that stands still one of another kind; its plan takes as long as that needs.
+    /// Changes the kind of a robot that stands still, and adapts the times of its plan.
     ///
-    /// Nothing changes, and the result is false, if it is in motion, or somebody is already driving
-    /// who would have to wait for it.
+    /// Returns false and changes nothing if it is in motion, or if a robot that is already driving
+    /// would have to wait for it.
     pub fn change_kind(&mut self, robot: u32, kind: u8) -> bool {
         self.settle_all();
         let state = &self.robots[robot as usize];
@@ -61,10 +61,10 @@ impl Fleet {
     }
 }
 
-/// Moves as they are when a robot of another kind makes them: none begins earlier or ends earlier.
+/// The moves as made by a robot of another kind; none begins or ends earlier.
 ///
-/// A run that gets longer begins when it did; one that gets shorter ends when it did, so that the
-/// robot is never anywhere before the time planned.
+/// A run that takes longer keeps its start, and one that takes less time keeps its end, so that the
+/// robot never arrives anywhere before the planned time.
 pub(super) fn stretched<'a>(
     network: &Network,
     kind: &Kind,
@@ -85,7 +85,7 @@ pub(super) fn stretched<'a>(
     made
 }
 
-/// How long the robot turns before a move.
+/// Duration of the robot's turn before a move.
 pub(super) fn turn(network: &Network, kind: &Kind, step: &Move) -> Us {
     let heading = |index: u8| network.headings[index as usize];
     kind.turn(heading(step.heading_before), heading(step.heading))

@@ -12,7 +12,7 @@ impl Fleet {
         self.record.energy = Some(Box::new(energy));
     }
 
-    /// What a robot has spent since time zero; nothing if energy is not counted.
+    /// Energy of a robot since time zero; zero if energy is not counted.
     pub fn spent(&mut self, robot: u32) -> Option<Spent> {
         self.record.energy.as_ref()?;
         self.settle(robot);
@@ -54,7 +54,7 @@ impl Fleet {
         Some(spent)
     }
 
-    /// Lets a waypoint give another power from now on.
+    /// Changes the power that a waypoint supplies from now on.
     pub fn set_power(&mut self, waypoint: u32, watts: f64) {
         self.settle_all();
         for robot in 0..self.robots.len() as u32 {
@@ -71,7 +71,7 @@ impl Fleet {
         energy.power[waypoint as usize] = watts;
     }
 
-    /// Gives a robot that stands still another battery, or fills the one it has.
+    /// Exchanges or fills the battery of a robot that stands still.
     pub fn exchange_battery(&mut self, robot: u32, level: f64) {
         self.settle(robot);
         let recorded = self.record.recorded(robot);

@@ -1,8 +1,9 @@
-//! Improving plans: first come, first served can be short-sighted.
+//! Improvement of plans, because first come, first served can be short-sighted.
 //!
-//! When a new plan is late, the robot and those right in front of it are taken out of the table, as
-//! far as their plans have not begun, and planned again, the late one first. The new plans count
-//! only if all are there and the sum of their arrivals is less. Until then the old ones are valid.
+//! When a new plan is late, the plans of the robot and of those directly in front of it are removed
+//! from the table, except for moves that have begun, and planned again, the late one first. The new
+//! plans are adopted only if all are found and the sum of arrival times is less. Until then the old
+//! ones remain valid.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -15,13 +16,14 @@ use crate::units::Us;
 
 use super::Fleet;
 
-/// From which delay on a plan is worth a try.
+/// Delay from which improving a plan is attempted.
 const LATE: Us = 2_000_000;
 
-/// How closely somebody passes a waypoint in front of a robot that may have waited for it.
+/// Maximum time between a robot's passage of a waypoint and that of a robot that may have waited
+/// for it.
 const CLOSE: Us = 1_000_000;
 
-/// Robots that are planned again together with a late one, at most.
+/// Maximum number of robots that are planned again together with a late one.
 const OTHERS: usize = 3;
 
 impl Fleet {
@@ -49,7 +51,7 @@ impl Fleet {
         leg.is_some_and(|leg| end - leg.start - leg.unhindered > LATE)
     }
 
-    /// Robots on their way that use a waypoint right before a robot enters it.
+    /// Robots under way that use a waypoint directly before a robot enters it.
     fn in_front_of(&mut self, robot: u32) -> Vec<u32> {
         let mut found = Vec::new();
         let now = self.now;
@@ -71,7 +73,7 @@ impl Fleet {
         found
     }
 
-    /// Whether a part of a robot's plan has not begun.
+    /// Whether some part of a robot's plan has not begun.
     pub(super) fn can_change(&mut self, robot: u32) -> bool {
         self.settle(robot);
         let state = &self.robots[robot as usize];
@@ -80,8 +82,8 @@ impl Fleet {
             && state.committed(&self.network, kind, self.now) < state.moves.len()
     }
 
-    /// Plans robots anew in this order, each with so many labels at most; keeps the new plans if
-    /// they are better. Returns whether they are.
+    /// Plans robots anew in this order, each with at most this number of labels; keeps the new
+    /// plans if they are better. Returns whether they are.
     pub(super) fn replan_together(&mut self, members: &[u32], effort: u64) -> bool {
         let arrivals = |fleet: &Self| -> Us {
             members.iter().map(|&robot| fleet.robots[robot as usize].destination().2).sum()
@@ -130,7 +132,7 @@ impl Fleet {
         better
     }
 
-    /// How many moves of a robot stay, and where, when and where to it can choose the others.
+    /// Number of moves of a robot that are kept; start, time and goal of the others.
     fn where_it_can_choose(&mut self, robot: u32, effort: u64) -> (usize, Agent) {
         self.settle(robot);
         let state = &self.robots[robot as usize];
@@ -167,7 +169,7 @@ impl Fleet {
         Some(moves)
     }
 
-    /// What a robot occupies with these moves; the end without limit, or until a time.
+    /// What a robot occupies with these moves; the end indefinitely, or until a time.
     fn occupied<'a>(
         &self,
         robot: u32,

@@ -1,12 +1,13 @@
-//! Robots that are late: the order in which waypoints are used stays, times move.
+//! Delays: the order in which robots use waypoints is kept, and times are shifted.
 //!
-//! Every plan says when its robot enters and leaves each waypoint; all plans together give each
-//! waypoint its users in order. If a robot leaves one later than planned, the next user enters it
-//! later, and so on. Whoever keeps the order meets nobody. The order itself has no cycle (it comes
-//! from times), but a run is shifted as a whole: four runs around a block may each have to wait for
-//! the next one's end. Who would have to wait for himself cannot be late; that is told. As every
-//! shift has a chain of others as its cause, in which no move occurs twice, there is an end; it is
-//! also counted, as a chain can take many ways.
+//! Every plan states when its robot enters and leaves each waypoint; together, the plans give each
+//! waypoint a sequence of users. If a robot leaves a waypoint later than planned, the next user
+//! enters it later, and so on. As long as robots keep the sequence, they do not meet. The sequence
+//! has no cycle, since it comes from times, but runs are shifted as a whole: each of four runs
+//! around a block may have to wait for the end of the next. A delay for which a move would have to
+//! wait for itself is refused, and the caller is informed. Every shift is caused by a chain of
+//! others in which no move occurs twice, so the procedure ends. The number of shifts is also
+//! limited, because there can be many chains.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap, HashMap, VecDeque};
@@ -20,42 +21,42 @@ use crate::units::{FOREVER, Us};
 use super::disturbed::stretched;
 use super::{Due, Fleet};
 
-/// How often the moves of all plans are shifted at most, each on average, because of one delay.
-/// Most are shifted once.
+/// Maximum number of shifts per move of all plans, on average, because of one delay. Most moves are
+/// shifted once.
 const SHIFTS: usize = 100;
 
-/// What may be shifted.
+/// Which moves may be shifted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shift {
-    /// Only moves not begun: what is planned is what is driven.
+    /// Only moves that have not begun, since motion follows the plan.
     Planned,
-    /// Also moves in progress: robots outside the simulation stop and slow down in their midst.
+    /// Also moves in progress, during which robots outside the simulation may stop or slow down.
     Begun,
 }
 
-/// The plans of all robots while one delay makes others.
+/// The plans of all robots while one delay causes others.
 pub(super) struct Delays<'a> {
     fleet: &'a Fleet,
     shift: Shift,
-    /// What kind each robot is of from now on.
+    /// Kind of each robot from now on.
     kinds: Vec<u8>,
-    /// What each robot occupies by the plan it has.
+    /// What each robot occupies according to its present plan.
     held: Vec<Vec<Held>>,
-    /// The same of robots whose plans have changed, by the plan they will have.
+    /// The same for robots whose plans have changed, according to their new plans.
     shifted: HashMap<u32, Vec<Held>>,
     /// The next user of each of these: robot and index into its `held`.
     next: Vec<Vec<Option<(u32, usize)>>>,
     /// Plans that have changed.
     plans: BTreeMap<u32, VecDeque<Move>>,
-    /// What has been shifted, each with what made it necessary.
+    /// The shifts made so far, each with its cause.
     causes: Vec<Cause>,
-    /// How many there may be.
+    /// Maximum number of shifts.
     most: usize,
-    /// The last of them, per robot and move.
+    /// Last shift of each robot and move.
     cause_of: HashMap<(u32, usize), usize>,
 }
 
-/// A move that was shifted, because of another one.
+/// A shift of a move, caused by another shift.
 struct Cause {
     robot: u32,
     step: usize,
@@ -63,10 +64,10 @@ struct Cause {
 }
 
 impl Fleet {
-    /// Lets a robot do what is left of its plan later by `by`, and others behind it.
+    /// Delays the rest of a robot's plan by `by`, and those of robots behind it.
     ///
-    /// Nothing changes, and the result is false, if a motion had to be shifted that `shift` leaves
-    /// alone, or one by its own delay.
+    /// Returns false and changes nothing if a move had to be shifted that `shift` excludes, or if a
+    /// move had to wait for itself.
     pub fn delay(&mut self, robot: u32, by: Us, shift: Shift) -> bool {
         self.settle_all();
         let state = &self.robots[robot as usize];
@@ -92,7 +93,7 @@ impl Fleet {
         true
     }
 
-    /// Makes shifted plans the robots' own.
+    /// Adopts the shifted plans.
     pub(super) fn follow(&mut self, plans: BTreeMap<u32, VecDeque<Move>>) {
         for &robot in plans.keys() {
             self.forget(robot);
@@ -112,7 +113,7 @@ impl Fleet {
         }
     }
 
-    /// Takes a robot's reservations out of the table.
+    /// Removes a robot's reservations from the table.
     pub(super) fn forget(&mut self, robot: u32) {
         for held in &self.robots[robot as usize].held {
             self.table.remove(held.resource, robot);
@@ -120,7 +121,7 @@ impl Fleet {
     }
 
     /// The waypoints of the robot's present run, or of its next one, that it has not passed and may
-    /// drive to at once: whoever was to use them before has left them.
+    /// drive to at once: all robots that were to use them before have left them.
     pub fn clearance(&mut self, robot: u32) -> Vec<u32> {
         self.settle(robot);
         let state = &self.robots[robot as usize];
@@ -179,7 +180,7 @@ impl<'a> Delays<'a> {
         self.plans.entry(robot).or_insert_with(own)
     }
 
-    /// Shifts one move of a robot, and those after it as far as they have to.
+    /// Shifts one move of a robot, and the moves after it as far as necessary.
     fn push(&mut self, robot: u32, index: usize, by: Us, before: Option<usize>) -> bool {
         let fleet = self.fleet;
         let state = &fleet.robots[robot as usize];
@@ -220,8 +221,8 @@ impl<'a> Delays<'a> {
         true
     }
 
-    /// Takes note of why a move is shifted; none if its own shift is the reason, or if shifting
-    /// does not come to an end.
+    /// Records the cause of a shift; `None` if the move itself is the cause, or if the limit is
+    /// reached.
     fn cause(&mut self, robot: u32, step: usize, before: Option<usize>) -> Option<usize> {
         if self.causes.len() >= self.most {
             return None;
@@ -238,9 +239,9 @@ impl<'a> Delays<'a> {
         Some(self.causes.len() - 1)
     }
 
-    /// Shifts whoever would enter a waypoint before the robot in front of him has left it.
+    /// Shifts robots that would enter a waypoint before the robot in front has left it.
     ///
-    /// In the order in which they were to enter, so that most are shifted once.
+    /// They are processed in the order in which they were to enter, so that most are shifted once.
     fn spread(&mut self, robot: u32) -> bool {
         let mut changed = BinaryHeap::from([Reverse((Us::MIN, robot))]);
         while let Some(Reverse((_, robot))) = changed.pop() {
@@ -263,17 +264,17 @@ impl<'a> Delays<'a> {
         true
     }
 
-    /// What a robot occupies by the plan it will have.
+    /// What a robot occupies according to its new plan.
     fn uses(&self, robot: u32) -> &[Held] {
         self.shifted.get(&robot).unwrap_or(&self.held[robot as usize])
     }
 
-    /// By which of its moves a robot leaves what it occupies.
+    /// The move by which a robot leaves what it occupies.
     fn left_by(&self, robot: u32, index: usize) -> usize {
         self.held[robot as usize].get(index + 1).map_or(usize::MAX, |held| held.entered_by as usize)
     }
 
-    /// Works out what a robot occupies, after its plan has changed.
+    /// Recomputes what a robot occupies after a change of its plan.
     fn look_again(&mut self, robot: u32) {
         let state = &self.fleet.robots[robot as usize];
         let moves = self.plans.get(&robot).unwrap_or(&state.moves).clone();
@@ -283,7 +284,7 @@ impl<'a> Delays<'a> {
         self.shifted.insert(robot, uses);
     }
 
-    /// Makes a robot at rest one of another kind. Returns whether everybody else can wait for it.
+    /// Changes the kind of a robot at rest. Returns whether all others can wait for it.
     pub(super) fn change_kind(&mut self, robot: u32, kind: u8) -> bool {
         self.kinds[robot as usize] = kind;
         let fleet = self.fleet;

@@ -1,10 +1,10 @@
 //! Uncertain execution: with some probability a motion begins later than planned.
 //!
-//! Just before a robot turns for a run it is decided whether it is late, and by how much. The order
-//! in which waypoints are used stays (`late.rs`), so that whoever is behind waits and nobody meets
-//! anybody. A delay for which somebody would have to stop who is already driving comes at the
-//! robot's next stop instead: none is lost. With repair, whoever is made to wait is planned again,
-//! in front of the late robot if that is better for both.
+//! Just before a robot turns for a run, its delay is drawn, which may be zero. The order in which
+//! robots use waypoints is kept (`late.rs`), so robots behind it wait and there are no collisions.
+//! A delay that would force a driving robot to stop is applied at the late robot's next stop
+//! instead; no delay is lost. With repair, robots that are made to wait are planned again, in front
+//! of the late robot if that is better for both.
 
 use std::cmp::Reverse;
 
@@ -16,32 +16,32 @@ use crate::units::Us;
 use super::disturbed::turn;
 use super::{Counters, Due, Fleet};
 
-/// Probabilities are counted in parts of this.
+/// Denominator of probabilities.
 const PARTS: u64 = 1 << 32;
 
-/// How long somebody must be made to wait before a new plan is worth a try.
+/// Minimum wait of a robot from which repair is attempted.
 const WORTH: Us = 1_000_000;
 
-/// Labels a plan in repair may cost.
+/// Maximum number of labels of a plan in repair.
 const EFFORT: u64 = 300;
 
-/// How late motions are.
+/// Distribution of delays, and their state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Lateness {
-    /// Probability of a motion to begin late, in 2^-32.
+    /// Probability that a motion begins late, in units of 2^-32.
     probability: u64,
     /// Shortest and longest delay; all between are equally likely.
     length: (Us, Us),
     repairs: bool,
     random: Random,
-    /// Delays that could not begin yet, per robot.
+    /// Delays that could not be applied yet, per robot.
     owed: Vec<Us>,
-    /// Whether the next motion of a robot has been decided on: it has been delayed already.
+    /// Whether the delay of a robot's next motion has been drawn already.
     decided: Vec<bool>,
 }
 
 impl Lateness {
-    /// Delays of `length`, with a probability per motion, for so many robots.
+    /// Delays of `length` with a probability per motion, for a number of robots.
     pub fn new(
         probability: f64,
         length: (Us, Us),
@@ -64,7 +64,7 @@ impl Lateness {
         self.random = Random::new(seed);
     }
 
-    /// By how much the robot's motion that is about to begin is late; counts it.
+    /// Draws and counts the delay of a robot's motion that is about to begin.
     fn draw(&mut self, robot: u32, counters: &mut Counters) -> Us {
         let owed = std::mem::take(&mut self.owed[robot as usize]);
         if std::mem::take(&mut self.decided[robot as usize]) {
@@ -98,7 +98,7 @@ impl Fleet {
         }
     }
 
-    /// Enters when the robot's next motion is decided on, if motions can be late.
+    /// Schedules the draw for the robot's next motion, if motions can be late.
     pub(super) fn expect_motion(&mut self, robot: u32) {
         if self.lateness.is_none() {
             return;
@@ -112,7 +112,7 @@ impl Fleet {
         }
     }
 
-    /// The robot is about to begin a motion, unless its plan is another by now.
+    /// Handles the start of a robot's motion, unless its plan has changed.
     pub(super) fn motion_due(&mut self, robot: u32, version: u32) {
         let Some(lateness) = &mut self.lateness else { return };
         if self.robots[robot as usize].version != version {
@@ -125,14 +125,15 @@ impl Fleet {
         self.agenda.push(Reverse((self.now + 1, robot, Due::NextMotion, version)));
     }
 
-    /// The motion has begun: it is the next one's turn.
+    /// Handles that a motion has begun: the next one will be drawn.
     pub(super) fn next_motion_due(&mut self, robot: u32, version: u32) {
         if self.robots[robot as usize].version == version {
             self.expect_motion(robot);
         }
     }
 
-    /// Lets a robot stand still for longer. Returns whether it does; otherwise it will later.
+    /// Lets a robot stand still for longer. Returns whether this was possible; otherwise it happens
+    /// later.
     fn begins_late(&mut self, robot: u32, by: Us) -> bool {
         let ends = |fleet: &Self| -> Vec<Us> {
             fleet.robots.iter().map(|state| state.destination().2).collect()
@@ -154,7 +155,7 @@ impl Fleet {
         begins
     }
 
-    /// Plans those who wait for a late robot again, alone or in front of it.
+    /// Replans the robots that wait for a late robot, alone or in front of it.
     fn repair(&mut self, late: u32, waiting: &[u32]) {
         let mut repaired = 0;
         for &robot in waiting {

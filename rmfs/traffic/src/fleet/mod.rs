@@ -1,8 +1,8 @@
 //! All robots on one network: programs, plans and the events they cause.
 //!
-//! Every robot always owns one conflict-free plan that ends in an unlimited hold. A new plan
-//! replaces the old one only when the whole of it is free, so "no plan" means to stay parked, and
-//! nothing can collide.
+//! Every robot always owns one conflict-free plan, at whose end it stays indefinitely. A new plan
+//! replaces the old one only if all of it is free, so "no plan" means to stay, and nothing can
+//! collide.
 
 mod blocked;
 mod closing;
@@ -45,10 +45,10 @@ use crate::units::Us;
 
 use rolling::Rolling;
 
-/// What may happen at one instant, per robot: far more than ever does.
+/// Maximum number of events per robot at one instant, far more than ever occur.
 const AT_ONCE: usize = 10_000;
 
-/// What happened to a robot.
+/// Kind of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[repr(i64)]
 pub enum EventKind {
@@ -77,9 +77,9 @@ enum Due {
     TransferEnd,
     LegEnd,
     Retry,
-    /// A robot wants to turn for its next run; see `rolling.rs`.
+    /// A robot needs to turn for its next run; see `rolling.rs`.
     Depart,
-    /// The rolling planner is asked.
+    /// The rolling planner is called.
     Call,
     /// A robot is about to begin a motion; see `lateness.rs`.
     Motion,
@@ -87,21 +87,21 @@ enum Due {
     NextMotion,
 }
 
-/// What planning has cost so far.
+/// Counters of planning.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Counters {
     pub plans: u64,
     pub failures: u64,
     pub replans: u64,
-    /// Runs that a rolling planner wanted and that were not free.
+    /// Runs proposed by a rolling planner that were not free.
     pub refusals: u64,
-    /// How often plans have been replaced by better ones.
+    /// Number of times that plans were replaced by better ones.
     pub improvements: u64,
-    /// Motions decided on, those of them that were late, and by how much in all.
+    /// Number of motions drawn, number of late ones, and total delay.
     pub motions: u64,
     pub late_motions: u64,
     pub lateness: u64,
-    /// Plans made anew because somebody was late.
+    /// Plans replaced because another robot was late.
     pub repairs: u64,
     /// Wall time spent planning.
     pub planning: Duration,
@@ -117,7 +117,7 @@ impl Counters {
     }
 }
 
-/// What a robot's current leg is, for the table of trips.
+/// A robot's current leg, for the table of trips.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Leg {
     from: u32,
@@ -141,19 +141,19 @@ pub struct Fleet {
     pub pathfinder: Pathfinder,
     pub costs: Cache,
     table: Table,
-    /// At which waypoints pods are stored.
+    /// Whether a pod is stored at each waypoint.
     stored: Vec<bool>,
     budget: u64,
-    /// Plans whole legs; beside a rolling planner only the moves up in queues.
+    /// Plans whole legs; with a rolling planner, only moves within queues.
     per_leg: Box<dyn Planner>,
     rolling: Option<Rolling>,
-    /// Of motions, if they can be late.
+    /// Lateness of motions, if they can be late.
     lateness: Option<Lateness>,
     /// Robots with a place in each station's queue, in the order of their places.
     queues: Vec<Vec<u32>>,
     legs: Vec<Option<Leg>>,
     blocked: Vec<u32>,
-    /// Stations in whose queue somebody could not move up although places are free.
+    /// Stations in whose queue a robot could not move up although places are free.
     stalled: Vec<u32>,
     released: Vec<u32>,
     /// Robots whose legs have just been planned.
@@ -236,7 +236,7 @@ impl Fleet {
         Ok(())
     }
 
-    /// Replaces what is left of a robot's program; a moving robot goes on to its next stop first.
+    /// Replaces the rest of a robot's program; a moving robot first continues to its next stop.
     ///
     /// # Errors
     /// If a waypoint or station does not exist, the robot is lifting or setting down, or the program starts with that away from rest.

@@ -1,4 +1,4 @@
-//! Planning one leg, and making the plan the robot's own.
+//! Planning of one leg, and adoption of the plan.
 
 use std::cmp::Reverse;
 use std::time::Instant;
@@ -15,12 +15,12 @@ use crate::units::Us;
 
 use super::{Due, EventKind, Fleet, Leg};
 
-/// How hard a plan is looked for.
+/// Effort of the search for a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Effort {
     /// The robot needs it.
     Full,
-    /// It would be better than what the robot has.
+    /// The plan would be better than the robot's present one.
     Try,
 }
 
@@ -35,7 +35,7 @@ impl Effort {
 
 impl Fleet {
     /// Plans from the first rest that can still be chosen to `goal` and, if that works, makes it
-    /// the robot's plan. The first `keep` moves stay as they are, and those that have begun.
+    /// the robot's plan. The first `keep` moves, and those that have begun, are not changed.
     pub(super) fn plan(&mut self, robot: u32, goal: u32, effort: Effort, keep: usize) -> bool {
         let begun = Instant::now();
         let planned = self.plan_untimed(robot, goal, effort, keep);
@@ -139,7 +139,7 @@ impl Fleet {
     }
 }
 
-/// How long a plan that ends in a queue zone takes from entering it to its end.
+/// Time of a plan that ends in a queue zone from entering the zone to its end.
 pub(super) fn time_in_zone(network: &Network, kind: &Kind, moves: &[Move], zone: u32) -> Us {
     let entered = moves.iter().find_map(|step| enters_zone(network, kind, step, zone));
     entered.map_or(0, |at| moves[moves.len() - 1].end - at)

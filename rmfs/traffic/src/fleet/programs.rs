@@ -1,4 +1,4 @@
-//! Programs: what a robot was told, step by step, and what it reports.
+//! Programs: the steps of a robot, and the events it reports.
 
 use std::cmp::Reverse;
 
@@ -122,7 +122,7 @@ impl Fleet {
         }
     }
 
-    /// Whether the robot's plan ends where the first step of its program wants to be.
+    /// Whether the robot's plan ends at the destination of the first step of its program.
     fn gets_there(&self, robot: u32) -> bool {
         let state = &self.robots[robot as usize];
         match state.program.front() {
@@ -132,7 +132,7 @@ impl Fleet {
         }
     }
 
-    /// The robot goes to the end of the plan it has, and tries again and again to get on.
+    /// Lets the robot continue to the end of its plan, and repeatedly try to continue from there.
     pub(super) fn wait_for_a_way(&mut self, robot: u32) {
         self.robots[robot as usize].phase = Phase::Blocked;
         self.blocked.push(robot);

@@ -1,4 +1,4 @@
-//! Bringing robots and their record up to the present.
+//! Updates of robots and their record to the present.
 
 use crate::kinematics::Kind;
 use crate::network::Network;
@@ -10,7 +10,7 @@ use crate::units::{Us, floor_us};
 use super::{Counters, Fleet};
 
 impl Fleet {
-    /// Brings a robot's state and record up to now.
+    /// Updates a robot's state and record to the present.
     pub(super) fn settle(&mut self, robot: u32) {
         let now = self.now;
         let state = &mut self.robots[robot as usize];
@@ -68,7 +68,7 @@ impl Fleet {
         self.record.stand(robot, standing_until, state.anchor, state.heading, state.pod, why);
     }
 
-    /// Records that a robot stood until it began to lift or set down: it was broken down.
+    /// Records that a robot stood until it began to lift or set down, because it had broken down.
     pub(super) fn stand_until_transfer(&mut self, robot: u32) {
         let state = &self.robots[robot as usize];
         let begin = state.transfer_end - self.kinds[state.kind as usize].pod_transfer;
@@ -79,14 +79,14 @@ impl Fleet {
         self.record.stand(robot, until, state.anchor, state.heading, pod, why);
     }
 
-    /// Brings all robots' states and records up to now.
+    /// Updates all robots' states and records to the present.
     pub fn settle_all(&mut self) {
         for robot in 0..self.robots.len() as u32 {
             self.settle(robot);
         }
     }
 
-    /// What a robot has done of the motion it is in the middle of.
+    /// The completed part of a robot's motion in progress.
     fn in_progress(&self, robot: usize) -> Totals {
         let state = &self.robots[robot];
         if state.phase == Phase::Transferring {
@@ -125,7 +125,7 @@ impl Fleet {
             .collect()
     }
 
-    /// Starts totals, heat, trips and counters anew.
+    /// Resets totals, heat, trips and counters.
     pub fn reset_statistics(&mut self) {
         let until_now = self.totals();
         for (leg, totals) in self.legs.iter_mut().zip(&until_now) {
@@ -142,8 +142,8 @@ impl Fleet {
     }
 
     /// The trace up to now without its first `known` rows in the order of recording, by robot and
-    /// time; the motion each robot is in the middle of is whole, and not recorded yet. With it,
-    /// the number of rows recorded. `None` if the trace is not recorded.
+    /// time, and the number of rows recorded. Motions in progress are included as a whole and do
+    /// not count as recorded. `None` if the trace is not recorded.
     pub fn trace(&mut self, known: usize) -> Option<(Vec<Row>, usize)> {
         self.settle_all();
         let recorded = self.record.trace.as_ref()?;

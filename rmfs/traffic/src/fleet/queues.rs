@@ -1,9 +1,9 @@
-//! Queues in front of stations: places are promised in the order of expected arrival.
+//! Queues of stations: places are assigned in the order of expected arrival.
 //!
 //! A robot bound for a station gets the first place behind those that will arrive before it; when
-//! places become free, everybody moves up in the order of places, on the way or standing. Robots
-//! are ordered by place, never by when they were told to come: with short cuts a later robot may
-//! pass, and a chain ordered otherwise would freeze.
+//! places become free, all robots move up in the order of places, whether driving or standing.
+//! Robots are ordered by place, never by the time of their command: with short cuts a later robot
+//! may overtake, and a queue ordered otherwise would freeze.
 
 use crate::robot::Phase;
 use crate::search::Move;
@@ -17,7 +17,7 @@ impl Fleet {
         self.robots[robot as usize].place.expect("it is in a queue").1
     }
 
-    /// Gives the robot a place in the station's queue and plans its way there.
+    /// Assigns the robot a place in the station's queue and plans its way there.
     pub(super) fn plan_station(&mut self, robot: u32, station: u32) -> bool {
         if self.robots[robot as usize].queues_at(station) {
             let place = self.place_of(robot);
@@ -39,7 +39,7 @@ impl Fleet {
         joined
     }
 
-    /// The rank in the queue by expected arrival at its head; nobody in the zone is overtaken.
+    /// The rank in the queue by expected arrival at its head; robots in the zone are not overtaken.
     pub(super) fn rank(&mut self, robot: u32, station: u32) -> usize {
         let head = self.network.stations[station as usize][0];
         let mine = self.expected(robot, head);
@@ -66,7 +66,7 @@ impl Fleet {
         rank
     }
 
-    /// Earliest time at which the robot could be at `head` if nobody hindered it.
+    /// Earliest time at which the robot could be at `head` without hindrance.
     pub(super) fn expected(&mut self, robot: u32, head: u32) -> Us {
         let state = &self.robots[robot as usize];
         let ready = state.rested.max(self.now).max(state.busy_until);
@@ -127,7 +127,7 @@ impl Fleet {
         changed
     }
 
-    /// Moves everybody up as far as places are free.
+    /// Moves all robots up as far as places are free.
     pub(super) fn move_up(&mut self, station: u32) {
         let mut first_free = 0;
         for robot in self.queues[station as usize].clone() {
@@ -144,7 +144,7 @@ impl Fleet {
         }
     }
 
-    /// Notes that the robot has a place in the queue: one that nobody else has.
+    /// Records the robot's place in the queue, which no other robot may have.
     pub(super) fn take_place(&mut self, robot: u32, station: u32, place: usize) {
         self.queues[station as usize].retain(|&other| other != robot);
         let queue = &self.queues[station as usize];

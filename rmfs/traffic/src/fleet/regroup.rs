@@ -1,7 +1,7 @@
-//! A new beginning from where robots really are.
+//! Replanning of all robots from their actual positions.
 //!
-//! When a robot is somewhere it should not be, plans are worth nothing: everybody stops at the last
-//! waypoint it may use, and all are planned anew from there.
+//! When a robot is not where it should be, plans are invalid: all robots stop at the last waypoint
+//! they may use and are planned anew from there.
 
 use std::collections::{HashMap, HashSet};
 
@@ -20,8 +20,8 @@ pub struct Rest {
 }
 
 impl Fleet {
-    /// Puts robots at rest where they really are and plans their programs anew. A robot without a
-    /// rest keeps the run it is in the middle of, as far as the way is clear.
+    /// Puts robots at rest at their actual positions and plans their programs anew. A robot without
+    /// a rest continues its run as far as the way is clear.
     ///
     /// # Errors
     /// If there is not one entry per robot, or two would have one waypoint; nothing has changed
@@ -52,7 +52,7 @@ impl Fleet {
         Ok(())
     }
 
-    /// The robot at its rest, or with nothing but the clear part of its present run.
+    /// Sets the robot to its rest, or to the clear part of its present run.
     fn moved(&mut self, robot: usize, rest: Option<Rest>) -> Robot {
         let clear = self.clearance(robot as u32).last().copied();
         let mut state = self.robots[robot].clone();
@@ -96,7 +96,7 @@ impl Fleet {
         Ok(())
     }
 
-    /// Lets every robot that was on its way look for a new one.
+    /// Lets every robot that was under way search for a new way.
     fn begin_again(&mut self) {
         self.blocked.clear();
         for robot in 0..self.robots.len() as u32 {

@@ -1,8 +1,9 @@
-//! Driving by the wishes of a rolling planner: granted a few straight runs at a time.
+//! Driving by the proposals of a rolling planner, granted a few straight runs at a time.
 //!
-//! A robot at rest asks for the next runs of its wish when it wants to turn for the first. As many
-//! are granted as the planner allows, are free, and let the robot stay at their end for good; if
-//! not even the first is, the wish is dropped and a new plan is needed. A run onto an elevator is granted only together with the
+//! A robot at rest requests the next runs of its proposal when it is to turn for the first. Of
+//! these, the longest sequence is granted that the planner allows, that is free, and at whose end
+//! the robot can stay indefinitely. If not even the first run can be granted, the proposal is
+//! dropped and a new plan is needed. A run onto an elevator is granted only together with the
 //! ride and the run that leaves the shaft. A robot that stops in the queue of its station has
 //! arrived there: from then on it moves up like all others in the queue (`queues.rs`).
 
@@ -22,29 +23,29 @@ use crate::units::Us;
 use super::planning::time_in_zone;
 use super::{Due, EventKind, Fleet, Leg};
 
-/// A rolling planner and what it wants.
+/// A rolling planner and its proposals.
 #[derive(Clone, Debug)]
 pub struct Rolling {
     pub planner: Box<dyn Planner>,
     period: Us,
-    /// Runs that may be granted at once.
+    /// Maximum number of runs granted at once.
     runs: usize,
     pub wishes: Wishes,
 }
 
-/// What a rolling planner wants of each robot, and when it is asked again.
+/// The proposals of a rolling planner for each robot, and the time of its next call.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Wishes {
     ways: Vec<VecDeque<Move>>,
     needs_plan: Vec<bool>,
-    /// Changes with every wish, so that departures of old ones are recognised.
+    /// Changes with every proposal, so that departures of old ones are recognised.
     serial: Vec<u32>,
     last_call: Us,
     call_due: bool,
 }
 
 impl Rolling {
-    /// Nothing wanted yet; the planner itself if it works per leg.
+    /// State without proposals; returns the planner itself if it works per leg.
     pub fn of(planner: Box<dyn Planner>, robots: usize) -> Result<Self, Box<dyn Planner>> {
         let Rhythm::Rolling { period, runs } = planner.rhythm() else { return Err(planner) };
         Ok(Self {
@@ -68,14 +69,14 @@ impl Rolling {
 }
 
 impl Fleet {
-    /// Gives a rolling planner's work to another one of the same rhythm.
+    /// Replaces a rolling planner by another one of the same rhythm.
     pub fn exchange_planner(&mut self, planner: Box<dyn Planner>) {
         if let Some(rolling) = &mut self.rolling {
             rolling.planner = planner;
         }
     }
 
-    /// Starts a driving step: the robot waits for a plan, or for the end of what it still drives.
+    /// Starts a driving step: the robot waits for a plan, or for the end of its motion in progress.
     pub(super) fn set_off_rolling(&mut self, robot: u32) {
         let begun = Instant::now();
         self.begin_leg(robot);
@@ -93,7 +94,7 @@ impl Fleet {
         self.need_plan(robot);
     }
 
-    /// The robot stopped: where it wants to be, or on the way.
+    /// Handles that the robot stopped, at its destination or on the way.
     pub(super) fn run_ended(&mut self, robot: u32) {
         let state = &self.robots[robot as usize];
         let anchor = state.anchor;
@@ -125,15 +126,15 @@ impl Fleet {
         self.move_up(station);
     }
 
-    /// Asks for the next run of a resting robot's wish, or says when it will.
+    /// Requests the next run of a resting robot's proposal, or schedules the request.
     pub(super) fn depart(&mut self, robot: u32) {
         if !self.departs_now(robot) {
             self.refuse(robot);
         }
     }
 
-    /// Starts the first run of a resting robot's wish, or says when it will start, or that it needs
-    /// a wish. Returns whether it was not refused.
+    /// Starts the first run of a resting robot's proposal, schedules it, or records that a proposal
+    /// is needed. Returns false if it was refused.
     fn departs_now(&mut self, robot: u32) -> bool {
         let rolling = self.rolling.as_mut().expect("a rolling planner");
         let state = &self.robots[robot as usize];
@@ -157,8 +158,8 @@ impl Fleet {
         self.is_granted(robot, self.now - due)
     }
 
-    /// Lets resting robots ask for the first runs of their new wishes: who is refused asks again
-    /// when another one has been granted its run, for that may have made room.
+    /// Lets resting robots request the first runs of their new proposals. A robot that is refused
+    /// requests again when another one has been granted its run, which may have made room.
     fn depart_together(&mut self, mut robots: Vec<u32>) {
         loop {
             let before = robots.len();
@@ -170,7 +171,7 @@ impl Fleet {
         robots.into_iter().for_each(|robot| self.refuse(robot));
     }
 
-    /// The time has come to turn for the first run of a wish.
+    /// Handles that it is time to turn for the first run of a proposal.
     pub(super) fn departure_due(&mut self, robot: u32, serial: u32) {
         let rolling = self.rolling.as_ref().expect("a rolling planner");
         if rolling.wishes.serial[robot as usize] == serial {
@@ -178,7 +179,7 @@ impl Fleet {
         }
     }
 
-    /// Grants the first runs of the wish, `late` by so much: as many as allowed that are free.
+    /// Grants the first runs of the proposal, delayed by `late`: as many as are allowed and free.
     fn is_granted(&mut self, robot: u32, late: Us) -> bool {
         let rolling = self.rolling.as_mut().expect("a rolling planner");
         let wish = &mut rolling.wishes.ways[robot as usize];
@@ -238,7 +239,7 @@ impl Fleet {
         self.need_plan(robot);
     }
 
-    /// A robot on the way has to be planned anew, if it is by wishes.
+    /// Records that a robot under way has to be planned anew, if it drives by proposals.
     pub(super) fn forget_wish(&mut self, robot: u32) {
         let phase = self.robots[robot as usize].phase;
         if self.rolling.is_some() && matches!(phase, Phase::Driving | Phase::Blocked) {
@@ -246,7 +247,7 @@ impl Fleet {
         }
     }
 
-    /// The network has changed: nobody's wish counts any more.
+    /// Drops all proposals, since the network has changed.
     pub(super) fn forget_wishes(&mut self) {
         for robot in 0..self.robots.len() as u32 {
             self.forget_wish(robot);
@@ -262,7 +263,7 @@ impl Fleet {
         }
     }
 
-    /// Asks the planner for all robots that drive.
+    /// Calls the planner for all robots that drive.
     pub(super) fn call_planner(&mut self) {
         let begun = Instant::now();
         let agents = self.agents();
@@ -283,7 +284,7 @@ impl Fleet {
         self.depart_together(resting);
     }
 
-    /// Makes the answer the robot's wish. Returns whether that is a new one.
+    /// Stores the answer as the robot's proposal. Returns whether it is a new one.
     fn take_answer(&mut self, robot: u32, answer: Answer) -> bool {
         let rolling = self.rolling.as_mut().expect("a rolling planner");
         match answer {
@@ -306,7 +307,7 @@ impl Fleet {
         true
     }
 
-    /// Robots on the way or waiting for one, with the waypoints they want to reach.
+    /// Robots under way or waiting for a way, with their destination waypoints.
     fn agents(&mut self) -> Vec<Agent> {
         let mut agents = Vec::new();
         let mut bound: Vec<Vec<usize>> = vec![Vec::new(); self.network.stations.len()];
@@ -345,8 +346,8 @@ impl Fleet {
         agents
     }
 
-    /// Gives robots outside a queue the places behind those in it, nearest first; when there are
-    /// none left, all others aim at the last place.
+    /// Assigns robots outside a queue the places behind those in it, nearest first; if no place is
+    /// left, the others drive towards the last place.
     fn aim_at_places(&mut self, station: u32, members: &[usize], agents: &mut [Agent]) {
         let places = self.network.stations[station as usize].clone();
         let in_queue = self.queues[station as usize].iter();
@@ -367,7 +368,7 @@ impl Fleet {
         }
     }
 
-    /// Notes what the new leg is to be compared with.
+    /// Records the reference with which the new leg is compared.
     fn begin_leg(&mut self, robot: u32) {
         let state = &self.robots[robot as usize];
         let (goal, zone) = match state.program.front() {

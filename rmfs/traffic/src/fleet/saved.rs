@@ -1,7 +1,7 @@
 //! A fleet as bytes, at any moment between two calls.
 //!
-//! The network, the kinds and the settings of the planner are not among them: they come from the
-//! layout and the settings with which the fleet is built before it goes on from the bytes.
+//! The network, the kinds and the settings of the planner are not included: they come from the
+//! layout and the settings with which the fleet is built before its state is restored.
 
 use std::borrow::Cow;
 use std::cmp::Reverse;
@@ -19,17 +19,17 @@ use crate::units::Us;
 use super::rolling::Wishes;
 use super::{Counters, Due, Event, Fleet, Lateness, Leg};
 
-/// How the bytes begin.
+/// First bytes of a saved fleet.
 const MAGIC: &[u8] = b"rmfs-traffic";
 
-/// Changes whenever the bytes mean something else.
+/// Version of the format.
 const VERSION: u8 = 5;
 
 type Agenda = BinaryHeap<Reverse<(Us, u32, Due, u32)>>;
 
 #[derive(Serialize, Deserialize)]
 struct Saved<'a> {
-    /// Of network and kinds.
+    /// Hash of network and kinds.
     fingerprint: u32,
     closed: Vec<u32>,
     stored: Cow<'a, [bool]>,
@@ -58,7 +58,7 @@ impl Fleet {
     /// The fleet as bytes.
     ///
     /// # Errors
-    /// If the planner cannot be written down.
+    /// If the planner cannot be serialised.
     pub fn to_bytes(&self) -> Result<Vec<u8>, String> {
         let rolling = self.rolling.as_ref();
         let remembered = |planner: &super::Rolling| planner.planner.remembered();
@@ -96,10 +96,10 @@ impl Fleet {
         Ok(bytes)
     }
 
-    /// Goes on from the bytes of a fleet that was built in the same way.
+    /// Restores the state of a fleet that was built in the same way.
     ///
     /// # Errors
-    /// If they are not whole, of another version, or of another layout, fleet or planner; nothing
+    /// If the bytes are damaged, or belong to another version, layout, fleet or planner; nothing
     /// has changed then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), String> {
         let saved: Saved = postcard::from_bytes(body(bytes)?)
@@ -147,7 +147,7 @@ impl Fleet {
     }
 }
 
-/// What follows the header, if that is as it should be.
+/// The bytes after the header, if it is valid.
 fn body(bytes: &[u8]) -> Result<&[u8], String> {
     let rest = bytes.strip_prefix(MAGIC).ok_or("these are not the bytes of saved traffic")?;
     let (&version, rest) = rest.split_first().ok_or("the saved traffic is not whole")?;

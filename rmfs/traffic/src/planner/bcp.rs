@@ -1,8 +1,8 @@
-//! BCP: biased cost pathfinding. Ways through space whose clashes make waypoints dearer.
+//! BCP: biased cost pathfinding. Ways in space, whose conflicts make waypoints more expensive.
 //!
 //! Geramifard, Chubak, Bulitko (2006), in the form of Merschformann, Xie, Erdmann (2017): each agent
-//! takes its quickest way; where it clashes with one planned before, the waypoint becomes dearer for
-//! this agent alone, it stops before it, and the next round begins.
+//! takes its quickest way; where it conflicts with one planned before, the waypoint becomes more
+//! expensive for this agent alone, the agent stops before it, and the next round begins.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ use super::{Agent, Answer, Planner, Rhythm, Scene, rolling};
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Bcp {
     pub rhythm: Rhythm,
-    /// Metres by which a clash makes a waypoint dearer; they count at top speed.
+    /// Cost in metres, at top speed, that a conflict adds to a waypoint.
     pub bias: f64,
     /// Rounds per call.
     pub rounds: u32,
@@ -67,7 +67,7 @@ impl Planner for Bcp {
 }
 
 impl Bcp {
-    /// Everybody may have to stay where it stops next.
+    /// Plans in which every agent stays where it stops next, in case no way is free.
     fn hold_start(&mut self, scene: &Scene, agent: &Agent) {
         let resource = scene.network.resource[agent.start as usize];
         let next = self.table.occupant(resource, agent.ready, FOREVER);
@@ -78,8 +78,8 @@ impl Bcp {
         }
     }
 
-    /// Reserves one way after the other, as far as they are free; the agents whose ways are not, and
-    /// where those clash.
+    /// Reserves ways one after another if they are free; returns the agents whose ways are not, and
+    /// where these conflict.
     fn clashes(
         &mut self,
         scene: &mut Scene,
@@ -103,7 +103,7 @@ impl Bcp {
         found
     }
 
-    /// Makes the waypoint where an agent clashes dearer for it.
+    /// Makes the waypoint of an agent's conflict more expensive for this agent.
     fn make_dearer(
         &self,
         scene: &Scene,
@@ -116,7 +116,7 @@ impl Bcp {
     }
 }
 
-/// The quickest way of an agent that pays for what clashes.
+/// The quickest way of an agent, including the costs of conflicts.
 fn quickest(
     scene: &Scene,
     agent: &Agent,
@@ -127,7 +127,7 @@ fn quickest(
     rolling::way(scene, agent, &[], agent.ready, times, penalty)
 }
 
-/// The way with a stop before the waypoint where it clashes, or `None` if that is its next one.
+/// The way with a stop before the waypoint of the conflict; `None` if that is its next one.
 fn stop_before(
     scene: &Scene,
     agent: &Agent,

@@ -1,8 +1,9 @@
-//! CBS: conflict-based search. Two agents in conflict make two problems: one of them keeps away.
+//! CBS: conflict-based search. A conflict of two agents is resolved in two branches; in each, one
+//! of them avoids the conflict.
 //!
 //! Sharon, Stern, Felner, Sturtevant (2015), in the form of Merschformann, Xie, Erdmann (2017):
 //! without horizon, a conflict is a waypoint occupied twice, a constraint forbids it to one agent
-//! for the time of the overlap, and agents are gone once they are at their goal.
+//! for the time of the overlap, and agents disappear when they have reached their goal.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -27,7 +28,7 @@ pub struct Cbs {
     pub rhythm: Rhythm,
     /// Nodes of the constraint tree that may be expanded in a call.
     pub nodes: u64,
-    /// Labels that may be looked at for an agent.
+    /// Maximum number of labels per agent.
     pub labels: u64,
     pub deadlocks: Deadlocks,
     #[serde(skip)]
@@ -143,7 +144,7 @@ impl Cbs {
         tree.swap_remove(latest.1).expect("kept")
     }
 
-    /// The quickest way of an agent that keeps to its constraints.
+    /// The quickest way of an agent under its constraints.
     fn search(
         &mut self,
         scene: &mut Scene,

@@ -1,4 +1,4 @@
-//! Conflicts between plans: two robots that want one waypoint at one time.
+//! Conflicts between plans: two robots at one waypoint at the same time.
 
 use crate::robot::Held;
 use crate::units::Us;

@@ -1,5 +1,5 @@
-//! The reference system's way out of a deadlock: who has stood still for too long hops to a random
-//! neighbour.
+//! Resolution of deadlocks as in RAWSim-O: a robot that has stood still for too long hops to a
+//! random neighbour.
 
 use std::collections::BTreeMap;
 
@@ -11,22 +11,23 @@ use crate::units::Us;
 
 use super::{Agent, Answer, Scene};
 
-/// Since when agents have been standing where they are, on the way to where.
+/// Position and goal of each agent, and the time since which it has been standing there.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Deadlocks {
-    /// How long a robot stands still until it hops.
+    /// Time for which a robot stands still before it hops.
     pub patience: Us,
     standing: BTreeMap<u32, (u32, Us)>,
     random: Random,
 }
 
 impl Deadlocks {
-    /// Nobody stands yet.
+    /// Initial state, in which no agent stands.
     pub fn new(patience: Us, seed: u64) -> Self {
         Self { patience, standing: BTreeMap::new(), random: Random::new(seed) }
     }
 
-    /// Notes where agents are, and replaces the ways of those that have stood still for too long.
+    /// Records the positions of agents, and replaces the ways of those that have stood still for
+    /// too long.
     pub fn resolve(&mut self, scene: &Scene, agents: &[Agent], answers: &mut [Answer]) {
         let mut standing = BTreeMap::new();
         for (agent, answer) in agents.iter().zip(answers) {
@@ -46,7 +47,7 @@ impl Deadlocks {
         self.standing = standing;
     }
 
-    /// A run to a random neighbour at which nobody stays.
+    /// A run to a random free neighbour.
     pub fn hop(
         &mut self,
         scene: &Scene,

@@ -1,8 +1,8 @@
-//! FAR: flow annotation replanning. One straight hop at a time along the way through space.
+//! FAR: flow annotation replanning. One straight hop at a time along the way in space.
 //!
 //! Wang, Botea (2008), in the form of Merschformann, Xie, Erdmann (2017): the one-way aisles of the
-//! layout take the part of the flow annotation, and who is blocked for too long, or in a circle of
-//! robots that wait for each other, evades: by another way, or to a neighbouring waypoint.
+//! layout replace the flow annotation. A robot that is blocked for too long, or in a cycle of
+//! robots that wait for each other, evades by another way or to a neighbouring waypoint.
 
 use std::collections::BTreeMap;
 
@@ -30,17 +30,17 @@ pub enum Evasion {
 pub struct Far {
     pub rhythm: Rhythm,
     pub evasion: Evasion,
-    /// How long a robot waits before it evades in any case.
+    /// Time for which a robot waits before it evades in any case.
     pub patience: Us,
-    /// Time an evading robot stays where it evaded to, and a blocked one where it is.
+    /// Time for which an evading robot stays where it evaded to, and a blocked one where it is.
     pub wait: Us,
-    /// Whether waypoints once evaded to are not evaded to again before the robot has moved on.
+    /// Whether a robot evades to each waypoint at most once before it makes progress.
     pub avoids_evading_back: bool,
     pub deadlocks: Deadlocks,
     pub memory: BTreeMap<u32, Memory>,
 }
 
-/// What is remembered of a robot from call to call.
+/// State of a robot between calls.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Memory {
     goal: u32,

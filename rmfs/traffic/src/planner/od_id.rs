@@ -1,8 +1,8 @@
 //! OD&ID: operator decomposition with independence detection.
 //!
 //! Standley (2010), in the form of Merschformann, Xie, Erdmann (2017). Agents are planned alone;
-//! two groups whose ways meet become one, which is planned jointly: an A* over what all its members
-//! have decided, in which the member that is furthest behind in time decides next.
+//! two groups whose ways conflict become one, which is planned jointly by an A* over the decisions
+//! of all members, in which the member furthest behind in time decides next.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -24,21 +24,21 @@ use super::{Agent, Answer, Planner, Rhythm, Scene, conflicts, rolling};
 pub struct OdId {
     pub rhythm: Rhythm,
     pub window: Us,
-    /// How long an agent waits that decides to wait.
+    /// Duration of a wait.
     pub wait: Us,
-    /// Joint states that may be looked at for each member of a group, and in a call.
+    /// Maximum number of joint states per member of a group, and per call.
     pub nodes_per_agent: u64,
     pub nodes: u64,
-    /// Runs that a member chooses among: the most promising ones.
+    /// Number of runs among which a member chooses, the most promising ones.
     pub choices: usize,
-    /// Labels that may be looked at for an agent alone.
+    /// Maximum number of labels for a single agent.
     pub labels: u64,
     pub deadlocks: Deadlocks,
     #[serde(skip)]
     pub table: Table,
 }
 
-/// What the members of a group have decided.
+/// Decisions of the members of a group.
 struct Joint {
     parts: Vec<Partial>,
 }
@@ -103,8 +103,8 @@ impl OdId {
         Some(part)
     }
 
-    /// Joins groups whose ways meet and plans them jointly, the first meeting first, until nobody
-    /// meets or all the work allowed is done.
+    /// Joins groups whose ways conflict and plans them jointly, the first conflict first, until
+    /// there is none or the limit of work is reached.
     fn detect_dependence(
         &mut self,
         scene: &mut Scene,
@@ -142,8 +142,8 @@ impl OdId {
         }
     }
 
-    /// The best joint state in which all members are done, or the one with the least to go when
-    /// the work allowed is done; and the number of states looked at.
+    /// The best joint state in which all members are done, or the one with the least remaining time
+    /// when the limit of work is reached; and the number of states expanded.
     fn plan_jointly(
         &mut self,
         scene: &mut Scene,
@@ -183,7 +183,7 @@ impl OdId {
         (states.swap_remove(nearest.1), used)
     }
 
-    /// Who decides next: the member that is furthest behind, of those not done.
+    /// The member that decides next: the one furthest behind of those not done.
     fn next_member(
         &self,
         scene: &Scene,
@@ -200,7 +200,7 @@ impl OdId {
         (0..members.len()).filter(|at| !is_done(at)).min_by_key(|&at| (state.parts[at].time, at))
     }
 
-    /// What one member can decide, around what the others have decided.
+    /// The options of one member, given the decisions of the others.
     fn decide(
         &mut self,
         scene: &mut Scene,

@@ -1,5 +1,4 @@
-//! Ways that planners put together piece by piece: how far an agent has come, and what it can do
-//! next.
+//! Ways that planners assemble piece by piece: the part decided so far, and the next options.
 
 use crate::reservations::Table;
 use crate::robot::Held;
@@ -12,7 +11,7 @@ use super::{Agent, Scene, rolling};
 #[derive(Clone, Debug)]
 pub struct Partial {
     pub moves: Vec<Move>,
-    /// Where it ends, and until when the agent stays there at least.
+    /// Where it ends, and the time until which the agent stays there at least.
     pub node: u32,
     pub heading: u8,
     pub time: Us,
@@ -21,7 +20,7 @@ pub struct Partial {
 }
 
 impl Partial {
-    /// Nothing decided; `None` if there is no way at all.
+    /// A way without decisions; `None` if there is no way at all.
     pub fn begin(scene: &Scene, agent: &Agent, times: &[u32]) -> Option<Self> {
         let to_go = rolling::to_go(scene, agent, times);
         Some(Self {
@@ -41,7 +40,7 @@ impl Partial {
         Self { moves, node, heading, time, to_go }
     }
 
-    /// The way without what is behind its first `kept` moves.
+    /// The way with only its first `kept` moves.
     pub fn back_to(&self, scene: &Scene, agent: &Agent, kept: usize, times: &[u32]) -> Self {
         let (node, heading, time) = match kept.checked_sub(1) {
             Some(last) => (self.moves[last].to, self.moves[last].heading, self.moves[last].end),
@@ -51,7 +50,7 @@ impl Partial {
         Self { moves: self.moves[..kept].to_vec(), node, heading, time, to_go }
     }
 
-    /// What the agent can do next around what a table holds, the best first.
+    /// The agent's next options, given the reservations of a table, the best first.
     pub fn next(
         &self,
         scene: &mut Scene,

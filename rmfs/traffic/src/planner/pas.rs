@@ -1,8 +1,8 @@
 //! PAS: parallel agent search. All ways grow together, the one furthest behind in time next.
 //!
-//! Erdmann (2015), as in RAWSim-O. An agent takes what leads it best to its goal around what others
-//! have taken. If nothing is left, not even to wait, its priority rises, and those of lower priority
-//! give up what is in its way and go on from before.
+//! Erdmann (2015), as in RAWSim-O. An agent reserves the best next step to its goal around the
+//! steps of others. If it has no option left, not even to wait, its priority rises, and agents of
+//! lower priority retract the steps in its way and continue from before.
 
 use std::sync::Arc;
 
@@ -22,18 +22,19 @@ use super::{Agent, Answer, Planner, Rhythm, Scene, rolling};
 pub struct Pas {
     pub rhythm: Rhythm,
     pub window: Us,
-    /// How long an agent waits that decides to wait.
+    /// Duration of a wait.
     pub wait: Us,
-    /// Highest priority of an agent; without a way even then it waits where others want to pass.
+    /// Highest priority of an agent; if it has no way even then, it waits although others need to
+    /// pass.
     pub priorities: u32,
-    /// Decisions that may be taken for each agent of a call, on average.
+    /// Maximum number of decisions per agent in a call, on average.
     pub steps_per_agent: u64,
     pub deadlocks: Deadlocks,
     #[serde(skip)]
     pub table: Table,
 }
 
-/// An agent's way as it grows.
+/// The growing way of an agent.
 struct Track {
     part: Partial,
     priority: u32,
@@ -41,7 +42,7 @@ struct Track {
     held: Vec<Held>,
 }
 
-/// All ways as they grow.
+/// The growing ways of all agents.
 struct Tracks<'s, 'n> {
     scene: &'s mut Scene<'n>,
     agents: &'s [Agent],
@@ -118,7 +119,7 @@ impl Tracks<'_, '_> {
         self.tracks[index] = Some(track);
     }
 
-    /// Takes the best of what is free: a run, a ride or a wait. Returns whether there is any.
+    /// Takes the best free option: a run, a ride or a wait. Returns whether there is one.
     fn takes_best(&mut self, index: usize, track: &mut Track, wait: Us) -> bool {
         let (agent, times) = (&self.agents[index], &self.times[index]);
         let slack = self.end - self.scene.now;
@@ -139,7 +140,7 @@ impl Tracks<'_, '_> {
         true
     }
 
-    /// The same as if agents of lower priority had not taken anything; those in the way go back.
+    /// The same, ignoring agents of lower priority; those in the way retract their decisions.
     fn pushes(&mut self, index: usize, track: &mut Track, wait: Us) -> bool {
         let is_lower = |other: &Track| other.priority < track.priority && !other.is_home;
         let lower: Vec<usize> = (0..self.tracks.len())
@@ -158,7 +159,7 @@ impl Tracks<'_, '_> {
         takes
     }
 
-    /// Takes back what an agent has decided as far as it meets what is taken, and reserves the rest.
+    /// Retracts the decisions of an agent that conflict with what is taken, and reserves the rest.
     fn go_back(&mut self, index: usize, taken: &[Held]) {
         let Some(mut track) = self.tracks[index].take() else { return };
         let meets = |held: &[Held]| {
@@ -193,7 +194,7 @@ impl Tracks<'_, '_> {
         held.iter().for_each(|held| self.table.remove(held.resource, name));
     }
 
-    /// Reserves what is free of an agent's way; who is at its goal stays there to the end.
+    /// Reserves the free part of an agent's way; an agent at its goal stays there to the end.
     fn reserve(&mut self, index: usize, track: &Track) -> Vec<Held> {
         let until = if track.is_home { self.end } else { 0 };
         let held = track.part.occupied(self.scene, &self.agents[index], until);

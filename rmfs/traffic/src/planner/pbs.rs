@@ -1,8 +1,8 @@
-//! PBS in a rolling horizon: priority-based search for the next window, again and again.
+//! PBS in a rolling horizon: repeated priority-based search for the next window.
 //!
-//! Ma, Harabor, Stuckey, Li, Koenig (2019); rolling horizon after RHCR (Li et al. 2021). Two agents
-//! in conflict make two problems: one of them has to plan around the other. The search goes deep
-//! first, into the cheaper of the two.
+//! Ma, Harabor, Stuckey, Li, Koenig (2019); rolling horizon after RHCR (Li et al. 2021). A conflict
+//! of two agents is resolved in two branches; in each, one has to plan around the other. The search
+//! is depth-first, the cheaper branch first.
 
 use std::rc::Rc;
 
@@ -25,7 +25,7 @@ pub struct Pbs {
     pub window: Us,
     /// Nodes of the priority tree that may be expanded in a call.
     pub nodes: u64,
-    /// Labels that may be looked at for an agent.
+    /// Maximum number of labels per agent.
     pub labels: u64,
     pub deadlocks: Deadlocks,
     #[serde(skip)]
@@ -43,7 +43,7 @@ struct Plan {
 /// A node of the priority tree.
 #[derive(Clone)]
 struct Node {
-    /// Agents that each agent has to plan around, directly.
+    /// Agents around which each agent has to plan directly.
     above: Vec<Vec<usize>>,
     plans: Vec<Option<Rc<Plan>>>,
     conflict: Option<Conflict>,
@@ -63,7 +63,7 @@ impl Node {
         self.conflict.as_ref().map_or(FOREVER, |conflict| conflict.start)
     }
 
-    /// Everybody an agent has to plan around, directly or not.
+    /// All agents around which an agent has to plan, directly or indirectly.
     fn all_above(&self, agent: usize) -> Vec<bool> {
         let mut found = vec![false; self.above.len()];
         let mut open = self.above[agent].clone();
@@ -75,8 +75,7 @@ impl Node {
         found
     }
 
-    /// An agent and those who have to plan around it, in an order in which nobody comes before
-    /// those above it.
+    /// An agent and those that have to plan around it, each after all of higher priority.
     fn self_and_below(&self, agent: usize) -> Vec<usize> {
         let mut order: Vec<(usize, usize)> = Vec::new();
         for other in 0..self.above.len() {
@@ -150,8 +149,8 @@ impl Pbs {
         latest
     }
 
-    /// The node in which `lower` plans around `higher`, and all below `lower` around it as far as
-    /// they have to.
+    /// The node in which `lower` plans around `higher`, and agents below `lower` are replanned as
+    /// far as necessary.
     fn child(
         &mut self,
         scene: &mut Scene,

@@ -1,10 +1,12 @@
 //! PIBT, as far as straight runs allow: priority inheritance with backtracking, one run at a time.
 //!
-//! After Okumura, Machida, Defago, Tamura (2019, 2022). Who has been on its way for the longest
-//! chooses first. If a robot at rest stands in the way of the best run, it inherits the priority and
-//! has to leave first; if it cannot, the next best run is tried. The promise of PIBT that everybody
-//! arrives does not hold: it rests on steps of one edge that all robots take at once, and here runs
-//! take different times, a place can be entered only after it has been left, and robots in motion or
+//! After Okumura, Machida, Defago, Tamura (2019, 2022). The robot that has been under way longest
+//! chooses first. If a robot at rest stands in the way of the best run, it inherits the priority
+//! and
+//! has to leave first; if it cannot, the next best run is tried. The guarantee of PIBT that all
+//! robots arrive does not hold: it requires that all robots move one edge at the same time. Here,
+//! runs take different times, a place can be entered only after it has been left, and robots in
+//! motion or
 //! at work cannot be pushed.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,14 +25,14 @@ use super::{Agent, Answer, Planner, Rhythm, Scene, rolling};
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Pibt {
     pub rhythm: Rhythm,
-    /// How much longer than the best way the way over a run may take.
+    /// Maximum additional time of the way over a run, compared with the best way.
     pub detour: Us,
-    /// Runs that a robot tries, the best first.
+    /// Maximum number of runs that a robot tries, the best first.
     pub choices: usize,
     pub deadlocks: Deadlocks,
     #[serde(skip)]
     pub table: Table,
-    /// Since when each robot has wanted to go where.
+    /// Goal of each robot, and the time since which it has had it.
     pub since: BTreeMap<u32, (u32, Us)>,
 }
 
@@ -40,7 +42,7 @@ struct Round<'s, 'n> {
     agents: &'s [Agent],
     times: &'s [Arc<[u32]>],
     table: &'s mut Table,
-    /// Agents at rest that have not chosen yet, by what they stand on.
+    /// Agents at rest that have not chosen yet, by the resource they occupy.
     waiting: BTreeMap<u32, usize>,
     answers: Vec<Answer>,
     detour: Us,
@@ -87,7 +89,7 @@ impl Pibt {
 }
 
 impl Round<'_, '_> {
-    /// Who is in motion keeps what it has; the others may choose.
+    /// Agents in motion keep their ways; the others may choose.
     fn sort_out(&mut self) {
         for (index, agent) in self.agents.iter().enumerate() {
             if agent.ready > self.scene.now {
@@ -99,7 +101,7 @@ impl Round<'_, '_> {
         }
     }
 
-    /// Reserves the place of an agent for good; nobody has been allowed to pass there.
+    /// Reserves the place of an agent indefinitely; no other agent has been allowed to pass there.
     fn hold(&mut self, index: usize) {
         let agent = &self.agents[index];
         let resource = self.scene.network.resource[agent.start as usize];
@@ -115,8 +117,8 @@ impl Round<'_, '_> {
         self.table.replace(self.scene.network.resource[start as usize], before);
     }
 
-    /// Lets an agent choose a run that ends off what is forbidden, and those in its way before.
-    /// Returns whether it goes.
+    /// Lets an agent choose a run that ends outside the forbidden resources, after agents in its
+    /// way have chosen. Returns whether it moves.
     fn choose(&mut self, index: usize, forbidden: &BTreeSet<u32>) -> bool {
         let own = self.scene.network.resource[self.agents[index].start as usize];
         self.waiting.remove(&own);
@@ -167,7 +169,7 @@ impl Round<'_, '_> {
         same.find(is_clear)
     }
 
-    /// Runs to places where the agent can stay for good, the best first; a run onto an elevator
+    /// Runs to places where the agent can stay indefinitely, the best first; a run onto an elevator
     /// with the ride and the run off it.
     fn runs(&mut self, index: usize, forbidden: &BTreeSet<u32>) -> Vec<Partial> {
         let (agent, times) = (&self.agents[index], &self.times[index]);

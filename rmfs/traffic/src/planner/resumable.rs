@@ -5,21 +5,21 @@ use serde::de::DeserializeOwned;
 
 use super::Planner;
 
-/// What every planner can do: go on elsewhere as if nothing had happened.
+/// Copying and saving of a planner's state; every planner supports it.
 pub trait Resumable {
-    /// A copy with all that the planner remembers.
+    /// A copy, including the planner's state.
     fn boxed(&self) -> Box<dyn Planner>;
 
-    /// All that the planner remembers.
+    /// The planner's state as bytes.
     ///
     /// # Errors
-    /// If it cannot be written down.
+    /// If it cannot be serialised.
     fn remembered(&self) -> Result<Vec<u8>, String>;
 
-    /// Goes on with what another planner of the same settings remembered.
+    /// Restores the state of another planner with the same settings.
     ///
     /// # Errors
-    /// If these are not the bytes of such a planner.
+    /// If the bytes do not belong to such a planner.
     fn remember(&mut self, bytes: &[u8]) -> Result<(), String>;
 }
 

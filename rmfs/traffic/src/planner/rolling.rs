@@ -1,5 +1,5 @@
-//! What rolling planners share: a table of what would be if all robots kept to a plan, searches
-//! within a window, and the rest of the way behind it.
+//! Shared parts of rolling planners: a table of reservations that would result from a plan,
+//! searches within a window, and the rest of the way after it.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,13 +22,13 @@ pub fn times(scene: &mut Scene, agents: &[Agent]) -> Vec<Arc<[u32]>> {
     agents.iter().map(&mut towards).collect()
 }
 
-/// Unhindered time that an agent has to go, [`crate::costs::UNREACHABLE`] without a way.
+/// Unhindered remaining time of an agent; [`crate::costs::UNREACHABLE`] without a way.
 pub fn to_go(scene: &Scene, agent: &Agent, times: &[u32]) -> u32 {
     times[scene.network.index(agent.start, agent.heading)]
 }
 
-/// Fills `table` with what cannot be changed: what agents still drive until they are ready, and all
-/// that other robots hold.
+/// Fills `table` with what cannot be changed: the motion of agents until they are ready, and all
+/// reservations of other robots.
 pub fn block(scene: &Scene, agents: &[Agent], table: &mut Table) {
     table.reset(scene.network.resources);
     let mut ready = vec![FOREVER; scene.robots.len()];
@@ -95,8 +95,8 @@ pub fn reserve(scene: &Scene, table: &mut Table, agent: &Agent, moves: &[Move], 
     }
 }
 
-/// The quickest way from where a plan ends, not before `ready`, to the goal, as if nobody were
-/// there, and around waypoints that are closed.
+/// The quickest way from the end of a plan, not before `ready`, to the goal, ignoring other robots
+/// but avoiding closed waypoints.
 pub fn way(
     scene: &Scene,
     agent: &Agent,
@@ -155,7 +155,7 @@ pub fn append_rest(
     }
 }
 
-/// Where a way meets somebody else's reservation first.
+/// The first conflict of a way with a reservation of another robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Clash {
     /// Index of the move that leads onto, or past, the waypoint.
@@ -164,7 +164,8 @@ pub struct Clash {
     pub owner: u32,
 }
 
-/// The first waypoint of a way, its end held for good, that somebody else has in a table.
+/// The first waypoint of a way, whose end is held indefinitely, that another robot has reserved in
+/// a table.
 pub fn clash(scene: &Scene, table: &Table, agent: &Agent, moves: &[Move]) -> Option<Clash> {
     let network = scene.network;
     let kind = &scene.kinds[agent.kind as usize];
@@ -185,7 +186,7 @@ pub fn clash(scene: &Scene, table: &Table, agent: &Agent, moves: &[Move]) -> Opt
     })
 }
 
-/// Adds what plans occupy to a table, over what is there; returns the rows as they were.
+/// Adds the occupations of plans to a table, over those present; returns the previous rows.
 pub fn overlay<'a>(
     table: &mut Table,
     occupied: impl IntoIterator<Item = &'a Held>,
@@ -199,7 +200,7 @@ pub fn overlay<'a>(
     before
 }
 
-/// Takes an overlay off again.
+/// Removes an overlay.
 pub fn restore(table: &mut Table, before: BTreeMap<u32, Vec<Interval>>) {
     for (resource, row) in before {
         table.replace(resource, row);

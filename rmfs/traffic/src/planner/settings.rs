@@ -19,7 +19,7 @@ use super::whca_persistent::WhcaPersistent;
 use super::whca_volatile::WhcaVolatile;
 use super::{Planner, Rhythm, TimeWindows};
 
-/// What a user chose. Durations are in seconds, switches are 0 or 1.
+/// Settings chosen by the user. Durations are in seconds, switches are 0 or 1.
 #[derive(Clone, Debug)]
 pub struct Settings {
     pub name: String,
@@ -45,7 +45,7 @@ impl Settings {
         Ok(self.number(key)? != 0.0)
     }
 
-    /// How often a rolling planner is asked, and how much of its wishes is granted at once.
+    /// How often a rolling planner is called, and how much of its proposals is granted at once.
     ///
     /// # Errors
     /// If a parameter is missing.

@@ -1,4 +1,4 @@
-//! Ways for big fleets: found sooner, and perhaps a little later than the earliest.
+//! Faster searches for big fleets, whose ways may arrive slightly later than the earliest.
 
 use std::collections::BTreeMap;
 
@@ -9,31 +9,32 @@ use crate::reservations::Table;
 use crate::search::{Guide, Outcome, Pathfinder, Query};
 use crate::units::Us;
 
-/// A search: the weight of the time to go (in quarters: 4 finds the earliest arrival), and labels.
+/// A search: the weight of the remaining time (in quarters: 4 finds the earliest arrival), and the
+/// limit of labels.
 type Effort = (Us, u64);
 
-/// Searches with few labels: at once; then from later and later departures, since waiting at the
-/// start is always free and the traffic ahead passes; without success with more labels.
+/// Searches with few labels: first at once; then from increasingly late departures, since waiting
+/// at the start is always free and the traffic ahead passes; finally with more labels.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Swift {
     pub first: Effort,
-    /// Labels the first search may look at besides, for each second of the way unhindered.
+    /// Additional labels of the first search, for each second of the unhindered way.
     pub per_second: u64,
     /// Each search from a later departure.
     pub later: Effort,
-    /// By how much the first of them is later; each further one by twice as much as the one before.
+    /// Delay of the first of these departures; the steps double from one to the next.
     pub wait: Us,
     /// From the earliest departure again, if none of them found a way.
     pub last: [Effort; 2],
     /// Unhindered times are searched for only near the best way.
     pub guide: Guide,
-    /// Plans that need not be: labels, and how much later than unhindered they may arrive.
+    /// Optional plans: limit of labels, and maximum lateness compared with the unhindered time.
     pub labels_to_try: u64,
     pub detour_to_try: Us,
 }
 
 impl Swift {
-    /// What has been found to pay for hundreds of robots (`docs/traffic.md`, Scale).
+    /// Settings that work well for hundreds of robots (`docs/traffic.md`, Scale).
     pub const FOR_BIG_FLEETS: Self = Self {
         first: (5, 400),
         per_second: 4,
@@ -45,8 +46,8 @@ impl Swift {
         detour_to_try: 20_000_000,
     };
 
-    /// Looks for a way. `until` is when the robot has to have left its start; `urgency` says
-    /// what that may cost.
+    /// Searches for a way. The robot must leave its start by `until`; `urgency` determines the
+    /// effort.
     pub fn search(
         &self,
         pathfinder: &mut Pathfinder,
@@ -98,18 +99,18 @@ impl Swift {
     }
 }
 
-/// How much a robot needs a plan.
+/// Urgency of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Urgency {
-    /// It would be better than what the robot has.
+    /// The plan would be better than the robot's present one.
     Try,
-    /// The robot needs one, but can ask again.
+    /// The robot needs a plan, but can ask again.
     Soon,
     /// The robot has asked long enough.
     Whatever,
 }
 
-/// How many labels plans take, as a running mean: whether it is time for [`Swift`].
+/// Running mean of labels per plan, which determines when [`Swift`] is used.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Load {
     /// The mean times [`Load::PLANS`].
@@ -117,10 +118,10 @@ pub struct Load {
 }
 
 impl Load {
-    /// Plans over which the mean runs.
+    /// Number of plans over which the mean is taken.
     const PLANS: u64 = 256;
 
-    /// A plan took so many labels. Returns the mean.
+    /// Adds the labels of a plan. Returns the mean.
     pub fn count(&mut self, labels: u64) -> u64 {
         self.sum += labels;
         let mean = self.sum / Self::PLANS;
@@ -129,8 +130,8 @@ impl Load {
     }
 }
 
-/// Robots without a way that wait for it to come of itself, before one is looked for that leads
-/// around all motion planned: such ways take long to find, are late, and keep others waiting.
+/// Robots without a way, which first wait until others have moved, before a way around all planned
+/// motion is searched for: such ways take long to find, are late, and make others wait.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Waiting(BTreeMap<u32, Wait>);
 
@@ -142,14 +143,15 @@ struct Wait {
     pause: Us,
 }
 
-/// How long a robot asks again and again: longer than a rush takes to get under way.
+/// Time for which a robot repeats its question: longer than the rush at the start lasts.
 const PATIENCE: Us = 300_000_000;
 
-/// The first pause between two questions; each is twice as long as the one before.
+/// First pause between two attempts; pauses double.
 const PAUSE: Us = 1_000_000;
 
 impl Waiting {
-    /// How a way for a robot is to be looked for now; `None`: not yet again.
+    /// Urgency of the search for a robot's way now; `None`: the robot must wait before the next
+    /// attempt.
     pub fn urgency(&self, robot: u32, goal: u32, now: Us) -> Option<Urgency> {
         match self.0.get(&robot).filter(|wait| wait.goal == goal) {
             None => Some(Urgency::Soon),
@@ -158,7 +160,7 @@ impl Waiting {
         }
     }
 
-    /// None has been found.
+    /// Records that no way was found.
     pub fn wait(&mut self, robot: u32, goal: u32, now: Us) {
         let fresh = Wait { goal, since: now, again: now, pause: PAUSE };
         let wait = self.0.entry(robot).or_insert_with(|| fresh.clone());
@@ -169,7 +171,7 @@ impl Waiting {
         wait.pause *= 2;
     }
 
-    /// One has been found.
+    /// Records that a way was found.
     pub fn end(&mut self, robot: u32) {
         self.0.remove(&robot);
     }

@@ -11,13 +11,14 @@ use super::{Agent, Answer, Planner, Rhythm, Scene};
 /// Plans each leg once around the windows that others have reserved.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct TimeWindows {
-    /// Labels a search may look at before the robot waits until all planned motion is over.
+    /// Maximum number of labels of a search before the robot waits until all planned motion is
+    /// over.
     pub budget: u64,
-    /// Labels for each robot of a group when plans are to be improved; 0 for never.
+    /// Labels for each robot of a group when plans are improved; 0 for never.
     pub improvement: u64,
-    /// How to find ways sooner that may be a little later than the earliest; from when on.
+    /// Faster searches, whose ways may be slightly later than the earliest, if they are in use.
     pub swift: Option<Swift>,
-    /// Labels a plan takes on average from which on ways are found sooner; 0 for never.
+    /// Mean number of labels per plan from which faster searches are used; 0 for never.
     pub swift_from: u64,
     pub load: Load,
     pub waiting: Waiting,

@@ -1,7 +1,8 @@
 //! WHCA*n: windowed cooperative A* whose reservations survive from call to call.
 //!
 //! After the non-volatile variant of Merschformann, Xie, Erdmann (2017): only robots that need a
-//! plan get one, around what the others have reserved, and each ends where it can stay for good.
+//! plan get one, around the reservations of the others, and each plan ends where the robot can stay
+//! indefinitely.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +21,7 @@ use super::{Agent, Answer, Planner, Rhythm, Scene, rolling};
 pub struct WhcaPersistent {
     pub rhythm: Rhythm,
     pub window: Us,
-    /// Labels that may be looked at for an agent.
+    /// Maximum number of labels per agent.
     pub labels: u64,
     pub deadlocks: Deadlocks,
     #[serde(skip)]
@@ -52,8 +53,8 @@ impl Planner for WhcaPersistent {
 }
 
 impl WhcaPersistent {
-    /// Fills the table: what is granted, then the ways that stand, then the starts of those that
-    /// need a new one.
+    /// Fills the table: granted reservations, then the ways that remain valid, then the starts of
+    /// agents that need a new way.
     fn restore(&mut self, scene: &Scene, agents: &[Agent]) {
         rolling::block(scene, agents, &mut self.table);
         let mut reserved = std::mem::take(&mut self.reserved);
@@ -70,7 +71,7 @@ impl WhcaPersistent {
         }
     }
 
-    /// Reserves, unless it clashes with what others have.
+    /// Reserves an occupation unless it conflicts with others.
     fn add(&mut self, scene: &Scene, robot: u32, held: &Held) {
         let start = held.start.max(scene.now);
         let others = self.table.row(held.resource).iter().filter(|taken| taken.robot != robot);
@@ -91,7 +92,7 @@ impl WhcaPersistent {
         }
     }
 
-    /// Gives up what an agent holds behind its committed run.
+    /// Releases what an agent holds after its committed run.
     fn release_start(&mut self, scene: &Scene, agent: &Agent) {
         let resource = scene.network.resource[agent.start as usize];
         self.table.remove(resource, agent.robot);

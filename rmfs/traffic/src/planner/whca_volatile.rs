@@ -1,8 +1,8 @@
 //! WHCA*v: windowed hierarchical cooperative A*, everything planned anew in every call.
 //!
 //! Silver (2005), in the kinematic form of Merschformann, Xie, Erdmann (2017). All agents are
-//! planned one after another within a window, each around those before it. Who finds no way gets a
-//! higher priority, and the round begins again.
+//! planned one after another within a window, each around those before it. An agent that finds no
+//! way gets a higher priority, and the round restarts.
 
 use std::cmp::Reverse;
 
@@ -20,13 +20,13 @@ use super::{Agent, Answer, Planner, Rhythm, Scene, rolling};
 pub struct WhcaVolatile {
     pub rhythm: Rhythm,
     pub window: Us,
-    /// Unit of the time that an agent of higher priority waits to let others get out of its way.
+    /// Unit of the time for which an agent of higher priority waits until others have left its way.
     pub wait: Us,
     /// Rounds per call; in the last one, agents without a way keep what they have.
     pub rounds: u32,
-    /// Whether a round ends as soon as somebody finds no way.
+    /// Whether a round ends as soon as one agent finds no way.
     pub restart_at_once: bool,
-    /// Labels that may be looked at for an agent.
+    /// Maximum number of labels per agent.
     pub labels: u64,
     pub deadlocks: Deadlocks,
     #[serde(skip)]
@@ -64,7 +64,7 @@ impl Planner for WhcaVolatile {
     }
 }
 
-/// Ways of all agents, if any, and who has none.
+/// Ways of all agents, and the agents without one.
 type Round = (Vec<Option<Vec<Move>>>, Vec<usize>);
 
 impl WhcaVolatile {

@@ -1,9 +1,9 @@
-//! No panic of the crate reaches Python as such, and Python can interrupt it.
+//! Conversion of panics to Python errors, and interruption by Python.
 //!
-//! A panic is a defect of ours. It becomes an [`InternalError`] that says where it happened and
-//! what; the traffic it happened in is then of no more use, and says so whenever it is asked. The
-//! same holds where a signal (Ctrl-C) ends long work: Python's handlers are called meanwhile, and
-//! what they raise is what Python sees.
+//! A panic is a defect of this crate. It becomes an [`InternalError`] that states what happened and
+//! where. The traffic in which it happened is then unusable, and every later call raises an error.
+//! The same applies if a signal (Ctrl-C) ends long work: Python's handlers are called during the
+//! work, and the exceptions they raise are passed on.
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind, set_hook, take_hook};
@@ -15,13 +15,13 @@ use pyo3::prelude::*;
 use crate::patience::asking;
 
 thread_local! {
-    /// What the last panic of this thread said, with its place in the sources.
+    /// Message of the last panic of this thread, with its place in the sources.
     static SAID: RefCell<String> = const { RefCell::new(String::new()) };
-    /// Whether a panic of this thread is going to be caught here.
+    /// Whether a panic of this thread will be caught here.
     static CAUGHT: RefCell<bool> = const { RefCell::new(false) };
 }
 
-/// Makes panics that are caught here silent; all others are reported as ever.
+/// Silences panics that are caught here; all others are reported as usual.
 fn listen() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -40,16 +40,16 @@ fn listen() {
     });
 }
 
-/// Why something was not done.
+/// Reason why a call failed.
 pub(super) enum Failure {
-    /// A panic: where, and what it said.
+    /// A panic, with its place and message.
     Defect(String),
-    /// What a handler of a signal has raised.
+    /// An exception raised by a signal handler.
     Interrupt(PyErr),
 }
 
 impl Failure {
-    /// What is told from then on to whoever uses what was left half-done.
+    /// The error of later calls on an object that was left in an incomplete state.
     pub(super) fn said(&self) -> String {
         match self {
             Self::Defect(said) => format!("a defect of the traffic core: {said}"),
@@ -68,7 +68,7 @@ impl From<Failure> for PyErr {
     }
 }
 
-/// Does something, unless it panics or is interrupted.
+/// Runs a function; returns an error if it panics or is interrupted.
 pub(super) fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
     listen();
     let before = CAUGHT.replace(true);
@@ -80,7 +80,7 @@ pub(super) fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
     })
 }
 
-/// Lets Python call its handlers; what they raise unwinds the work.
+/// Lets Python call its signal handlers; an exception unwinds the work.
 fn heed_signals() {
     if let Err(error) = Python::attach(|py| py.check_signals()) {
         resume_unwind(Box::new(error));

@@ -1,4 +1,4 @@
-//! The Python face of the crate: arrays in, arrays and events out.
+//! The Python interface of the crate: arrays in, arrays and events out.
 
 mod guard;
 mod motion;
@@ -27,11 +27,11 @@ use motion::Motion;
 use planner::{Along, Conflict, Fault, PlannerInPython, Reserved, Search, Way};
 use visits::Visits;
 
-/// A robot kind as it comes from Python: acceleration, deceleration, top speed, full turn (µs),
+/// A kind of robot as passed by Python: acceleration, deceleration, top speed, full turn (µs),
 /// pod transfer (µs).
 type KindTuple = (f64, f64, f64, Us, Us);
 
-/// A move as it goes to Python.
+/// A move as passed to Python.
 type PlannedMove = (u32, u32, f64, Us, Us, bool);
 
 fn kind_of((acceleration, deceleration, top_speed, full_turn, pod_transfer): KindTuple) -> Kind {
@@ -62,10 +62,11 @@ fn step_of((code, value): (u8, u32)) -> PyResult<Step> {
 #[pyclass]
 struct Core {
     fleet: Fleet,
-    /// How often a planner written in Python is asked, if there is one, and what it has raised.
+    /// How often a planner written in Python is called, if there is one, and the error it has
+    /// raised.
     in_python: Option<Rhythm>,
     fault: Fault,
-    /// The defect or interrupt met before, if any: since then the fleet may be anything.
+    /// An earlier defect or interrupt, if any, after which the state of the fleet is undefined.
     defect: Option<String>,
 }
 
@@ -74,7 +75,7 @@ impl Core {
         Self { fleet, in_python, fault, defect: None }
     }
 
-    /// Does something with the fleet.
+    /// Runs a function on the fleet.
     fn with<T>(&mut self, work: impl FnOnce(&mut Fleet) -> T) -> PyResult<T> {
         if let Some(said) = &self.defect {
             return Err(internal_error(said));
@@ -85,12 +86,12 @@ impl Core {
         })
     }
 
-    /// Does something that can be refused.
+    /// Runs a function that can return an error.
     fn try_with<T>(&mut self, work: impl FnOnce(&mut Fleet) -> Result<T, String>) -> PyResult<T> {
         self.with(work)?.map_err(PyValueError::new_err)
     }
 
-    /// Does something with one robot.
+    /// Runs a function for one robot.
     fn with_robot<T>(&mut self, robot: u32, work: impl FnOnce(&mut Fleet) -> T) -> PyResult<T> {
         self.robot(robot as usize)?;
         self.with(work)
@@ -178,7 +179,7 @@ impl Core {
         Ok(Self::over(fleet?.map_err(PyValueError::new_err)?, in_python, fault))
     }
 
-    /// An independent copy; a planner written in Python comes as a copy of its own.
+    /// An independent copy, with the given copy of a planner written in Python.
     fn fork(&mut self, code: Option<Py<PyAny>>) -> PyResult<Self> {
         let in_python = self.in_python;
         let fault = Fault::default();
@@ -192,12 +193,12 @@ impl Core {
         Ok(Self::over(fleet, in_python, fault))
     }
 
-    /// All that moves and all that is remembered of it, but for the network and the settings.
+    /// The whole state as bytes, except for the network and the settings.
     fn save<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         Ok(PyBytes::new(py, &self.try_with(|fleet| fleet.to_bytes())?))
     }
 
-    /// Goes on from the bytes of another one, built in the same way.
+    /// Restores the state from the bytes of another core, built in the same way.
     fn restore(&mut self, bytes: &[u8]) -> PyResult<()> {
         self.try_with(|fleet| fleet.restore(bytes))
     }
@@ -330,20 +331,20 @@ impl Core {
         Ok(energy.level_of(robot, &spent.ok_or_else(no_energy)?))
     }
 
-    /// What a pod weighs from now on, kg.
+    /// Sets the mass of a pod from now on, kg.
     fn set_pod_mass(&mut self, pod: usize, mass: f64) -> PyResult<()> {
         let energy = self.fleet.record.energy.as_mut().ok_or_else(no_energy)?;
         *energy.pods.get_mut(pod).ok_or_else(|| PyValueError::new_err("no such pod"))? = mass;
         Ok(())
     }
 
-    /// Lets a waypoint give another power, W.
+    /// Sets the power that a waypoint supplies, W.
     fn set_power(&mut self, waypoint: u32, watts: f64) -> PyResult<()> {
         self.check_place(waypoint, 0)?;
         self.with(|fleet| fleet.set_power(waypoint, watts))
     }
 
-    /// Gives a robot another battery with so much in it, J.
+    /// Exchanges a robot's battery for one with the given energy, J.
     fn exchange_battery(&mut self, robot: u32, level: f64) -> PyResult<()> {
         self.with_robot(robot, |fleet| fleet.exchange_battery(robot, level))
     }
@@ -368,7 +369,7 @@ impl Core {
     }
 
     /// The trace up to now without the rows already known, sorted by robot and time, and the number
-    /// of rows to be known next time.
+    /// of rows to pass in the next call.
     fn trace<'py>(
         &mut self,
         py: Python<'py>,
@@ -481,7 +482,7 @@ impl Core {
         self.try_with(|fleet| fleet.reopen(&waypoints))
     }
 
-    /// Storage places and stations that cannot be served with what is closed.
+    /// Storage places and stations that cannot be served because of closed waypoints.
     fn cut_off(&mut self) -> PyResult<(Vec<u32>, Vec<u32>)> {
         let CutOff { storage, stations } = self.with(|fleet| fleet.cut_off())?;
         Ok((storage, stations))
@@ -501,7 +502,7 @@ impl Core {
     }
 }
 
-/// Robots where they start: waypoint, index of the heading, kind.
+/// Initial state of the robots: waypoint, index of the heading, kind.
 fn placed(network: &Network, robots: &[(u32, f64, u8)]) -> Result<Vec<(u32, u8, u8)>, String> {
     let place = |&(node, angle, kind): &(u32, f64, u8)| {
         let heading = network.headings.binary_search(&from_radians(angle));

@@ -1,8 +1,8 @@
 //! Planners written in Python: rolling planners that put questions to the core, one at a time.
 //!
-//! `plan` of a Python planner is a generator. What it yields are the questions below, what it is
-//! sent are the answers, and what it returns are its wishes. So the core lends nothing out, and
-//! like all wishes of rolling planners these are only granted as far as they are free.
+//! `plan` of a Python planner is a generator. It yields the questions below, receives the answers,
+//! and returns its proposals. The core therefore hands out no references to its state, and the
+//! proposals, like those of all rolling planners, are granted only as far as they are free.
 
 use std::sync::{Arc, Mutex};
 
@@ -15,10 +15,10 @@ use crate::reservations::Table;
 use crate::search::{End, Move};
 use crate::units::{Us, to_radians};
 
-/// The first error a planner has raised, until somebody takes it.
+/// The first error that a planner has raised, until it is taken.
 pub type Fault = Arc<Mutex<Option<PyErr>>>;
 
-/// A way of one agent: straight runs and rides from where it can choose.
+/// A way of one agent: straight runs and rides from the point from which it can choose.
 #[pyclass(frozen, module = "rmfs.traffic._core")]
 pub struct Way {
     #[pyo3(get)]
@@ -28,7 +28,7 @@ pub struct Way {
     waypoint: u32,
     #[pyo3(get)]
     end_us: Us,
-    /// When the agent would be at its goal if nobody hindered it on the rest.
+    /// When the agent would reach its goal if the rest of its way were unhindered.
     #[pyo3(get)]
     total_us: Us,
     moves: Vec<Move>,
@@ -62,7 +62,7 @@ impl Search {
     }
 }
 
-/// Asks for the way over given stops, as early as possible, whoever is there.
+/// Asks for the way over given stops, as early as possible, ignoring other robots.
 #[pyclass(frozen, module = "rmfs.traffic._core")]
 pub struct Along {
     agent: usize,
@@ -95,7 +95,7 @@ impl Conflict {
     }
 }
 
-/// Asks when a waypoint is taken by what is granted.
+/// Asks for the granted reservations of a waypoint.
 #[pyclass(frozen, module = "rmfs.traffic._core")]
 pub struct Reserved {
     waypoint: u32,
@@ -124,7 +124,7 @@ impl PlannerInPython {
     }
 }
 
-/// What it remembers is the matter of its object in Python, which [`super::Core`] copies and saves.
+/// Its state is that of its Python object, which [`super::Core`] copies and saves.
 impl Resumable for PlannerInPython {
     fn boxed(&self) -> Box<dyn Planner> {
         let planner = Python::attach(|py| self.planner.clone_ref(py));
@@ -166,7 +166,7 @@ impl Planner for PlannerInPython {
     }
 }
 
-/// Where the questions of one call are answered.
+/// Answers the questions of one call.
 struct Desk<'s, 'n> {
     scene: &'s mut Scene<'n>,
     agents: &'s [Agent],

@@ -10,7 +10,7 @@ use crate::visits::{Appeal, Draft, Filling, Given, Line, Problem, extended, impr
 /// sign, and the work done.
 type Plan = (Vec<Vec<u32>>, Vec<i32>, Vec<i32>, f64, u64);
 
-/// What there is to plan.
+/// The planning problem.
 #[pyclass(frozen)]
 pub(super) struct Visits {
     problem: Problem,

@@ -1,4 +1,5 @@
-//! Figures of a single move: its turn, the part done by a time, when it enters a zone.
+//! Quantities of a single move: its turn, the part completed by a time, the time at which it enters
+//! a zone.
 
 use super::Totals;
 use crate::kinematics::Kind;
@@ -6,7 +7,7 @@ use crate::network::{NONE, Network};
 use crate::search::Move;
 use crate::units::{MicroTurn, Us, floor_us, turn_between};
 
-/// By how much the robot turns before a move.
+/// Angle by which the robot turns before a move.
 pub fn angle(network: &Network, step: &Move) -> MicroTurn {
     turn_between(
         network.headings[step.heading_before as usize],
@@ -14,7 +15,7 @@ pub fn angle(network: &Network, step: &Move) -> MicroTurn {
     )
 }
 
-/// What a robot has done at `now` of a move it has begun.
+/// The part of a move in progress that a robot has completed at `now`.
 pub fn partly(network: &Network, kind: &Kind, step: &Move, pod: Option<u32>, now: Us) -> Totals {
     let turn = kind.turn(
         network.headings[step.heading_before as usize],

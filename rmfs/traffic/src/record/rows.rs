@@ -17,8 +17,8 @@ pub enum Piece {
     Ride = 3,
     Lift = 4,
     SetDown = 5,
-    /// Somewhere on the straight way between two waypoints, or turning at one: of a run that was
-    /// held up on its way no more is known.
+    /// Somewhere on the straight way between two waypoints, or turning at one: all that is known of
+    /// a run that was delayed on its way.
     Guided = 6,
 }
 
@@ -34,7 +34,7 @@ pub struct Row {
     pub heading_before: u8,
     pub heading: u8,
     pub pod: i32,
-    /// With which a run was driven: robots are slow at times. 0 for other pieces.
+    /// Top speed of a run, which is reduced while the robot is slow; 0 for other pieces.
     pub top_speed: f64,
 }
 
@@ -42,7 +42,7 @@ pub(super) fn pod_id(pod: Option<u32>) -> i32 {
     pod.map_or(-1, |pod| pod as i32)
 }
 
-/// A part of a run that was held up.
+/// A part of a delayed run.
 pub(super) fn guided(whole: &Row, from: (u32, Us), to: (u32, Us)) -> Row {
     Row {
         start: from.1,

@@ -1,8 +1,8 @@
-//! When an elevator can be used at the earliest: what makes ways to other tiers late.
+//! The earliest time at which an elevator can be used, which delays ways to other tiers.
 //!
-//! Elevators are the narrowest places of a warehouse, and reserved far ahead. If the search took
-//! every way to another tier for as quick as without traffic, it would look at all there is to do
-//! on the own tier until the elevator is free.
+//! Elevators are the narrowest places of a warehouse, and reserved far ahead. If the search
+//! estimated ways to another tier as without traffic, it would expand everything on its own tier
+//! until the elevator is free.
 
 use crate::kinematics::Kind;
 use crate::network::Ride;

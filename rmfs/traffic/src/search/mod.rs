@@ -2,12 +2,12 @@
 //!
 //! A state is (waypoint, heading, free interval) with the robot at rest, labelled with its earliest
 //! arrival; waiting is free inside the interval. Successors are straight runs that start and end at
-//! rest, and elevator rides. The set of possible departures of a run is exact: for each waypoint on
-//! the way the reservations of others, shifted by the time the robot needs to get there.
+//! rest, and elevator rides. The set of possible departures of a run is exact: it excludes, for
+//! each waypoint on the way, the reservations of others, shifted by the robot's travel time to it.
 //!
-//! The search is led by exact unhindered times and expands labels in part: of a label's many stops
-//! only those that can lie on a way not much longer than the best are looked at, the others when
-//! the search comes back to it.
+//! The search is guided by exact unhindered times and expands labels partially: of the many stops
+//! of a label, it first examines those that can lie on a way not much longer than the best, and the
+//! others when it returns to the label.
 //!
 //! Related: SIPP (Phillips, Likhachev 2011), stationary SIPP in MASS (Yan, Li 2025), free time
 //! windows (ter Mors 2010).
@@ -49,22 +49,22 @@ struct Label {
     scans: u32,
 }
 
-/// Weights (in quarters) and how many labels may be looked at with each: from optimal to greedy.
+/// Weights (in quarters) and the maximum number of labels with each: from optimal to greedy.
 const STAGES: [(Us, u64); 3] = [(4, 400), (6, 2_000), (16, u64::MAX)];
 
-/// By how much the unhindered search goes on at a time, in microseconds.
+/// Step by which the unhindered search is extended, in microseconds.
 const GUIDE_STEP: u32 = 1 << 19;
 
-/// How much later than the label's own estimate successors may arrive in its first scan.
+/// Maximum difference between the estimates of a label and its successors in the first scan.
 const SLACK: Us = 500_000;
 
-/// What is added to the bound of a way over elevators when the search looks for any good way.
+/// Addition to the bound of a way over elevators when any good way is sufficient.
 const HASTE: Us = 20_000_000;
 
 /// Marks an entry of the open list that stands for waiting at a label until the window ends.
 const STAY: u32 = 1 << 31;
 
-/// Reusable memory of searches, and what they have cost.
+/// Reusable memory of searches, and their counts of work.
 #[derive(Clone, Debug)]
 pub struct Pathfinder {
     labels: Vec<Label>,
@@ -74,12 +74,12 @@ pub struct Pathfinder {
     newest: Vec<(u32, u32)>,
     stamp: u32,
     guide: Backward,
-    /// How far the guide may go: up to which total time ways are known.
+    /// Total time up to which the guide knows ways.
     guided_to: u32,
     stable: Windows,
     windows: Windows,
     line: Vec<(u32, f64)>,
-    /// Labels looked at so far, over all searches.
+    /// Labels examined so far, over all searches.
     pub expansions: u64,
 }
 
@@ -118,8 +118,8 @@ impl Pathfinder {
         Outcome::OutOfBudget
     }
 
-    /// Prepares for searches from the query's start to its goal. Returns the time of the way if
-    /// nobody else were there, or `None` if there is no way.
+    /// Prepares for searches from the query's start to its goal. Returns the time of the way
+    /// without other robots, or `None` if there is no way.
     pub fn aim(&mut self, network: &Network, query: &Query) -> Option<Us> {
         let Query { start, heading, goal, loaded, model, .. } = *query;
         if goal == NONE {
@@ -144,7 +144,8 @@ impl Pathfinder {
         time(unhindered)
     }
 
-    /// Searches with one weight (in quarters: 4 finds the earliest arrival) and so many labels, after
+    /// Searches with one weight (in quarters: 4 finds the earliest arrival) and at most `labels`
+    /// labels, after
     /// [`Pathfinder::aim`] with the same start, goal and load.
     pub fn seek(
         &mut self,
@@ -157,7 +158,7 @@ impl Pathfinder {
         Search::new(self, network, table, query, weight).run(labels)
     }
 
-    /// Time of the way just searched for, without given times, if nobody else were there.
+    /// Time without other robots of the way just searched for, if no times were given.
     pub fn unhindered(&self, network: &Network, start: u32, heading: u8) -> Us {
         Us::from(self.guide.to_go(network, start, heading))
     }
@@ -171,11 +172,12 @@ struct Search<'a> {
     query: &'a Query<'a>,
     /// Quarters by which the time to go is weighted: 4 finds the earliest arrival.
     weight: Us,
-    /// Nobody reaches the goal for good before this.
+    /// The goal cannot be reached to stay before this time.
     goal_free: Us,
     /// Arrivals after this are of no use.
     latest: Us,
-    /// Nobody who is still where only elevators lead to the goal reaches it before this.
+    /// From an island that only elevators connect with the goal, it cannot be reached before this
+    /// time.
     elevator_free: Us,
 }
 
@@ -273,7 +275,7 @@ impl<'a> Search<'a> {
         !self.network.is_elevator(node)
     }
 
-    /// When waiting at a label is an end of its own: the window closes while the robot stands there.
+    /// When waiting at a label ends the search: the window closes while the robot stands there.
     fn waits_until(&self, label: &Label) -> Option<Us> {
         let (end, needed) = match self.query.end {
             End::Window(end) => (end, end),
@@ -293,7 +295,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Scans a label's successors in part, or finds out that others are more promising.
+    /// Scans a part of a label's successors, unless other labels are more promising.
     fn look_at(&mut self, index: u32, estimate: Us) {
         self.memory.expansions += 1;
         let label = self.memory.labels[index as usize].clone();
@@ -338,7 +340,8 @@ impl<'a> Search<'a> {
         Us::from(self.memory.guide.straight_to_goal(self.network, node))
     }
 
-    /// Total time over a label: when it is reached, and a (weighted) bound of the rest.
+    /// Total time over a label: the time at which it is reached plus a (weighted) bound of the
+    /// rest.
     fn estimate(&self, node: u32, arrival: Us, to_go: Us) -> Us {
         let estimate = (arrival + to_go * self.weight / 4).max(self.goal_free);
         let is_before = self.elevator_free > estimate
@@ -346,8 +349,8 @@ impl<'a> Search<'a> {
         if is_before { self.elevator_free } else { estimate }
     }
 
-    /// Where the guide has not been yet, lets it search on until the label is known or can wait; a
-    /// larger estimate comes back.
+    /// If the guide does not know the label yet, extends it until the label is known or can wait;
+    /// returns a larger estimate.
     fn sharpen(&mut self, label: &Label, estimate: Us) -> Option<Us> {
         if self.query.goal == NONE || self.query.times.is_some() {
             return None;

@@ -1,5 +1,4 @@
-//! What a robot can do next: single runs and rides, for planners that put ways together piece by
-//! piece.
+//! Next steps of a robot, single runs and rides, for planners that assemble ways piece by piece.
 
 use crate::network::{NONE, Network};
 use crate::reservations::Table;
@@ -7,7 +6,7 @@ use crate::units::Us;
 
 use super::{Label, Move, Pathfinder, Query, Search};
 
-/// A run or ride, and until when the robot can stay at its end.
+/// A run or ride, and the time until which the robot can stay at its end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stop {
     pub step: Move,
@@ -16,8 +15,8 @@ pub struct Stop {
 
 impl Pathfinder {
     /// The stops that one run or ride leads to, each as early as a table allows; of the stops along
-    /// a line those that can pay, and of these the ones from which the goal can be reached, with
-    /// the given times, at most `slack` after the unhindered arrival.
+    /// a line, those that can be useful and from which the goal can be reached, by the given times,
+    /// at most `slack` after the unhindered arrival.
     pub fn next_stops(
         &mut self,
         network: &Network,

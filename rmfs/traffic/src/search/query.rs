@@ -1,4 +1,4 @@
-//! What is asked of a search, and what it answers.
+//! Input and result of a search.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,55 +18,56 @@ pub struct Move {
     pub start: Us,
     pub end: Us,
     pub ride: bool,
-    /// By how much the end is later than the motion says, for robots that follow a plan late.
+    /// Delay of the end compared with the motion, for robots that follow a plan late.
     pub late: Us,
-    /// Waypoints of the run already in use when it was last found to be late.
+    /// Waypoints of the run that were in use when it was last delayed.
     pub begun: u32,
 }
 
-/// When a search has found what it looks for.
+/// Condition under which a search ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// The robot is at the goal and can stay there for good.
+    /// The robot is at the goal and can stay there indefinitely.
     ForGood,
-    /// The robot is at the goal, whoever comes there later.
+    /// The robot is at the goal, even if others come there later.
     Arrival,
     /// The window ends at this time: the robot is at the goal or on the way, and can stay where it
-    /// is until then. What others do later does not count.
+    /// is until then. Later motion of others is ignored.
     Window(Us),
-    /// The same, and the robot can stay there for good.
+    /// The same, and the robot can stay there indefinitely.
     WindowForGood(Us),
 }
 
-/// Of which labels the unhindered times are searched for, before they are looked at.
+/// Labels whose unhindered times are computed before they are examined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Guide {
-    /// Of all.
+    /// All labels.
     Exact,
-    /// Of those over which a way is at most so much longer than the best; of others straight lines
-    /// to the goal tell how far it is at least.
+    /// Labels over which a way is at most this much longer than the best; for others, straight
+    /// lines to the goal give a lower bound.
     Near(Us),
 }
 
-/// What a robot wants.
+/// A search for a way of one robot.
 #[derive(Clone, Debug)]
 pub struct Query<'a> {
     pub start: u32,
     pub heading: u8,
     /// Earliest departure; the robot is at rest at `start` then.
     pub ready: Us,
-    /// Where to go; `NONE`: to the nearest storage place that nobody holds, and for a loaded robot
-    /// one without a pod.
+    /// The goal; `NONE`: the nearest storage place that no robot holds and, for a loaded robot,
+    /// without a pod.
     pub goal: u32,
     pub loaded: bool,
-    /// At which waypoints pods are stored; needed without a goal only.
+    /// Waypoints at which pods are stored; only needed without a goal.
     pub stored: &'a [bool],
     pub kind: &'a Kind,
     pub model: &'a Model,
-    /// Labels that may be looked at.
+    /// Maximum number of labels.
     pub budget: u64,
     pub end: End,
-    /// How much later than unhindered, or than the goal is free, an arrival is still of use.
+    /// Maximum delay of a useful arrival, compared with the unhindered arrival or the time at which
+    /// the goal is free.
     pub detour: Us,
     pub guide: Guide,
     /// Exact unhindered times to the goal, as [`crate::costs::Table`]; searched for if not given.

@@ -65,8 +65,8 @@ impl Search<'_> {
     }
 
     /// Whether no stop from here on along a line can be reached so soon that its total time is below
-    /// `bound`. `straight` and `nearest`: how far the goal is at least from here and from the
-    /// waypoint before.
+    /// `bound`. `straight` and `nearest`: lower bounds of the time to the goal from here and from
+    /// the waypoint before.
     fn nothing_ahead(&self, arrival: Us, straight: Us, nearest: Us, bound: Us) -> bool {
         // once the line leads away from the goal, it does so to its end
         let to_go = if straight >= nearest { straight } else { 0 };
@@ -78,9 +78,9 @@ impl Search<'_> {
             || (self.is_goal(to) && !self.network.is_closed(to))
     }
 
-    /// Whether stopping at a waypoint can pay: it is the goal, it lets the robot turn towards
-    /// somewhere, it is an elevator, or traffic ahead makes it a waiting place. (Where the robot
-    /// cannot stay before the run for good, every stop can pay.)
+    /// Whether stopping at a waypoint can be useful: it is the goal, the robot can turn there, it
+    /// is an elevator, or traffic ahead makes it a waiting place. (If the robot cannot stay
+    /// indefinitely before the run, every stop can be useful.)
     fn is_useful_stop(&self, node: u32, heading: u8) -> bool {
         let network = self.network;
         let leads_on = |other: u8| {
@@ -97,7 +97,8 @@ impl Search<'_> {
     }
 
     /// Restricts the departures by the reservations of those waypoints of the line that a robot
-    /// stopping at its end passes before it brakes: they bind all longer runs too. `settled` of
+    /// stopping at its end passes before it brakes: these restrict all longer runs as well.
+    /// `settled` of
     /// them have been applied before; returns how many have been now.
     fn settle(&mut self, mut settled: usize, until: Us) -> usize {
         let (network, kind) = (self.network, self.query.kind);

@@ -1,4 +1,4 @@
-//! Which pods are worth a try at a station, by a rough estimate of what each could add.
+//! Selection of promising pods for a station, by a rough estimate of what each could add.
 
 use super::draft::Draft;
 use super::filling::Filling;
@@ -9,9 +9,9 @@ const PARTLY: f64 = 0.35;
 
 /// Scores pods for one more visit; keeps the tables it needs for that.
 ///
-/// A unit in stock counts with the mean worth of the lines left that want its SKU, as long as they
-/// want more. Lines of orders that are open elsewhere count nothing, and lines whose order lacks
-/// others at the station count in part.
+/// A unit in stock counts with the mean worth of the remaining lines of its SKU, up to the units
+/// they need. Lines of orders that are open elsewhere do not count, and lines whose order lacks
+/// other lines at the station count in part.
 pub struct Appeal {
     pub scores: Vec<f64>,
     at_hand: Vec<bool>,
@@ -38,7 +38,7 @@ impl Appeal {
         }
     }
 
-    /// Estimates what each pod would add to a draft, cost taken off; minus infinity for pods that
+    /// Estimates what each pod would add to a draft, less its cost; minus infinity for pods that
     /// cannot come, or come already.
     pub fn score(&mut self, filling: &mut Filling, draft: &Draft, station: usize) {
         let problem = filling.problem;
@@ -89,7 +89,7 @@ impl Appeal {
         }
     }
 
-    /// The pods that look best of those that can come, the best first.
+    /// The most promising pods that can come, the best first.
     pub fn best(&mut self, count: usize) -> &[u32] {
         let scores = &self.scores;
         let before =

@@ -1,4 +1,4 @@
-//! Visits of the stations, and what they serve.
+//! Drafts of plans: visits of the stations, and what they serve.
 
 use super::problem::{NONE, Problem, put, take_out};
 
@@ -14,7 +14,7 @@ pub struct Draft {
     pub free: Vec<u64>,
 }
 
-/// What a station does.
+/// The part of a plan at one station.
 #[derive(Clone, Debug, Default)]
 pub struct Station {
     /// Pods of new visits.
@@ -29,7 +29,7 @@ pub struct Station {
 }
 
 impl Draft {
-    /// Given visits, nothing served yet.
+    /// A draft of given visits that serve nothing yet.
     pub fn new(problem: &Problem, pods: &[Vec<u32>]) -> Self {
         let at = pods.iter().map(|pods| Station { pods: pods.clone(), ..Station::default() });
         Self {
@@ -45,7 +45,7 @@ impl Draft {
         self.at.iter().map(|station| station.value).sum()
     }
 
-    /// What some stations are worth.
+    /// The worth of some stations.
     pub fn value_of(&self, stations: &[usize]) -> f64 {
         stations.iter().map(|&station| self.at[station].value).sum()
     }
@@ -54,7 +54,7 @@ impl Draft {
         self.at.iter().map(|station| station.pods.clone()).collect()
     }
 
-    /// Lets go what a station serves.
+    /// Releases everything that a station serves.
     pub(super) fn release(&mut self, problem: &Problem, station: usize) {
         let at = &mut self.at[station];
         for line in at.lines.drain(..) {
@@ -68,7 +68,7 @@ impl Draft {
         }
     }
 
-    /// Writes down what some stations do, to be put back.
+    /// Saves the parts of some stations, so that they can be restored.
     pub fn save(&self, stations: &[usize], saved: &mut Saved) {
         saved.stations.clear();
         saved.stations.extend_from_slice(stations);
@@ -80,7 +80,7 @@ impl Draft {
         }
     }
 
-    /// Puts back what some stations did.
+    /// Restores the saved parts of some stations.
     pub fn restore(&mut self, problem: &Problem, saved: &Saved) {
         for &station in &saved.stations {
             self.release(problem, station);
@@ -106,7 +106,7 @@ impl Draft {
 }
 
 impl Station {
-    /// Becomes like another one; takes no new memory as a rule.
+    /// Copies another draft, normally without allocating memory.
     fn copy(&mut self, other: &Self) {
         self.pods.clone_from(&other.pods);
         self.lines.clone_from(&other.lines);
@@ -115,7 +115,7 @@ impl Station {
     }
 }
 
-/// What some stations did, with the visit of each of their lines.
+/// The saved parts of some stations, with the visit of each of their lines.
 #[derive(Default)]
 pub struct Saved {
     stations: Vec<usize>,
@@ -123,7 +123,7 @@ pub struct Saved {
 }
 
 impl Saved {
-    /// What the stations were worth.
+    /// The worth of the stations.
     pub fn value(&self) -> f64 {
         self.stations.iter().zip(&self.at).map(|(_, (at, _))| at.value).sum()
     }

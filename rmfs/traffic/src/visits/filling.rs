@@ -1,4 +1,4 @@
-//! Which orders go with given visits.
+//! Assignment of orders to given visits.
 //!
 //! Open orders come first, each line in the first visit that has its units. A waiting order takes
 //! the visits closest together that have its lines: first the orders of one visit, which keep no
@@ -7,8 +7,8 @@
 use super::draft::Draft;
 use super::problem::{Problem, has, lines_in};
 
-/// Which order could go where: the fewer visits it spans and the sooner it begins, the sooner it is
-/// served. One number, as these are sorted all the time.
+/// An order that a station could serve: the fewer visits it spans and the sooner it begins, the
+/// earlier it is considered. It is encoded as one number, as these are sorted very often.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Chance(u64);
 
@@ -31,7 +31,7 @@ impl Chance {
 /// Fills visits with orders; keeps the tables it needs for that.
 pub struct Filling<'a> {
     pub problem: &'a Problem,
-    /// Entries of stock and lines looked at so far.
+    /// Entries of stock and lines examined so far.
     pub work: u64,
     /// Pods, per filled station and visit.
     pods: Vec<u32>,
@@ -117,7 +117,8 @@ impl<'a> Filling<'a> {
         self.problem.first(station) + draft.at[station].pods.len()
     }
 
-    /// Lays out a station's visits, serves its open orders, and looks for chances.
+    /// Prepares a station's visits, serves its open orders, and collects waiting orders that could
+    /// be served.
     fn begin(&mut self, draft: &mut Draft, number: usize, station: usize) {
         let problem = self.problem;
         let visits = self.visits(draft, station);
@@ -287,7 +288,7 @@ impl<'a> Filling<'a> {
         true
     }
 
-    /// Takes out new visits that serve nothing; whether there were none.
+    /// Removes new visits that serve nothing; returns whether there were none.
     fn leave_out(&self, draft: &mut Draft, number: usize, station: usize) -> bool {
         let (first, used) = (self.problem.first(station), self.used[number]);
         let pods = &mut draft.at[station].pods;
@@ -301,8 +302,8 @@ impl<'a> Filling<'a> {
     }
 }
 
-/// The visits closest together, the first if there are more, that have a bit of every mask: the
-/// first and the last of them.
+/// The shortest range of visits with a bit of every mask, the first of several: its first and last
+/// visit.
 fn closest(masks: &[u64]) -> Option<(u32, u32)> {
     let mut begins = masks.iter().fold(0, |bits, mask| bits | mask);
     let mut best: Option<(u32, u32)> = None;

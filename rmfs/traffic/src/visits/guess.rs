@@ -50,7 +50,7 @@ impl Guess {
         self.worth.iter().sum::<f64>() / self.worth.len().max(1) as f64
     }
 
-    /// Is told that stations have changed.
+    /// Updates the tables after a change of stations.
     pub fn changed(&mut self, before: &Saved, draft: &Draft, stations: &[usize]) {
         for pod in before.pods() {
             self.comes[pod as usize] = false;
@@ -60,9 +60,9 @@ impl Guess {
         }
     }
 
-    /// Draws pods and gives the one that looks best; `None` if none of them can come.
+    /// Draws pods and returns the most promising one; `None` if none of them can come.
     ///
-    /// `gone` is the new visit, counted from 0, in whose place the pod is to come, if any.
+    /// `gone` is the new visit, counted from 0, that the pod is to replace, if any.
     pub fn pod(
         &mut self,
         filling: &mut Filling,

@@ -1,6 +1,7 @@
 //! Plans of pod visits, for the model `rmfs.solvers.models.planning`: arrays in, a plan out.
 //!
-//! Nothing here knows of traffic. It is part of this crate as the package has one compiled library.
+//! This module is independent of traffic. It is part of this crate because the package has only one
+//! compiled library.
 
 mod appeal;
 mod draft;

@@ -1,6 +1,6 @@
-//! The input, indexed by what is looked up.
+//! The input, with indices for fast look-ups.
 
-/// Nobody, nowhere, never.
+/// Marks a missing order, station or visit.
 pub const NONE: i32 = -1;
 
 /// A line as it is given.
@@ -19,7 +19,7 @@ pub struct Stocked {
     pub units: i64,
 }
 
-/// What is given: see `rmfs.solvers.models.planning.Planning`, where all of it has been checked.
+/// The input; see `rmfs.solvers.models.planning.Planning`, which validates it.
 ///
 /// SKUs are numbered among those of the lines.
 #[derive(Clone, Debug, Default)]
@@ -41,13 +41,13 @@ pub struct Given {
     pub decay: f64,
 }
 
-/// The input with what is looked up again and again.
+/// The input with tables for frequent look-ups.
 #[derive(Clone, Debug)]
 pub struct Problem {
     pub given: Given,
     pub stations: usize,
     pub pods: usize,
-    /// Most visits of a station, those under way included.
+    /// Maximum number of visits of a station, including those under way.
     pub longest: usize,
     /// Worth of a visit, by its number, as a share of the first.
     pub decay: Vec<f64>,
@@ -56,7 +56,7 @@ pub struct Problem {
     pub open_at: Vec<Vec<u32>>,
     pub on_pod: Vec<Vec<Stocked>>,
     pub with_sku: Vec<Vec<Stocked>>,
-    /// Words of a set of lines.
+    /// Number of words of a set of lines.
     pub words: usize,
     /// Lines of which each pod has the units, as sets, row by row.
     serves: Vec<u64>,

@@ -1,14 +1,15 @@
-//! The start rule: one visit after the other, each the best of the few pods that look best.
+//! The start rule: one visit after another, each by the best of a few promising pods.
 
 use super::appeal::Appeal;
 use super::draft::Draft;
 use super::filling::Filling;
 use super::problem::Problem;
 
-/// Pods that are tried for each visit, and orders that are tried for several.
+/// Number of pods tried for each visit, and of orders for which several pods are tried.
 const TRIED: usize = 5;
 
-/// Adds visits to those given as long as they pay; the station with the fewest units first.
+/// Adds visits to the given ones as long as they are worthwhile; the station with the fewest units
+/// comes first.
 pub fn extended(filling: &mut Filling, appeal: &mut Appeal, pods: &[Vec<u32>]) -> Draft {
     let problem = filling.problem;
     let mut draft = filling.draft(pods);
@@ -29,7 +30,7 @@ pub fn extended(filling: &mut Filling, appeal: &mut Appeal, pods: &[Vec<u32>]) -
     }
 }
 
-/// The best next visit of a station; `None` if none pays.
+/// The best next visit of a station; `None` if none is worthwhile.
 fn one_more(
     filling: &mut Filling,
     appeal: &mut Appeal,
@@ -49,10 +50,11 @@ fn one_more(
     best
 }
 
-/// Lets all the pods come that one order lacks; `None` if that pays for none of a few orders.
+/// Adds visits of all pods that one order lacks; `None` if this is not worthwhile for any of a few
+/// orders.
 ///
-/// An order of several pods that no other order brings is not begun otherwise: one more visit alone
-/// would serve nothing of it.
+/// Otherwise, an order that needs several additional pods would never be started, as a single
+/// further visit would serve nothing of it.
 fn for_one_order(
     filling: &mut Filling,
     appeal: &mut Appeal,
@@ -83,7 +85,8 @@ fn for_one_order(
     None
 }
 
-/// Pods for the lines of an order that no visit of a station has; none if one lacks.
+/// Pods for the lines of an order that no visit of a station serves; none if there is no pod for
+/// one of them.
 fn lacking(
     problem: &Problem,
     scores: &[f64],

@@ -1,9 +1,9 @@
-//! Neighbourhood search: visits are taken out of a plan, and others put in (Shaw 1998), plans a
-//! little worse being allowed at first (threshold accepting, Dueck and Scheuer 1990, with a threshold
-//! drawn anew for each step).
+//! Neighbourhood search: visits are removed from a plan and others inserted (Shaw 1998). Slightly
+//! worse plans are accepted at first (threshold accepting, Dueck and Scheuer 1990, with a threshold
+//! drawn for each step).
 //!
-//! A step changes one or two stations; what the others serve stays with them, so a step costs the
-//! same however many stations there are.
+//! A step changes one or two stations; the others keep what they serve, so the time of a step does
+//! not depend on the number of stations.
 
 use super::draft::{Draft, Saved};
 use super::filling::Filling;
@@ -12,21 +12,21 @@ use super::problem::Problem;
 use crate::patience::look_up;
 use crate::random::Random;
 
-/// Of a hundred steps, those that replace a visit, that move one, that add one, and that let visits
-/// of two stations change places. The others share out anew what two stations serve.
+/// Percentages of steps that replace a visit, move one, add one, and swap visits of two stations.
+/// The other steps redistribute what two stations serve.
 const REPLACE: u64 = 51;
 const MOVE: u64 = 37;
 const ADD: u64 = 6;
 const SWAP: u64 = 3;
-/// One of so many steps that concern one station fills another anew too: it may take what the first
-/// lets go.
+/// One in this number of steps on a single station also refills another station, which may take
+/// what the first releases.
 const WITH_ANOTHER: u64 = 5;
-/// How much worse a plan may be at first, as a share of the mean worth of a line.
+/// Initial threshold, as a share of the mean worth of a line.
 const WORSE: f64 = 0.5;
-/// Parts that a threshold is drawn in.
+/// Number of steps into which a threshold is divided for drawing.
 const PARTS: u64 = 1 << 20;
 
-/// Searches from a draft; what is found is not worth less.
+/// Searches from a draft; the result is never worse.
 pub fn improved(filling: &mut Filling, draft: Draft, steps: u64, seed: u64) -> Draft {
     let problem = filling.problem;
     let mut random = Random::new(seed);
@@ -62,7 +62,7 @@ pub fn improved(filling: &mut Filling, draft: Draft, steps: u64, seed: u64) -> D
     if whole.value() > best.value() { whole } else { best }
 }
 
-/// Chooses the stations that a step changes; a swap, and sharing out, take two where there are two.
+/// Chooses the stations that a step changes; swapping and redistributing take two if there are two.
 fn choose_stations(problem: &Problem, kind: u64, changed: &mut Vec<usize>, random: &mut Random) {
     let stations = problem.stations as u64;
     let one = random.below(stations) as usize;
@@ -75,7 +75,7 @@ fn choose_stations(problem: &Problem, kind: u64, changed: &mut Vec<usize>, rando
     }
 }
 
-/// Changes the visits of the first station, or of both; whether anything has changed.
+/// Changes the visits of the first station, or of both; returns whether anything has changed.
 fn change(
     filling: &mut Filling,
     guess: &mut Guess,
@@ -98,7 +98,7 @@ fn change(
     }
 }
 
-/// Takes a visit out, and puts another in: in its place, or anywhere.
+/// Removes a visit and inserts another one, in its place or anywhere.
 fn replace(
     filling: &mut Filling,
     guess: &mut Guess,
@@ -118,7 +118,7 @@ fn replace(
     true
 }
 
-/// Puts a visit somewhere else in the order of its station's.
+/// Moves a visit within the sequence of its station.
 fn relocate(draft: &mut Draft, station: usize, random: &mut Random) -> bool {
     let pods = &mut draft.at[station].pods;
     if pods.len() < 2 {
@@ -131,7 +131,7 @@ fn relocate(draft: &mut Draft, station: usize, random: &mut Random) -> bool {
     true
 }
 
-/// Puts one more visit in.
+/// Inserts a further visit.
 fn add(
     filling: &mut Filling,
     guess: &mut Guess,
@@ -148,7 +148,7 @@ fn add(
     true
 }
 
-/// Lets two visits of two stations change places if their pods can come there.
+/// Swaps two visits of two stations if their pods can go there.
 fn swap(
     problem: &Problem,
     draft: &mut Draft,
