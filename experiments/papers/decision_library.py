@@ -52,7 +52,7 @@ TIMED: dict[str, dict[str, float]] = {
     "sequencing": {"beam": 256, "cp_sat": 0.512},
     "rack_allocation": {"greedy": 1, "cp_sat": 0.512},
     "stays": {"greedy": 1, "cp_sat": 0.512, "highs": 4},
-    "sequence": {"greedy": 1, "columns": 1.024, "cp_sat": 0.512},
+    "sequence": {"greedy": 1, "lns": 16384, "columns": 1.024, "cp_sat": 0.512},
     "replenishment": {"greedy": 1, "rounding": 1, "cp_sat": 0.512, "highs": 4},
 }
 """Methods to time, each with its largest limit of work."""

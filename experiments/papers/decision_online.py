@@ -23,6 +23,7 @@ from rmfs.solvers.decisions.files import read
 from rmfs.solvers.decisions.library.table import Library
 from rmfs.solvers.decisions.profiling import primal_gap
 from rmfs.solvers.models.solution import Limits
+from rmfs.solvers.models.tasks.sequence import STEPS_PER_TASK
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -43,10 +44,20 @@ def _planned(steps: Callable[[int], int]) -> Callable[[Decision], dict[str, Any]
     return asked
 
 
-def _routed(work_s: float) -> Callable[[Decision], dict[str, Any]]:
-    """Route by column generation under a limit of work."""
+def _routed(method: str, work_s: float) -> Callable[[Decision], dict[str, Any]]:
+    """Route by CP-SAT or column generation under a limit of work."""
     limits = asdict(Limits(deterministic_s=work_s, gap=0.01))
-    return lambda decision: {"method": "columns", "limits": limits}
+    return lambda decision: {"method": method, "limits": limits}
+
+
+def _searched(steps: int) -> Callable[[Decision], dict[str, Any]]:
+    """Route by neighbourhood search with a number of steps for each task."""
+
+    def asked(decision: Decision) -> dict[str, Any]:
+        limits = Limits(iterations=steps * decision.sizes["T"])
+        return {"method": "lns", "limits": asdict(limits)}
+
+    return asked
 
 
 SETTINGS: Mapping[str, Mapping[str, Callable[[Decision], dict[str, Any]]]] = {
@@ -58,9 +69,11 @@ SETTINGS: Mapping[str, Mapping[str, Callable[[Decision], dict[str, Any]]]] = {
         "1,500 steps per station (`planning-split`)": _planned(lambda stations: 1500),
     },
     "sequence": {
-        "default: CP-SAT, 0.01 s": lambda decision: {},
-        "column generation, 0.3 s": _routed(0.3),
-        "column generation, 0.6 s": _routed(0.6),
+        "insertion": lambda decision: {"method": "greedy"},
+        "50 steps per task": _searched(50),
+        "default: 200 steps per task": _searched(STEPS_PER_TASK),
+        "CP-SAT, 0.01 s": _routed("cp_sat", 0.01),
+        "column generation, 0.6 s": _routed("columns", 0.6),
     },
 }
 """What is asked differently, by family and name of the setting."""

@@ -74,6 +74,26 @@ class Visits:
         self, pods: list[list[int]], steps: int, seed: int
     ) -> tuple[list[list[int]], list[int], list[int], float, int]: ...
 
+class Sequences:
+    def __init__(
+        self,
+        ready: list[int],
+        carrying: list[bool],
+        reach: NDArray[np.int64],
+        store: NDArray[np.int64],
+        fetch: NDArray[np.int64],
+        bring: list[int],
+        service: list[int],
+        earliest: list[int],
+        latest: list[int],
+        due: list[int],
+        skip: list[int],
+        weight: int,
+    ) -> None: ...
+    def searched(
+        self, starts: list[tuple[list[list[int]], list[int]]], steps: int, seed: int
+    ) -> tuple[list[list[int]], list[int], int] | None: ...
+
 class Core:
     def __init__(
         self,

@@ -284,5 +284,6 @@ WORK_UNITS = {
     "rounding": "simplex iterations",
     "dynamic": "states expanded",
     "visits": "lines looked at for the visits of a station",
+    "insertions": "positions looked at for tasks",
 }
 """The unit of `Solution.work` per back end; heuristics count under "rule"."""

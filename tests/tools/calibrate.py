@@ -56,6 +56,24 @@ CASES: list[tuple[str, str, str, Overrides]] = [
     ("small", "small", "ta-matching", []),
     ("small", "small", "ta-balance", []),
     ("small", "small", "ta-routes", []),
+    ("small", "small", "ta-routes", [(["controllers", "ta", "method"], "cp_sat")]),
+    (
+        "small",
+        "small",
+        "ta-routes",
+        [(["controllers", "ta", "method"], "columns"), (["controllers", "ta", "work_s"], LONG)],
+    ),
+    (
+        "default",
+        "default",
+        "ta-routes",
+        [
+            (["scenario", "duration_s"], 120.0),
+            (["controllers", "ta", "method"], "columns"),
+            (["controllers", "ta", "work_s"], LONG),
+        ],
+    ),
+    ("large", "large", "ta-routes", [(["scenario", "duration_s"], 120.0)]),
     ("default", "default", "psa-prices", []),
     ("large", "large", "psa-placement", [(["scenario", "duration_s"], 120.0)]),
     ("large", "large", "ta-matching", [(["scenario", "duration_s"], 120.0)]),
@@ -194,6 +212,13 @@ def processor() -> str:
     return names[0] if names else platform.machine()
 
 
+def with_kept(path: Path, key: str, new: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of a published table that were not measured again, followed by new ones."""
+    before = pd.read_csv(path, index_col=key)
+    both: pd.DataFrame = pd.concat([before.drop(index=new.index, errors="ignore"), new])
+    return both
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Measure, and write the table."""
     options = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
@@ -201,14 +226,18 @@ def main(arguments: list[str] | None = None) -> None:
     options.add_argument(
         "--controllers", nargs="*", help="only these; rows of back ends they do not ask are kept"
     )
+    options.add_argument("--back-ends", nargs="*", help="only these; the rows of others are kept")
     given = options.parse_args(arguments)
     cases = [case for case in CASES if given.controllers is None or case[2] in given.controllers]
     measured = pd.concat([answered(questions(*case), named(case)) for case in cases])
+    if given.back_ends is not None:
+        measured = measured[measured["backend"].isin(given.back_ends)]
     found = rates(measured)
     ratios = charged(measured, found)
-    if given.controllers is not None:
-        before = pd.read_csv(given.out.with_suffix(".csv"), index_col="backend")
-        found = pd.concat([before.drop(index=found.index, errors="ignore"), found]).sort_index()
+    ratios_place = given.out.with_name(CASES_PLACE.name)
+    if given.controllers is not None or given.back_ends is not None:
+        found = with_kept(given.out.with_suffix(".csv"), "backend", found).sort_index()
+        ratios = with_kept(ratios_place, "case", ratios)
     told = (
         f"Measured by `python -m tests.tools.calibrate` on {datetime.date.today()}: "
         f"{processor()}, Python {platform.python_version()}. "
@@ -217,7 +246,7 @@ def main(arguments: list[str] | None = None) -> None:
     )
     given.out.parent.mkdir(parents=True, exist_ok=True)
     write_text(given.out.with_suffix(".csv"), found.to_csv(float_format="%.4g"))
-    write_text(given.out.with_name(CASES_PLACE.name), ratios.to_csv(float_format="%.4g"))
+    write_text(ratios_place, ratios.to_csv(float_format="%.4g"))
     text = found.reset_index().to_markdown(index=False, floatfmt=".3g")
     cases_text = ratios.to_markdown(floatfmt=".3g")
     write_text(given.out.with_suffix(".md"), f"{text}\n\n{told}\n\n{cases_text}\n")

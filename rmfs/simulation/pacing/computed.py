@@ -20,8 +20,10 @@ if TYPE_CHECKING:
 
 SECONDS_PER_UNIT = {
     "clarabel": 0.0002812,
+    "columns": 0.9085,
     "cp_sat": 1.084,
     "highs": 0.0001898,
+    "insertions": 2.91e-08,
     "min_cost_flow": 7.73e-07,
     "rounding": 2.476e-05,
     "rule": 2.989e-07,
@@ -29,12 +31,14 @@ SECONDS_PER_UNIT = {
     "visits": 3.98e-09,
 }
 """Seconds per unit of work of each back end, as measured by `python -m tests.tools.calibrate` on an
-AMD EPYC on 2026-11-22 (results/published/seconds-per-unit.md)."""
+AMD EPYC on 2026-11-22 and 23 (results/published/seconds-per-unit.md)."""
 
 SECONDS_PER_CALL = {
     "clarabel": 0.0,
+    "columns": 0.004539,
     "cp_sat": 0.003471,
     "highs": 0.0,
+    "insertions": 0.000356,
     "min_cost_flow": 0.0002342,
     "rounding": 0.001733,
     "rule": 0.0001915,
@@ -45,8 +49,10 @@ SECONDS_PER_CALL = {
 
 SECONDS_PER_ENTRY = {
     "clarabel": 0.0,
+    "columns": 0.0,
     "cp_sat": 4.381e-06,
     "highs": 2.424e-05,
+    "insertions": 1.02e-08,
     "min_cost_flow": 0.0,
     "rounding": 0.0,
     "rule": 6.158e-06,

@@ -19,6 +19,7 @@ pub mod reservations;
 pub mod robot;
 pub mod route;
 pub mod search;
+pub mod sequences;
 pub mod units;
 pub mod visits;
 

@@ -44,7 +44,7 @@ class Question:
     Attributes
     ----------
     method
-        `cp_sat`, `columns` or `greedy`.
+        `lns`, `cp_sat`, `columns` or `greedy`.
     tasks, places
         Number of tasks after each pod, and of places between them, considered by CP-SAT.
     """
@@ -59,10 +59,11 @@ class Question:
 def solve(question: Question) -> Answer:
     """Find the first step of each robot: `place` for its pod, then `task`; -1 for none, shape (R,).
 
-    Insertion first, then from its solution CP-SAT over the shortest arcs, or column generation.
+    By neighbourhood search, or insertion first, then from its solution CP-SAT over the shortest
+    arcs, or column generation.
     """
     data = question.data
-    found = sequence.solve(data, "greedy")
+    found = sequence.solve(data, "lns" if question.method == "lns" else "greedy", question.limits)
     if found.values is not None and question.method == "columns" and data.tasks:
         found = sequence.solve(data, "columns", question.limits, start=found.values)
     elif found.values is not None and question.method == "cp_sat" and data.tasks:
@@ -100,13 +101,16 @@ class Memo:
 class RoutesParameters(TaskParameters, SearchParameters):
     """Parameters of TA routes."""
 
-    method: Literal["cp_sat", "columns", "greedy"] = "cp_sat"
-    """Solution method: CP-SAT or column generation (`columns`), both starting from cheapest
-    insertion, or insertion alone. For large sites, use `columns` with `work_s = 0.6`."""
+    method: Literal["lns", "cp_sat", "columns", "greedy"] = "lns"
+    """Solution method: `lns` (large neighbourhood search), CP-SAT (`cp_sat`) or column generation
+    (`columns`), both starting from cheapest insertion, or insertion alone (`greedy`)."""
+    steps: Annotated[int, pydantic.Field(ge=0)] = sequence.STEPS_PER_TASK
+    """Steps of `lns` for each task."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.01
-    """Limit of the search in deterministic seconds, which are close to wall time."""
+    """Limit of `cp_sat` or `columns` in deterministic seconds, which are close to wall time;
+    `columns` needs 0.6 at large sites."""
     gap: NotNegative = 0.01
-    """Relative gap between value and bound at which the search ends."""
+    """Relative gap between value and bound at which `cp_sat` or `columns` ends."""
     unit_value_s: NotNegative = 100.0
     """Value of a unit picked, in seconds of a robot."""
     order_value_s: NotNegative = 100.0
@@ -168,7 +172,10 @@ class RoutesControl(Asking[RoutesParameters]):
         found = self._jobs()
         places = self._places(planned, found)
         data = self._routing(planned, found, places)
-        question = Question(data, given.method, given.limits, given.ways_per_pod, 2)
+        limits = given.limits
+        if given.method == "lns":
+            limits = Limits(iterations=given.steps * data.tasks)
+        question = Question(data, given.method, limits, given.ways_per_pod, 2)
         sizes = {"robots": len(planned), "tasks": len(found), "places": len(places)}
         return Ask(solve, question, sizes, Memo(planned, again, found, places))
 

@@ -32,7 +32,7 @@ METHODS = {
     "zones": ("clarabel",),
     "matching": ("assignment",),
     "balance": ("flow",),
-    "sequence": ("greedy", "columns", "cp_sat"),
+    "sequence": ("greedy", "lns", "columns", "cp_sat"),
     "replenishment": ("greedy", "rounding", "cp_sat", "highs"),
     "run_bound": ("highs",),
 }

@@ -3,6 +3,7 @@
 mod guard;
 mod motion;
 mod planner;
+mod sequences;
 mod tables;
 mod visits;
 
@@ -25,6 +26,7 @@ use crate::units::{Us, from_radians, to_radians};
 use guard::{guarded, internal_error};
 use motion::Motion;
 use planner::{Along, Conflict, Fault, PlannerInPython, Reserved, Search, Way};
+use sequences::Sequences;
 use visits::Visits;
 
 /// A kind of robot as passed by Python: acceleration, deceleration, top speed, full turn (µs),
@@ -516,5 +518,5 @@ fn placed(network: &Network, robots: &[(u32, f64, u8)]) -> Result<Vec<(u32, u8, 
 #[pyo3(name = "_core")]
 mod core_module {
     #[pymodule_export]
-    use super::{Along, Conflict, Core, Motion, Reserved, Search, Visits, Way};
+    use super::{Along, Conflict, Core, Motion, Reserved, Search, Sequences, Visits, Way};
 }

@@ -38,7 +38,7 @@ def relaxed_bound(data: TaskSequence) -> float:
     -------
     The bound, in s; +inf if it proves that there are no feasible routes.
     """
-    first_s, first_extra_s, stowing_s = _from_robots(data)
+    first_s, first_extra_s, stowing_s = from_robots(data)
     next_s, next_extra_s, storing_s = _from_tasks(data)
     arrive_s = _earliest(data, first_s, next_s)
     # who arrives too late, or finds no place, cannot do the task
@@ -57,10 +57,22 @@ def relaxed_bound(data: TaskSequence) -> float:
     return total - _ROUNDING * abs(total)
 
 
-def _from_robots(
+def from_robots(
     data: TaskSequence,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return when robots can be at pods, what that adds to storing, and storing itself."""
+    """Return the ways of robots to first tasks, via the best place if they carry a pod.
+
+    Parameters
+    ----------
+    data
+        The problem.
+
+    Returns
+    -------
+    When each robot can be at each pod, shape (R, T), in s; the drive there beyond storing the pod
+    it carries at the nearest place, shape (R, T), in s; and that storing, shape (R,), in s. Ways
+    that are not allowed are infinite.
+    """
     through_s = shortest_over_places(data.stow_s, data.fetch_s)
     stowing_s = np.where(data.carrying, data.stow_s.min(axis=1, initial=math.inf), 0.0)
     way_s = np.where(data.carrying[:, np.newaxis], through_s, data.reach_s)

@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rmfs.solvers.models.backends.assignment import assign
 from rmfs.solvers.models.checks import require
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, solution_of_rule
 from rmfs.solvers.models.tasks.sequence.bound import relaxed_bound
@@ -25,6 +24,7 @@ from rmfs.solvers.models.tasks.sequence.schedule import (
     objective,
     violations,
 )
+from rmfs.solvers.models.tasks.sequence.starts import without_tasks
 
 
 def solve(
@@ -113,13 +113,8 @@ class _Plan:
         """Begin with given routes, or with the cheapest places for what robots carry."""
         if start is not None:
             return cls(data, start)
-        stowed = np.full(data.robots, NONE, np.int64)
-        assigned = assign(data.stow_s[data.carrying])
-        if assigned is None:
-            return None
-        stowed[data.carrying] = assigned.column
-        nothing = np.full(data.tasks, NONE, np.int64)
-        return cls(data, Routes(((),) * data.robots, nothing, stowed))
+        empty = without_tasks(data)
+        return None if empty is None else cls(data, empty)
 
     def routes(self) -> Routes:
         """Return what has been built."""

@@ -13,6 +13,7 @@ from rmfs.solvers.models.tasks.sequence import (
     arrivals_s,
     every_way,
     greedy,
+    lns,
     objective,
     relaxed_bound,
     short_ways,
@@ -152,6 +153,39 @@ def test_insertion_is_feasible_and_never_better_than_the_optimum() -> None:
     assert found > 100
 
 
+def test_the_search_is_feasible_and_nearly_always_optimal() -> None:
+    feasible = found = optimal = 0
+    for data, best in CASES:
+        solution = solve(data, "lns")
+        assert solution.bound <= best + 1e-9 * max(1.0, abs(best))
+        feasible += not isinf(best)
+        if not solution.found:
+            continue
+        found += 1
+        assert not violations(data, solution.required)
+        assert solution.objective == objective(data, solution.required)
+        assert solution.objective >= best - 1e-6
+        optimal += solution.objective <= best + 1e-6
+    assert found >= 0.97 * feasible
+    assert optimal >= 0.95 * feasible
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_search_is_near_the_optimum_repeats_and_improves_with_steps(seed: int) -> None:
+    data = site(seed, 10, 20, 30)
+    best, rule = solve(data, "columns"), greedy.solve(data)
+    assert best.status is Status.OPTIMAL
+    ends = [solve(data, "lns", Limits(iterations=steps), seed=seed) for steps in (0, 400, 4000)]
+    again = solve(data, "lns", Limits(iterations=4000), seed=seed)
+    assert again.required.tasks == ends[-1].required.tasks
+    assert (again.objective, again.work) == (ends[-1].objective, ends[-1].work)
+    first, short, long = (end.objective for end in ends)
+    assert best.objective - 1e-9 <= long <= 1.02 * best.objective
+    assert max(short, long) < min(first, rule.objective)
+    started = solve(data, "lns", Limits(iterations=0), start=best.required)
+    assert started.objective == best.objective
+
+
 def test_column_generation_finds_the_optimum_and_its_bound_never_exceeds_it() -> None:
     found = 0
     for data, best in CASES:
@@ -261,7 +295,7 @@ def simple(**changes: object) -> TaskSequence:
 
 
 def test_the_return_of_one_pod_is_combined_with_the_fetch_of_the_next() -> None:
-    for solver in (solve, greedy.solve):
+    for solver in (solve, greedy.solve, lns.solve):
         routes = solver(simple()).required
         assert routes.tasks == ((0, 1),)
         # near the next pod, not the first place in the list
@@ -290,13 +324,13 @@ def test_nothing_to_do_and_nobody_to_do_it() -> None:
         [], [], np.zeros((0, 1)), np.zeros((0, 2)), np.zeros((2, 1)), [1.0], [1.0],
         np.zeros((1, 2)), [0.0], [inf], [inf], [7.0],
     )  # fmt: skip
-    for solver in (solve, greedy.solve):
+    for solver in (solve, greedy.solve, lns.solve):
         assert solver(nobody).objective == 7.0
     idle = TaskSequence(
         [0.0], [True], np.zeros((1, 0)), [[3.0]], np.zeros((1, 0)), [], [], np.zeros((0, 1)),
         [], [], [], [],
     )  # fmt: skip
-    for solver in (solve, greedy.solve):
+    for solver in (solve, greedy.solve, lns.solve):
         assert solver(idle).objective == 3.0
         assert solver(idle).required.robot_place.tolist() == [0]
 
@@ -314,6 +348,8 @@ def test_invalid_input_is_refused_by_field() -> None:
         simple(late_weight=0.5)
     with pytest.raises(ModelError, match="start"):
         solve(simple(), start=Routes(((),), np.array([-1, -1]), np.array([-1])))
+    with pytest.raises(ModelError, match="start"):
+        solve(simple(), "lns", start=Routes(((),), np.array([-1, -1]), np.array([-1])))
 
 
 def test_violations_name_what_is_wrong() -> None:
