@@ -5,6 +5,7 @@ import pytest
 from laboratory import RADII_M, Laboratory
 
 from rmfs.demonstrator.emulator.unkind import KIND
+from rmfs.demonstrator.server.guide import Guide
 
 
 class Mischief:
@@ -146,3 +147,35 @@ def test_a_robot_that_sees_no_line_waits_until_somebody_puts_it_on_a_tag(tmp_pat
     assert lab.counts["given_up"] == 1
     assert lab.counts["troubles"] == 2
     assert (trips > 0).all()
+
+
+@pytest.mark.parametrize("real", [None, "0,2"])
+def test_robots_under_way_keep_their_ways_when_plans_are_made_anew(tmp_path, monkeypatch, real):
+    """Every waypoint that a robot may still drive over stays its own until it has passed it."""
+    tick, regroup = Guide.tick, Guide._regroup
+    seen = {"ticks": 0, "kept": 0}
+
+    def ticked(guide, *given, **options):
+        seen["ticks"] += 1
+        guide._regroup_due = guide._regroup_due or seen["ticks"] % 30 == 0
+        return tick(guide, *given, **options)
+
+    def regrouped(guide):
+        regroup(guide)
+        for robot in guide.robots.values():
+            if robot.is_busy and robot.pursuit.turned and not robot.given_up:
+                pursuit = robot.pursuit
+                ahead = pursuit.waypoints[pursuit.passed : pursuit.granted]
+                assert set(ahead) <= set(guide.traffic.clearance(robot.index))
+                seen["kept"] += bool(ahead)
+
+    monkeypatch.setattr(Guide, "tick", ticked)
+    monkeypatch.setattr(Guide, "_regroup", regrouped)
+    lab = Laboratory(tmp_path, KIND, real=real)
+    run = lab.run(60, trace=True)
+    assert lab.counts["regroupings"] > 30
+    assert seen["kept"] > 20
+    assert lab.room.truth.nearest_m >= RADII_M
+    report = run.check()
+    assert report.ok, report.summary()
+    assert len(run.traffic.trips()["robot"]) > 4

@@ -6,6 +6,7 @@ import pytest
 from random_tasks import RandomTasks
 
 from rmfs.layout import load
+from rmfs.measure.checker import check
 
 SECOND = 1_000_000
 
@@ -49,3 +50,35 @@ def test_robots_anywhere_and_late(seed):
             continue
         regrouped += 1
     assert regrouped > 5
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_robots_that_go_on_keep_their_ways(seed):
+    """Plans are made anew every other second; whoever is under way goes on, as far as it is clear.
+
+    Some of them are late, so that the runs of others are cut short. The trace is safe and whole.
+    """
+    draw = random.Random(seed)
+    layout = load("default", [(["robots"], 32)])
+    tasks = RandomTasks(layout, seed)
+    traffic, cut, regrouped = tasks.traffic, 0, 0
+    for second in range(2, 400, 2):
+        tasks.run(second)
+        if draw.random() < 0.3:
+            traffic.delay(draw.randrange(32), draw.randrange(8 * SECOND), begun=True)
+        before = [traffic.plan(robot)[:1] for robot in range(32)]
+        clear = [traffic.clearance(robot) for robot in range(32)]
+        try:
+            traffic.regroup([None] * 32)
+        except ValueError:  # a run cut short is slower, and has not left what others use
+            continue
+        regrouped += 1
+        for robot, moves in enumerate(before):
+            if moves and moves[0].start_us < traffic.now_us < moves[0].end_us and clear[robot]:
+                kept = traffic.plan(robot)[0]
+                assert (kept.start_us, kept.to_waypoint) == (moves[0].start_us, clear[robot][-1])
+                cut += kept.to_waypoint != moves[0].to_waypoint
+    assert regrouped > 150 and cut > 20
+    report = check(layout, traffic.trace(), until_us=traffic.now_us)
+    assert report.ok, report.summary()
+    assert len(tasks.visits) > 24

@@ -298,6 +298,9 @@ class Guide:
                 self.traffic.delay(index, GONE_US, begun=True)
                 rests.append(None)
                 cut.append(robot)
+            elif self._is_under_way(robot):
+                rests.append(None)
+                cut.append(robot)
             else:
                 rests.append(self._rest_of_real(robot))
                 if robot.is_busy and robot.astray is None:
@@ -314,16 +317,33 @@ class Guide:
         for robot in self.robots.values():
             robot.astray = None
 
-    def _rest_of_simulated(self, index: int) -> tuple[int, float, int]:
-        plan = self.traffic.plan(index)
-        now_us = self.traffic.now_us
-        if not plan:
-            return self.traffic.rest_waypoint(index), float(self.layout.robot_heading_rad[index]), 0
+    def _is_under_way(self, robot: RealRobot) -> bool:
+        """Whether a robot drives where its plan has it, up to the last waypoint granted.
+
+        Then it keeps this run, and with it every waypoint that it has yet to pass.
+        """
+        pursuit = robot.pursuit
+        if pursuit is None or pursuit.done or robot.astray is not None:
+            return False
+        plan = self.traffic.plan(robot.index)
+        if not plan or not _is_same(pursuit.move, plan[0]):
+            return False
+        self._grant(pursuit, robot.index)
+        clear = self.traffic.clearance(robot.index)
+        upto = max(pursuit.granted, pursuit.passed)
+        if not clear or not upto or clear[-1] != pursuit.waypoints[upto - 1]:
+            return False
+        # one that strayed onto this way has to leave it first
+        strayed = {other.astray for other in self.robots.values() if other.astray is not None}
+        return strayed.isdisjoint(pursuit.waypoints[:upto])
+
+    def _rest_of_simulated(self, index: int) -> tuple[int, float, int] | None:
+        """Where a simulated robot stops; None if it stands or keeps the clear part of its run."""
+        plan, now_us = self.traffic.plan(index), self.traffic.now_us
+        if not plan or plan[0].start_us > now_us or self.traffic.clearance(index):
+            return None
         move = plan[0]
-        if move.start_us > now_us:
-            return move.from_waypoint, move.heading_rad, 0
-        stop = [move.from_waypoint, *self.traffic.clearance(index)][-1]
-        return stop, move.heading_rad, max(move.end_us, now_us)
+        return move.from_waypoint, move.heading_rad, max(move.end_us, now_us)
 
     def _rest_of_real(self, robot: RealRobot) -> tuple[int, float, int]:
         if robot.astray is not None:
@@ -345,7 +365,11 @@ class Guide:
         """Let a robot end its pursuit at the last waypoint granted."""
         pursuit = robot.pursuit
         assert pursuit is not None
+        plan = self.traffic.plan(robot.index)
+        kept = plan[0] if plan and plan[0].start_us == pursuit.move.start_us else None
         pursuit.cut()
+        if kept is not None and kept.to_waypoint == pursuit.end and pursuit.waypoints:
+            pursuit.follow(kept, self.layout, robot.index)
         message = {"type": "cut", "id": pursuit.number, "upto": len(pursuit.waypoints)}
         self._outbox.append((robot.index, message))
 

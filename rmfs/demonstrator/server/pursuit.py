@@ -61,15 +61,7 @@ class Pursuit:
         cls, number: int, move: PlannedMove, heading_rad: float, layout: Layout, robot: int
     ) -> Pursuit:
         """Create the pursuit of a move, not yet begun."""
-        waypoints = straight_way(layout, move)
-        x, y = layout.x_m, layout.y_m
-        start = move.from_waypoint
-        along = [float(math.hypot(x[w] - x[start], y[w] - y[start])) for w in waypoints]
-        kind = layout.robot_kinds[int(layout.robot_kind[robot])]
-        motion = Motion(
-            kind.acceleration_m_s2, kind.deceleration_m_s2, kind.top_speed_m_s, 0.0, along[-1]
-        )
-        seconds = [motion.time_at(distance) for distance in along]
+        waypoints, along, seconds = _course(layout, move, robot)
         turned = quarter_turns(heading_rad, move.heading_rad) == 0
         return cls(number, move, heading_rad, waypoints, along, seconds, turned=turned)
 
@@ -99,6 +91,11 @@ class Pursuit:
         upto = max(self.granted, self.passed)
         del self.waypoints[upto:], self.along_m[upto:], self.seconds[upto:]
 
+    def follow(self, move: PlannedMove, layout: Layout, robot: int) -> None:
+        """Follow a move that is the same run, cut short: it has other times."""
+        self.move = move
+        self.waypoints, self.along_m, self.seconds = _course(layout, move, robot)
+
     @property
     def end(self) -> int:
         """The waypoint at which the order ends."""
@@ -125,6 +122,21 @@ class Pursuit:
             "turned": self.turned,
             "passed": self.passed,
         }
+
+
+def _course(
+    layout: Layout, move: PlannedMove, robot: int
+) -> tuple[list[int], list[float], list[float]]:
+    """Return waypoints, distances (m) and times (s) of a straight run from its start."""
+    waypoints = straight_way(layout, move)
+    x, y = layout.x_m, layout.y_m
+    start = move.from_waypoint
+    along = [float(math.hypot(x[w] - x[start], y[w] - y[start])) for w in waypoints]
+    kind = layout.robot_kinds[int(layout.robot_kind[robot])]
+    motion = Motion(
+        kind.acceleration_m_s2, kind.deceleration_m_s2, kind.top_speed_m_s, 0.0, along[-1]
+    )
+    return waypoints, along, [motion.time_at(distance) for distance in along]
 
 
 def quarter_turns(before_rad: float, after_rad: float) -> int:

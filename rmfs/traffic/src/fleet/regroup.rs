@@ -21,7 +21,8 @@ pub struct Rest {
 
 impl Fleet {
     /// Puts robots at rest at their actual positions and plans their programs anew. A robot without
-    /// a rest continues its run as far as the way is clear.
+    /// a rest continues its run as far as the way is clear, and keeps everything it occupies until
+    /// it stands there.
     ///
     /// # Errors
     /// If there is not one entry per robot, or two would have one waypoint; nothing has changed
@@ -66,8 +67,15 @@ impl Fleet {
         let kind = &self.kinds[state.kind as usize];
         let begun = state.committed(&self.network, kind, self.now);
         state.moves.truncate(if clear.is_some() { begun } else { 0 });
-        if let (Some(step), Some(clear)) = (state.moves.front_mut(), clear) {
+        if let (Some(step), Some(clear)) = (state.moves.front_mut(), clear)
+            && step.to != clear
+            && !step.ride
+        {
+            // it stops sooner: what it occupies until then stays its own
             step.to = clear;
+            let line = self.network.line(step.from, clear, step.heading);
+            let length = line.last().map_or(0.0, |(_, distance)| distance);
+            step.end = step.start + step.late + kind.run_time(length);
         }
         state
     }
