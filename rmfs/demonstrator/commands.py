@@ -113,7 +113,8 @@ def demonstrate(
 ) -> None:
     """Run a warehouse with real robots and write a run folder.
 
-    If it is killed, calling it again with the same arguments resumes the demonstration.
+    If it is killed, calling it again with the same arguments resumes the demonstration. With an
+    emulated room of its own it begins again, with the same result.
     """
     from rmfs.cli.simulate import conclude, default_name
     from rmfs.cli.terminal import progress, step
@@ -134,12 +135,19 @@ def demonstrate(
     is_emulated = scheme == settings.ROOM
     known = secrets.token_hex(16).encode() if is_own else settings.secret(secret)
     target = out or Path("results") / f"demonstration-{default_name(inputs, seed, set_ or [])}"
-    journal = target.parent / f".{target.name}.{JOURNAL}"
+    if is_own and past_failure:
+        raise InputError(
+            f"--past-failure: a room of --robots {EMULATED} ends with its server, so there is "
+            "nothing to resume (rmfs emulate runs a room of its own)"
+        )
     hub = _hub(host, port, known, expected(chosen, is_emulated=is_emulated), robots)
-    demonstration = Demonstration(
-        hub, chosen, settings.tags(plan, tags), journal, is_emulated, past_failure
-    )
     with reserved(target, force=force) as folder:
+        # a room that ends with the server begins anew, and so does the demonstration
+        beside = target.parent / f".{target.name}.{JOURNAL}"
+        journal = folder / JOURNAL if is_own else beside
+        demonstration = Demonstration(
+            hub, chosen, settings.tags(plan, tags), journal, is_emulated, past_failure
+        )
         asked = ["--layout", layout, "--seed", str(seed), *(["--real", real] if real else [])]
         asked += [
             part for text in set_ or [] if text.startswith("layout.") for part in ("--set", text)
@@ -163,7 +171,8 @@ def demonstrate(
                 raise typer.Exit(GIVEN_UP) from None
         step("writing the tables")
         fill(folder, done, trace=trace, inputs=inputs)
-        shutil.move(journal, folder / JOURNAL)
+        if not is_own:
+            shutil.move(journal, folder / JOURNAL)
         footprint = load_run(folder).footprint
     conclude(target, footprint, None)
 

@@ -2,9 +2,11 @@
 
 import json
 import os
+import signal
 import socket
 import subprocess
 import sys
+import time
 
 import pandas as pd
 import pytest
@@ -107,6 +109,7 @@ def lab(monkeypatch, tmp_path):
             "need time-windows",
         ),
         (["--robots", "tcp://192.0.2.1:7"], "cannot listen there"),
+        (["--robots", "emulated", "--past-failure"], "there is nothing to resume"),
     ],
 )
 def test_wrong_input_ends_in_one_line(lab, capsys, arguments, why):
@@ -142,3 +145,24 @@ def test_a_demonstration_with_a_room_of_its_own(lab):
     assert truth["nearest_m"] >= 0.34
     assert (lab / "a" / "journal.jsonl").stat().st_size > 1000
     assert not [path for path in lab.iterdir() if path.name != "a"]
+
+
+def test_a_killed_demonstration_with_a_room_of_its_own_begins_again(lab):
+    """Its room has ended with it; a journal of half a demonstration would find robots elsewhere."""
+    asked = ["--set", "scenario.duration_s=15", "--set", "scenario.warmup_s=0"]
+    command = [sys.executable, "-m", "rmfs", "demonstrate", "--robots", "emulated", *asked]
+    killed = subprocess.Popen([*command, "--out", "a"], start_new_session=True, env=os.environ)
+    until = time.monotonic() + 120
+    while not any(path.stat().st_size > 2000 for path in lab.rglob("*journal.jsonl")):
+        assert killed.poll() is None and time.monotonic() < until
+        time.sleep(0.01)
+    os.killpg(killed.pid, signal.SIGKILL)
+    killed.wait()
+    assert not (lab / "a").exists()
+    for out in ("a", "b"):
+        subprocess.run([*command, "--out", out], check=True, capture_output=True, env=os.environ)
+    rooms = [json.loads((lab / out / "room.json").read_text()) for out in ("a", "b")]
+    assert rooms[0] == rooms[1] and rooms[0]["driven_m"] > 2
+    journals = [(lab / out / "journal.jsonl").read_bytes() for out in ("a", "b")]
+    assert journals[0] == journals[1]
+    assert not [path for path in lab.iterdir() if path.name not in ("a", "b")]
