@@ -334,7 +334,10 @@ def report(
     file: Annotated[
         Path | None,
         typer.Option(
-            "--file", "-f", help="[default: report.html in the folder]", show_default=False
+            "--file",
+            "-f",
+            help="A .html file. [default: report.html in the folder]",
+            show_default=False,
         ),
     ] = None,
     allow_incomplete: Lacking = False,

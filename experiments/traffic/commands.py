@@ -51,10 +51,24 @@ Allow = Annotated[
 Out = Annotated[
     Path | None, typer.Option(help=".csv or .md file for the table.", show_default=False)
 ]
-Lists = Annotated[
+Scenario = Annotated[
     Path | None,
     typer.Option(
-        help="Robots and trips on a .map, in the format of the League of Robot Runners.",
+        help="Starts and goals of the robots on a .map: a .scen file of MovingAI.",
+        show_default=False,
+    ),
+]
+Agents = Annotated[
+    Path | None,
+    typer.Option(
+        help="Starts of the robots on a .map, in the format of the League of Robot Runners.",
+        show_default=False,
+    ),
+]
+Tasks = Annotated[
+    Path | None,
+    typer.Option(
+        help="Goals of the trips on a .map, in the format of the League of Robot Runners.",
         show_default=False,
     ),
 ]
@@ -93,9 +107,9 @@ def duel(
     set_: Settings = None,
     allow_not_well_formed: Allow = False,
     out: Out = None,
-    scen: Lists = None,
-    agents: Lists = None,
-    tasks: Lists = None,
+    scen: Scenario = None,
+    agents: Agents = None,
+    tasks: Tasks = None,
 ) -> None:
     """Drive the same trips with several planners: random ones, or those of the files of a .map."""
     names = planner or duels.all_planners()

@@ -15,7 +15,11 @@ if TYPE_CHECKING:
 
     from rmfs.solvers.decisions.files import Decision, Found
 
-app = typer.Typer(no_args_is_help=True, context_settings={"help_option_names": ["-h", "--help"]})
+app = typer.Typer(
+    help="Solve, check, bound, convert and time decision questions.",
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
 
 Files = Annotated[
     list[Path],

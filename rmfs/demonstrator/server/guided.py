@@ -119,7 +119,7 @@ class GuidedTraffic(Traffic):
             self._journal.note_failure(now_us, repr(error))
             raise InternalError(
                 f"{error!r}, at {now_us / 1e6:.2f} s of the demonstration (the same command with "
-                "--past-failure resumes without what robots said then)"
+                "--past-failure resumes without the messages of that time)"
             ) from error
 
     def end(self) -> None:
