@@ -82,7 +82,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def offline_gaps(library: Library, arm: str, size: str) -> list[float]:
-    """Answer the questions of a family and size as an arm would, and return the primal gaps.
+    """Answer the questions of an arm's family as the arm would; return the primal gaps (shares).
 
     Parameters
     ----------

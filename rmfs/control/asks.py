@@ -180,11 +180,12 @@ class Call:
     failure
         Reason for a failure, in one line.
     applied, stale
-        Number of decisions of the solution that were applied, and that were no longer valid.
+        Number of the solution's decisions that were applied, and number that had become invalid.
     fallback
-        Decisions made by the controller's own rule because the call failed or found nothing.
+        Number of decisions made by the controller's own rule because the call failed or found
+        nothing.
     done
-        Number of parts already handled (`left`).
+        Number of parts of the answer already handled, by name of the group of parts (`left`).
     """
 
     number: int

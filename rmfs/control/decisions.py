@@ -45,7 +45,7 @@ class QueueOrder(NamedTuple):
 
 
 class SendBundle(NamedTuple):
-    """ROA: handle a bundle at a replenishment station."""
+    """ROA: choose the replenishment station of a bundle, and reserve space there."""
 
     bundle: Bundle
     station: int

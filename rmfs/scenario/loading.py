@@ -13,8 +13,7 @@ from rmfs.scenario.parameters import Scenario
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rmfs import foreign
-from rmfs.config import Table
+    from rmfs.config import Table
 
 _FILES = (
     ("skus", "file"),
@@ -67,7 +66,9 @@ def load_with_notes(
 
 
 def asked_of_layout(name_or_path: str | Path) -> list[tuple[list[str], Any]]:
-    """Return the overrides that a scenario of RAWSim-O implies for the layout; other files: none.
+    """Return the overrides that a scenario file of RAWSim-O implies for the layout.
+
+    They are pairs of a key path and a value; the list is empty for files in other formats.
 
     Raises
     ------

@@ -9,7 +9,7 @@ MOST_SHOWN = 10
 
 
 class Problems:
-    """Collects the problems of a file.
+    """Collects the errors found in an input file, and reports them together.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rmfs.errors import InputError
-from rmfs.files import write_text
+from rmfs.files import read_bounded, write_text
 from rmfs.scenario.parameters import LetterSkus, SkuFile, StreamDemand, StreamReplenishment
 from rmfs.scenario.parameters.pickers import MeasuredTime
 from rmfs.scenario.skus import write_sku_set
@@ -25,8 +25,8 @@ def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
     Parameters
     ----------
     path
-        The .toml file. The other files are written beside it: NAME-skus.json, NAME-words.txt,
-        NAME-orders.csv, NAME-bundles.csv, NAME-times.csv.
+        The file NAME.toml. Those of the other files that the scenario needs are written beside
+        it: NAME-skus.json, NAME-words.txt, NAME-orders.csv, NAME-bundles.csv, NAME-times.csv.
 
     Returns
     -------
@@ -53,7 +53,7 @@ def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
         changes["skus"] = scenario.skus.model_copy(update={"file": Path(target.name)})
     elif isinstance(scenario.skus, LetterSkus):
         target = beside("words.txt")
-        write_text(target, scenario.skus.words.read_text("utf-8-sig"))
+        write_text(target, _text(scenario.skus.words))
         changes["skus"] = scenario.skus.model_copy(update={"words": Path(target.name)})
     if isinstance(scenario.demand, StreamDemand):
         target = beside("orders.csv")
@@ -68,8 +68,22 @@ def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
     times = scenario.pickers.unit_time if scenario.pickers is not None else None
     if scenario.pickers is not None and isinstance(times, MeasuredTime):
         target = beside("times.csv")
-        write_text(target, times.file.read_text("utf-8-sig"))
+        write_text(target, _text(times.file))
         copied = times.model_copy(update={"file": Path(target.name)})
         changes["pickers"] = scenario.pickers.model_copy(update={"unit_time": copied})
     write_text(path, to_toml(scenario.model_copy(update=changes)))
     return written
+
+
+def _text(path: Path) -> str:
+    """Read a file to be copied.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or is not UTF-8 text.
+    """
+    try:
+        return read_bounded(path).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: is not UTF-8 text") from None

@@ -87,7 +87,7 @@ class Readings:
         """All pieces of motion so far, sorted by robot and time.
 
         The columns are `robot`, `t0_us`, `t1_us`, `kind` (`Piece`), `from_wp`, `to_wp`,
-        `heading0_rad`, `heading1_rad`, `pod` (carried, -1 without).
+        `heading0_rad`, `heading1_rad`, `pod` (carried, -1 without), `top_speed_m_s`.
 
         Raises
         ------

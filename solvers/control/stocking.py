@@ -59,7 +59,7 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Find `pod` of each bundle and `station` of each pod, -1 for none."""
+    """Choose a `pod` for each bundle and a `station` for each pod; -1 means none."""
     found = replenishment.solve(question.data, "greedy")
     if question.method != "greedy":
         found = replenishment.solve(

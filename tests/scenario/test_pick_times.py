@@ -155,3 +155,20 @@ def test_a_scenario_takes_its_file_along(tmp_path):
     write_scenario(read, tmp_path / "out.toml")
     again = load(tmp_path / "out.toml")
     assert measured_s(named_files(again)["pickers.unit_time.file"]).tolist() == [4.0, 5.0]
+
+
+@pytest.mark.parametrize("spoil", ["bytes", "gone"])
+def test_a_file_that_cannot_be_taken_along_is_named(tmp_path, spoil):
+    given = tmp_path / "t.csv"
+    given.write_text("time_s\n4\n5\n")
+    (tmp_path / "own.toml").write_text(
+        'format = "rmfs-scenario/1"\nname = "own"\nduration_s = 60\n[pickers]\n'
+        'unit_time = {distribution = "empirical", file = "t.csv"}\n'
+    )
+    read = load(tmp_path / "own.toml")
+    if spoil == "bytes":
+        given.write_bytes(b"time_s\n\xff\n")
+    else:
+        given.unlink()
+    with pytest.raises(InputError, match="t.csv"):
+        write_scenario(read, tmp_path / "out.toml")

@@ -61,10 +61,11 @@ P = TypeVar("P", bound=Parameters)
 
 
 class Repositioning(Controller[P]):
-    """Chooses among the available pods and the empty places.
+    """Chooses an available pod and the empty place to which it is moved.
 
-    TA asks it for a robot without a pod that would otherwise rest or that only moves idle pods. Pod
-    and place are reserved for the robot at once.
+    TA asks for a move on behalf of a robot without a pod, usually one that would otherwise rest.
+    Pod and place are reserved immediately, either for that robot or, if an idle robot already
+    stands beneath the pod, for the latter.
     """
 
     problem = Problem.REPOSITIONING

@@ -167,7 +167,7 @@ class Room:
         self._pace.has_ended = True
 
     def close(self) -> None:
-        """End all connections."""
+        """Kill all programs, end all connections, and remove the temporary memory."""
         for robot in self.robots.values():
             robot.kill()
         self._pace.close()

@@ -46,9 +46,10 @@ class Drawing:
     ground
         Type of each cell (`Ground`), shape (H, W).
     one_way
-        Direction of aisle cells that lead to other aisles in one direction only.
+        For each one-way aisle cell, the only step (one of `NEIGHBOURS`) to another aisle cell.
     full, empty
-        Storage places drawn with and without a pod; of the remaining ones, a share has one.
+        Storage places drawn with a pod, and drawn without one. Of the storage places in neither
+        list, the share `pod_share` holds a pod.
     robots
         Cells at which robots stand.
     stands

@@ -17,7 +17,7 @@ def _as_generated(key: str) -> Any:
 
 
 class Equipment(Strict):
-    """Robots, pods and stations of a layout given by its cells."""
+    """Parameters of layouts described cell by cell: name, cell size, robots, pods, stations."""
 
     name: str = Field("", description="name shown in results; default: that of the file")
     seed: Amount = Field(0, description="random seed for the places of pods and robots")

@@ -55,15 +55,22 @@ def drawn_queue(head: Cell, sign: Callable[[Cell], str], taken: set[Cell]) -> tu
 
 
 def straight_queue(drawing: Drawing, head: Cell, length: int) -> tuple[Cell, ...]:
-    """Lay a queue over aisles in a straight line from a station, and mark its cells.
+    """Lay a straight queue over aisle cells, and mark them as places of a queue.
 
-    The longest option is chosen, in a tie the first of east, north, west, south. One-way cells,
-    cells beside storage places, cells with robots and the last way out of the station are not used.
+    The direction with room for most places is chosen; ties go to the first of east, north, west and
+    south. One-way cells, cells beside storage places, cells with robots and the last way out of the
+    station are not used.
 
     Parameters
     ----------
+    head
+        Cell of the station.
     length
         Number of places without the station; the queue is shorter if there is not enough room.
+
+    Returns
+    -------
+    The cells from the station, which is included, to the entrance.
     """
     taken = set(drawing.robots)
 

@@ -101,7 +101,7 @@ class Batteries(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Add up the energy counted by traffic, and the charging tasks."""
+        """Evaluate charging, charge tasks and battery levels; empty without batteries."""
         energy = run.recorder.energy
         batteries, counted, samples = energy.batteries, energy.final, energy.samples
         if batteries is None:

@@ -138,7 +138,10 @@ CONTROLLERS = (
 
 
 def decisions(logs: Logs) -> pd.DataFrame:
-    """Make a row per call of a controller that made a decision, and per question it asked."""
+    """Make a row per controller call that made a decision, and per question to an optimiser.
+
+    The table covers the measured time only, without the warm-up.
+    """
     import pandas as pd
 
     calls = _calls(logs)

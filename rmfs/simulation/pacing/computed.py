@@ -117,7 +117,7 @@ class Instant(Computed):
 
 
 class Work(Computed):
-    """Answers take simulated time in proportion to their work."""
+    """Answers take simulated time per call, per unit of work, and per entry of the model."""
 
     def __init__(self, settings: WorkPacing) -> None:
         self._per_call = settings.seconds_per_call

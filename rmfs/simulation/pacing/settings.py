@@ -42,7 +42,7 @@ class WallPacing(_Mode):
 
 
 class WorkPacing(_Mode):
-    """Optimisers take simulated time in proportion to their deterministic work."""
+    """Optimisers take simulated time per call, per unit of work, and per entry of the model."""
 
     mode: Literal["work"] = "work"
     seconds_per_unit: NotNegative | dict[str, NotNegative] = Field(default_factory=dict)

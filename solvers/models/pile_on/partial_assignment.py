@@ -162,7 +162,11 @@ class PartialAssignment:
         return cost
 
     def completions(self, pods: Integers, station: int) -> tuple[Floats, Floats]:
-        """Number and units of open orders that each pod would complete with the stock, (N,)."""
+        """Number and units of open orders that each pod would complete, two arrays of shape (N,).
+
+        Each order is tested on its own against the pod's units and the stock left at the station;
+        several orders may thus count on the same units.
+        """
         offers, need = self._offers, self._needs(station)
         lacking = need > 0
         # An order is complete if the pod has enough of as many lines as it lacks.

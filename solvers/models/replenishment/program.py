@@ -164,14 +164,14 @@ def stocking_of(data: Replenishment, columns: Columns, x: NDArray[np.float64]) -
 
 
 def formulate(data: Replenishment, *, whole: bool) -> Formulation[Stocking]:
-    """Formulate the problem as an integer programme.
+    """Formulate the problem as a mixed-integer programme.
 
     Parameters
     ----------
     data
         The problem.
     whole
-        Whether the solver requires all columns to be integer.
+        Whether loads are declared integer too, for solvers that require it (see `program`).
     """
     columns = Columns.of(data)
     return Formulation(
