@@ -170,5 +170,5 @@ def test_a_file_that_cannot_be_taken_along_is_named(tmp_path, spoil):
         given.write_bytes(b"time_s\n\xff\n")
     else:
         given.unlink()
-    with pytest.raises(InputError, match="t.csv"):
+    with pytest.raises(InputError, match=r"t\.csv"):
         write_scenario(read, tmp_path / "out.toml")
