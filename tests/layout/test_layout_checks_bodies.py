@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
+import pytest
 from broken_layouts import (
     IMPOSSIBLE,
     assert_found,
@@ -16,7 +18,8 @@ from broken_layouts import (
     with_edges,
 )
 
-from rmfs.layout import check
+from rmfs import instances
+from rmfs.layout import check, load
 
 
 def test_waypoints_too_near():
@@ -79,3 +82,39 @@ def test_one_long_edge_is_compared_with_all_others():
 def test_tiers_do_not_touch_each_other():
     layout = two_tiers()
     assert not [v for v in check(layout) if "apart" in v.message]
+
+
+separation = import_module("rmfs.layout.checks.separation")
+
+
+def never(*_given):
+    raise AssertionError("edges of a wide grid need not be compared")
+
+
+@pytest.mark.parametrize("name", instances.names("layouts"))
+def test_on_a_wide_grid_nothing_is_compared(name, monkeypatch):
+    """A grid of a million cells is checked in seconds; the result is that of comparing all."""
+    layout = load(name)
+    with monkeypatch.context() as patched:
+        patched.setattr(separation, "_is_wide_grid", lambda *_given: False)
+        assert check(layout) == []
+    monkeypatch.setattr(separation, "_close_edges", never)
+    monkeypatch.setattr(separation, "_beside_edges", never)
+    assert check(layout) == []
+
+
+@pytest.mark.parametrize("off", ["waypoint", "narrow", "edge"])
+def test_anything_off_the_grid_is_compared(off, monkeypatch):
+    layout = small()
+    if off == "waypoint":
+        a = road(layout)[0]
+        layout = moved(layout, a, layout.x_m[a] + 1e-3, layout.y_m[a])
+    elif off == "narrow":
+        layout = replace(layout, pod_radius_m=0.5)
+    else:
+        a, _, c = road(layout)[:3]
+        layout = with_edges(layout, [*edges(layout), (a, c), (c, a)])
+    monkeypatch.setattr(separation, "_close_edges", never)
+    monkeypatch.setattr(separation, "_beside_edges", never)
+    with pytest.raises(AssertionError, match="need not be compared"):
+        list(separation.separation(layout))

@@ -30,6 +30,9 @@ TOLERANCE_M = 1e-9
 LONG = 3.0
 """Edges longer than this multiple of the median are compared with all others individually."""
 
+GRID_TOLERANCE = 1e-6
+"""How much wider than needed a grid must be, as a share: positions are off it by less."""
+
 
 def separation(layout: Layout) -> Iterator[Violation]:
     """Yield waypoints and edges that come closer than two radii."""
@@ -44,6 +47,8 @@ def separation(layout: Layout) -> Iterator[Violation]:
         yield from _report(labels, distance_m, needed_m)
         return  # close waypoints make every edge between them close too
     edges = _undirected(layout)
+    if _is_wide_grid(layout, edges, needed_m):
+        return
     yield from _beside_edges(layout, points, edges, needed_m)
     yield from _close_edges(points, edges, needed_m)
 
@@ -74,6 +79,28 @@ def _undirected(layout: Layout) -> Pairs:
     ends = np.column_stack([edge_sources(layout), layout.edge_target]).astype(np.int64)
     ends.sort(axis=1)
     return np.unique(ends, axis=0)
+
+
+def _is_wide_grid(layout: Layout, edges: Pairs, needed_m: float) -> bool:
+    """Whether all edges join neighbours of one square grid that is wide enough.
+
+    Then whatever has no common end is at least the width of the grid apart.
+    """
+    if not edges.size:
+        return True
+    tail, head = edges.T
+    dx_m, dy_m = layout.x_m[head] - layout.x_m[tail], layout.y_m[head] - layout.y_m[tail]
+    width_m = float(max(abs(dx_m[0]), abs(dy_m[0])))
+    if width_m < needed_m + GRID_TOLERANCE * width_m:
+        return False
+    along, across = np.maximum(abs(dx_m), abs(dy_m)), np.minimum(abs(dx_m), abs(dy_m))
+    offset = np.concatenate([layout.x_m - layout.x_m[0], layout.y_m - layout.y_m[0]]) / width_m
+    return bool(
+        (layout.tier[head] == layout.tier[tail]).all()
+        and (abs(along - width_m) <= GRID_TOLERANCE * width_m / 8).all()
+        and (across <= GRID_TOLERANCE * width_m / 8).all()
+        and (abs(offset - np.rint(offset)) <= GRID_TOLERANCE / 8).all()
+    )
 
 
 def _beside_edges(
